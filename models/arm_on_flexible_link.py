@@ -1,0 +1,63 @@
+"""The robotic arm mounted on a flexible link of the paper, section 3.2."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import casadi as ca
+
+from models.plant import Expression, JointMotion, Plant, parameter
+
+
+@dataclass(frozen=True)
+class ArmOnFlexibleLink(Plant):
+    """A rigid arm whose motor rides on a flexible beam, eqs (13), (14); defaults from eq (15)."""
+
+    name: ClassVar[str] = "arm-on-flexible-link"
+    modes: ClassVar[int] = 1
+
+    alpha1: float = parameter(-1.055e-1, "-", "eq (15)")
+    alpha2: float = parameter(-9.949e-3, "m", "eq (15)")
+    alpha3: float = parameter(5.256e-2, "m", "eq (15)")
+    alpha4: float = parameter(7.634e-2, "-", "eq (15)")
+    zeta: float = parameter(1.500e-3, "-", "eq (15)")
+    omega: float = parameter(7.320, "rad/s", "eq (15)")
+    beta1: float = parameter(5.366e-3, "kg m^2", "eq (15)")
+    beta2: float = parameter(-4.944e-3, "kg m", "eq (15)")
+    beta3: float = parameter(2.399e-2, "kg m", "eq (15)")
+    c: float = parameter(1.965e-2, "N m s", "eq (15)")
+    phi: float = parameter(
+        0.508,
+        "-",
+        "mode shape at the tip, not printed: beta3 / (M lbar) with M = 0.450 kg and lbar = 0.105 m",
+    )
+
+    def modal_accelerations(
+        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
+    ) -> Sequence[Expression]:
+        """W'' from eq (13) [m/s^2]."""
+        sine, cosine = ca.sin(joint.angle), ca.cos(joint.angle)
+        force = (
+            2 * self.zeta * self.omega * dW[0]
+            + self.omega**2 * W[0]
+            + (self.alpha2 + self.alpha3 * cosine) * joint.acceleration
+            + (self.alpha4 * dW[0] * joint.speed - self.alpha3 * joint.speed**2) * sine
+        )
+        return [-force / (1 + self.alpha1 * cosine)]
+
+    def torque(
+        self,
+        joint: JointMotion,
+        W: Sequence[Expression],
+        dW: Sequence[Expression],
+        ddW: Sequence[Expression],
+    ) -> Expression:
+        """Joint torque from eq (14) [N m]."""
+        coupling = self.beta2 + self.beta3 * ca.cos(joint.angle)
+        return self.beta1 * joint.acceleration + self.c * joint.speed + coupling * ddW[0]
+
+    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+        """w(t, l) = phi W [m]."""
+        return [self.phi * W[0]]

@@ -1,0 +1,55 @@
+"""The single-link flexible manipulator of the paper, section 3.1."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from models.plant import Expression, JointMotion, Plant, parameter
+
+
+@dataclass(frozen=True)
+class SingleLinkManipulator(Plant):
+    """A flexible plate with a tip mass on a rigid hub, eqs (8) and (9); defaults from eq (10)."""
+
+    name: ClassVar[str] = "single-link"
+    modes: ClassVar[int] = 1
+
+    alpha1: float = parameter(2.383e-2, "kg m^2", "eq (10)")
+    alpha2: float = parameter(9.261e-2, "kg m", "eq (10)")
+    c: float = parameter(3.091e-2, "N m s", "eq (10)")
+    beta1: float = parameter(2.555e-1, "m", "eq (10)")
+    beta2: float = parameter(2.614e-1, "-", "eq (10)")
+    zeta: float = parameter(9.636e-3, "-", "eq (10)")
+    omega: float = parameter(10.43, "rad/s", "eq (10)")
+    phi: float = parameter(
+        2.28,
+        "-",
+        "mode shape at the tip, not printed: the 'about 7.7 cm' of residual amplitude of the plain "
+        "cycloid (pi/6 in 0.8 s) over the residual max |W| of 0.03382 m computed for it",
+    )
+
+    def modal_accelerations(
+        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
+    ) -> Sequence[Expression]:
+        """W'' from eq (9) [m/s^2]."""
+        return [
+            -2 * self.zeta * self.omega * dW[0]
+            - (self.omega**2 + self.beta2 * joint.speed**2) * W[0]
+            - self.beta1 * joint.acceleration
+        ]
+
+    def torque(
+        self,
+        joint: JointMotion,
+        W: Sequence[Expression],
+        dW: Sequence[Expression],
+        ddW: Sequence[Expression],
+    ) -> Expression:
+        """Joint torque from eq (8) [N m]."""
+        return self.alpha1 * joint.acceleration + self.alpha2 * ddW[0] + self.c * joint.speed
+
+    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+        """w(t, l) = phi W [m]."""
+        return [self.phi * W[0]]

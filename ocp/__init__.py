@@ -1,0 +1,38 @@
+"""What is asked, and the gradient answer."""
+
+from ocp.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
+from ocp.objective import Motion
+from ocp.plan import Plan, SolveSettings, Verification, evaluate_coefficients
+from ocp.profile import MAX_TERMS, CycloidPolynomial, JointPath, JointProfile
+from ocp.residual import residual_matrix
+from ocp.resimulation import Trajectory, resimulate, sample_trajectory
+from ocp.rollout import Rollout, rollout, symbolic_rollout
+from ocp.solver import plan_move
+from ocp.status import SolveStatus
+from ocp.task import PointToPoint
+
+__all__ = [
+    "MAX_TERMS",
+    "CycloidPolynomial",
+    "FileFormatError",
+    "InfeasibleTaskError",
+    "JointPath",
+    "JointProfile",
+    "Motion",
+    "Plan",
+    "PointToPoint",
+    "QuietarmError",
+    "Rollout",
+    "SolveSettings",
+    "SolveStatus",
+    "SolverFailedError",
+    "Trajectory",
+    "Verification",
+    "evaluate_coefficients",
+    "plan_move",
+    "resimulate",
+    "residual_matrix",
+    "rollout",
+    "sample_trajectory",
+    "symbolic_rollout",
+]

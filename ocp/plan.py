@@ -1,0 +1,312 @@
+"""Plan: the answer a person keeps."""
+
+from __future__ import annotations
+
+import io
+import math
+import time
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ocp.documents import (
+    Document,
+    profile_from_document,
+    profile_to_document,
+    read_document,
+    reading,
+    task_from_document,
+    task_to_document,
+    versions,
+    write_document,
+)
+from ocp.files import write_whole
+from ocp.objective import Motion
+from ocp.profile import CycloidPolynomial, JointPath, JointProfile
+from ocp.resimulation import Trajectory, resimulate, sample_trajectory
+from ocp.rollout import rollout
+from ocp.status import SolveStatus
+from ocp.task import PointToPoint
+
+FORMAT, VERSION = "quietarm-plan", 1
+_MOST_SAMPLES = 10_000_000
+
+
+@dataclass(frozen=True)
+class SolveSettings:
+    """What was asked of the solver beyond the task; see `ocp.plan_move` for the meanings.
+
+    Raises
+    ------
+    ValueError
+        When a setting is out of range.
+    """
+
+    residual_limit: float = 0.0
+    bound: float | None = None
+    starts: int = 4
+    seed: int = 0
+    steps: int | None = None
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.residual_limit) and self.residual_limit >= 0):
+            raise ValueError(
+                f"residual limit is {self.residual_limit:g} m; give 0 (at rest) or a positive length"
+            )
+        if self.bound is not None and not (math.isfinite(self.bound) and self.bound > 0):
+            raise ValueError(
+                f"bound on the coefficients is {self.bound:g}; give a positive number, or none"
+            )
+        for name, least in (("starts", 1), ("seed", 0), ("steps", 1)):
+            value = getattr(self, name)
+            if name == "steps" and value is None:
+                continue
+            if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+                raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
+
+
+@dataclass(frozen=True)
+class Verification:
+    """How far the fixed steps that the answer was found with are from the independent integrator.
+
+    Attributes
+    ----------
+    steps : int
+        Fixed steps.
+    fixed_step_energy, fixed_step_residual : float
+        F2 [J] and F1 [m] by the fixed steps.
+    energy_difference, residual_difference : float
+        Those less the independent integrator's [J, m].
+    """
+
+    steps: int
+    fixed_step_energy: float
+    fixed_step_residual: float
+    energy_difference: float
+    residual_difference: float
+
+    @classmethod
+    def between(cls, steps: int, energy: float, residual: float, motion: Motion) -> Verification:
+        """Compare fixed-step figures [J, m] with those of CVODES."""
+        return cls(steps, energy, residual, energy - motion.energy, residual - motion.residual)
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """What is needed to get an answer again.
+
+    Attributes
+    ----------
+    method : str
+        ``"ipopt"`` or ``"given coefficients"``.
+    settings : SolveSettings or None
+        What was asked of the solver, with the seed.
+    versions : dict of str to str
+        Versions of quietarm, casadi, numpy and Python.
+    seconds : float
+        How long it took; not compared.
+    """
+
+    method: str
+    settings: SolveSettings | None
+    versions: dict[str, str] = field(default_factory=versions)
+    seconds: float = field(default=0.0, compare=False)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One motion of one task: its coefficients and what it costs.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    coefficients : tuple of float
+        The profile's coefficients, a_1 to a_N of eq (6).
+    motion : Motion
+        Residual, energy and diagnostics, by the independent integrator.
+    status : SolveStatus
+        How the solve ended.
+    verification : Verification
+        Distance between the two integrators.
+    provenance : Provenance
+        Method, settings, versions, time.
+    """
+
+    task: PointToPoint
+    profile: JointProfile
+    coefficients: tuple[float, ...]
+    motion: Motion
+    status: SolveStatus
+    verification: Verification
+    provenance: Provenance
+
+    @property
+    def residual(self) -> float:
+        """F1: largest absolute tip displacement after arrival [m]."""
+        return self.motion.residual
+
+    @property
+    def energy(self) -> float:
+        """F2: driving energy [J]."""
+        return self.motion.energy
+
+    @property
+    def path(self) -> JointPath:
+        """The joint's motion as a callable of time and derivative order."""
+        return self.profile.path(self.coefficients, *self.task.move)
+
+    def trajectory(self, times: ArrayLike) -> Trajectory:
+        """Sample the motion with CVODES; see `ocp.sample_trajectory`."""
+        return sample_trajectory(self.task, self.profile, self.coefficients, times)
+
+    def save(self, path: str | Path) -> None:
+        """Write the plan as JSON; ValueError when the file cannot be written."""
+        write_document(path, FORMAT, VERSION, self.to_document())
+
+    @classmethod
+    def load(cls, path: str | Path) -> Plan:
+        """Read a plan that `save` wrote.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Plan
+            A plan equal to the one saved.
+
+        Raises
+        ------
+        FileFormatError
+            When the file is not a plan, not whole, or of a newer version.
+        """
+        document = read_document(path, FORMAT, VERSION)
+        with reading(path, "plan"):
+            return cls.from_document(document)
+
+    def to_document(self) -> Document:
+        """The plan in JSON's types, SI units and radians."""
+        diagnostics = asdict(self.motion)
+        return {
+            **task_to_document(self.task),
+            "profile": profile_to_document(self.profile),
+            "coefficients": list(self.coefficients),
+            "residual": diagnostics.pop("residual"),
+            "energy": diagnostics.pop("energy"),
+            "diagnostics": diagnostics,
+            "status": self.status.value,
+            "verification": asdict(self.verification),
+            "provenance": asdict(self.provenance),
+        }
+
+    @classmethod
+    def from_document(cls, document: Document) -> Plan:
+        """The plan of a document; KeyError, TypeError or ValueError where it is not one."""
+        profile = profile_from_document(document["profile"])
+        figures = {
+            "residual": document["residual"],
+            "energy": document["energy"],
+            **document["diagnostics"],
+        }
+        provenance = dict(document["provenance"])
+        settings = provenance.pop("settings")
+        return cls(
+            task=task_from_document(document),
+            profile=profile,
+            coefficients=profile.checked(document["coefficients"]),
+            motion=Motion(**{entry.name: _number(figures, entry.name) for entry in fields(Motion)}),
+            status=SolveStatus(document["status"]),
+            verification=Verification(**document["verification"]),
+            provenance=Provenance(
+                settings=None if settings is None else SolveSettings(**settings), **provenance
+            ),
+        )
+
+    def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
+        """Write the move as a table to drive a joint with.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; its header names the quantities with their units.
+        sample_rate : float
+            Rows per second [Hz]. The last row is the first tick at or after arrival, where the
+            joint rests at its target.
+
+        Raises
+        ------
+        ValueError
+            When the rate is out of range or the file cannot be written.
+        """
+        if not (math.isfinite(sample_rate) and sample_rate > 0):
+            raise ValueError(f"sample rate is {sample_rate:g} Hz; give a positive number")
+        ticks = math.ceil(self.task.duration * sample_rate - 1e-9)
+        if ticks > _MOST_SAMPLES:
+            raise ValueError(
+                f"sample rate {sample_rate:g} Hz asks for {ticks} rows; give a lower rate"
+            )
+        sampled = self.trajectory(np.arange(ticks + 1) / sample_rate)
+        tips = sampled.tips.shape[1]
+        tip_names = ["tip_m"] if tips == 1 else [f"tip_{i + 1}_m" for i in range(tips)]
+        header = ["t_s", "theta_rad", "dtheta_rad_s", "ddtheta_rad_s2", *tip_names]
+        header += ["torque_Nm", "power_W"]
+        table = np.column_stack(
+            [sampled.time, sampled.joint, sampled.tips, sampled.torque, sampled.power]
+        )
+        text = io.StringIO()
+        np.savetxt(text, table, delimiter=",", header=",".join(header), comments="", fmt="%.10g")
+        write_whole(path, text.getvalue())
+
+
+def evaluate_coefficients(task: PointToPoint, coefficients: ArrayLike) -> Plan:
+    """The figures of given coefficients of the cycloid of a polynomial.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    coefficients : array_like, shape (terms,)
+        a_1 to a_N of eq (6); none for the plain cycloid.
+
+    Returns
+    -------
+    Plan
+        A plan whose status says that nothing was optimised.
+
+    Raises
+    ------
+    ValueError
+        When there are too many coefficients or one is not finite.
+    SolverFailedError
+        When CVODES cannot follow the motion.
+    """
+    began = time.perf_counter()
+    profile = CycloidPolynomial(int(np.atleast_1d(np.asarray(coefficients, dtype=float)).size))
+    checked = profile.checked(coefficients)
+    motion = resimulate(task, profile, checked)
+    fixed = rollout(task, profile, checked)
+    return Plan(
+        task=task,
+        profile=profile,
+        coefficients=checked,
+        motion=motion,
+        status=SolveStatus.NOT_OPTIMISED,
+        verification=Verification.between(
+            fixed.steps, fixed.motion.energy, fixed.motion.residual, motion
+        ),
+        provenance=Provenance("given coefficients", None, seconds=time.perf_counter() - began),
+    )
+
+
+def _number(figures: Document, name: str) -> float:
+    value = figures[name]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"{name} is {value!r}, not a number")
+    return float(value)

@@ -1,0 +1,261 @@
+"""Joint profiles: theta(t; a) and its time derivatives, eqs (1)-(7) of the paper."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models import Expression, JointMotion
+
+MAX_TERMS = 20
+"""Most terms of the polynomial. Its powers of T on [-1, 1] are told apart by double precision with
+a condition number that grows like (1 + sqrt 2)^N: 5e7 at 20 terms, which leaves eight digits."""
+
+
+@dataclass(frozen=True)
+class JointProfile(ABC):
+    """A family of joint motions from start to target, one for every vector of coefficients.
+
+    A new family is one subclass: it says how many coefficients it has and gives theta and its
+    first three time derivatives, in operations that work element by element.
+    """
+
+    name: ClassVar[str]
+    """The name by which files know the family."""
+
+    _known: ClassVar[dict[str, type[JointProfile]]] = {}
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if isinstance(getattr(cls, "name", None), str):
+            JointProfile._known[cls.name] = cls
+
+    @property
+    @abstractmethod
+    def size(self) -> int:
+        """How many coefficients the profile has."""
+
+    @abstractmethod
+    def derivatives(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> tuple[Expression, Expression, Expression, Expression]:
+        """Joint angle and its first three time derivatives.
+
+        Parameters
+        ----------
+        coefficients : sequence of Expression
+            `size` coefficients.
+        fraction : Expression
+            t / duration, between 0 and 1.
+        start, target : Expression
+            Joint angles at the ends [rad].
+        duration : Expression
+            Travelling time [s].
+
+        Returns
+        -------
+        tuple of Expression
+            theta [rad], theta' [rad/s], theta'' [rad/s^2], theta''' [rad/s^3].
+        """
+
+    def motion(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> JointMotion:
+        """Angle, speed and acceleration of the joint; arguments as in `derivatives`."""
+        return JointMotion(*self.derivatives(coefficients, fraction, start, target, duration)[:3])
+
+    def path(
+        self, coefficients: ArrayLike, start: float, target: float, duration: float
+    ) -> JointPath:
+        """One member of the family, as a callable of time and derivative order.
+
+        Parameters
+        ----------
+        coefficients : array_like, shape (size,)
+            The coefficients.
+        start, target : float
+            Joint angles at the ends [rad].
+        duration : float
+            Travelling time [s].
+
+        Returns
+        -------
+        JointPath
+            The callable.
+
+        Raises
+        ------
+        ValueError
+            When a coefficient is missing, superfluous or not finite.
+        """
+        return JointPath(self, self.checked(coefficients), start, target, duration)
+
+    def checked(self, coefficients: ArrayLike) -> tuple[float, ...]:
+        """The coefficients as a tuple of `size` finite floats; ValueError otherwise."""
+        values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        if values.shape != (self.size,):
+            raise ValueError(
+                f"got {values.size} coefficients for a profile of {self.size}; "
+                f"give {self.size} numbers"
+            )
+        if not np.all(np.isfinite(values)):
+            bad = int(np.flatnonzero(~np.isfinite(values))[0])
+            raise ValueError(f"coefficient {bad + 1} is {values[bad]}; give a finite number")
+        return tuple(float(value) for value in values)
+
+
+def known_profiles() -> dict[str, type[JointProfile]]:
+    """The families that can be found by name, those of the user's own files included."""
+    return dict(JointProfile._known)
+
+
+@dataclass(frozen=True)
+class CycloidPolynomial(JointProfile):
+    """A cycloid whose input is a polynomial, eqs (1)-(7), with eq (3) mended.
+
+    Parameters
+    ----------
+    terms : int
+        N of eq (6), 0 (the plain cycloid) to `MAX_TERMS`.
+
+    Raises
+    ------
+    ValueError
+        When `terms` is not a whole number in that range.
+    """
+
+    name: ClassVar[str] = "cycloid-polynomial"
+    terms: int = 6
+
+    def __post_init__(self) -> None:
+        if isinstance(self.terms, bool) or not isinstance(self.terms, int | np.integer):
+            raise ValueError(f"terms is {self.terms!r}; give a whole number from 0 to {MAX_TERMS}")
+        if not 0 <= self.terms <= MAX_TERMS:
+            raise ValueError(
+                f"terms is {self.terms}; give 0 (the plain cycloid) to {MAX_TERMS}: beyond that "
+                "double precision no longer tells the powers of T apart"
+            )
+        object.__setattr__(self, "terms", int(self.terms))
+
+    @property
+    def size(self) -> int:
+        """How many coefficients the profile has: the number of terms."""
+        return self.terms
+
+    def derivatives(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> tuple[Expression, Expression, Expression, Expression]:
+        """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended, theta''' from it."""
+        U, dU, ddU, dddU = self._input(coefficients, fraction, duration)
+        sine, cosine = ca.sin(math.pi * U), ca.cos(math.pi * U)
+        span, pi = target - start, math.pi
+        speed_shape = sine * sine  # (1 - cos 2 pi U) / 2
+        return (
+            start + span * (U - sine * cosine / pi),
+            2 * span * speed_shape * dU,
+            2 * span * sine * (2 * pi * cosine * dU * dU + sine * ddU),
+            2 * span * (
+                2 * pi * pi * (cosine * cosine - speed_shape) * dU * dU * dU
+                + 6 * pi * sine * cosine * dU * ddU
+                + speed_shape * dddU
+            ),
+        )
+
+    @staticmethod
+    def _input(
+        coefficients: Sequence[Expression], fraction: Expression, duration: Expression
+    ) -> tuple[Expression, Expression, Expression, Expression]:
+        """U of eq (6) and its first three time derivatives."""
+        T = 2 * fraction - 1  # eq (7)
+        p = dp = ddp = dddp = 0 * T
+        for a in reversed(coefficients):  # Horner's rule, differentiated as it goes
+            dddp = dddp * T + 3 * ddp
+            ddp = ddp * T + 2 * dp
+            dp = dp * T + p
+            p = p * T + a
+        bump = 1 - T * T
+        rate = 2 / duration  # dT/dt
+        return (
+            fraction + bump * p,
+            1 / duration + rate * (bump * dp - 2 * T * p),
+            rate**2 * (bump * ddp - 4 * T * dp - 2 * p),
+            rate**3 * (bump * dddp - 6 * T * ddp - 6 * dp),
+        )
+
+
+@dataclass(frozen=True)
+class JointPath:
+    """One joint motion as a function of time; at rest at the ends before and after the move.
+
+    Attributes
+    ----------
+    profile : JointProfile
+        The family.
+    coefficients : tuple of float
+        Its member.
+    start, target : float
+        Joint angles at the ends [rad].
+    duration : float
+        Travelling time [s].
+    """
+
+    profile: JointProfile
+    coefficients: tuple[float, ...]
+    start: float
+    target: float
+    duration: float
+
+    def __call__(self, time: ArrayLike, order: int = 0) -> NDArray[np.float64]:
+        """Evaluate the path.
+
+        Parameters
+        ----------
+        time : array_like
+            Times [s], any shape.
+        order : int
+            Derivative order, 0 (angle) to 3 (jerk).
+
+        Returns
+        -------
+        ndarray
+            theta [rad] or its derivative [rad/s^order], in the shape of `time`.
+
+        Raises
+        ------
+        ValueError
+            When `order` is not 0, 1, 2 or 3, or a time is not finite.
+        """
+        if order not in (0, 1, 2, 3):
+            raise ValueError(f"derivative order is {order!r}; give 0, 1, 2 or 3")
+        t = np.asarray(time, dtype=float)
+        if not np.all(np.isfinite(t)):
+            raise ValueError("a time is not finite; give times in seconds")
+        fraction: Any = ca.DM(np.clip(t.ravel() / self.duration, 0.0, 1.0))
+        values = self.profile.derivatives(
+            self.coefficients, fraction, self.start, self.target, self.duration
+        )
+        result = values[order].full().reshape(t.shape)
+        outside = (t < 0) | (t > self.duration)
+        return np.where(outside, 0.0, result) if order else result

@@ -1,0 +1,170 @@
+"""A nonlinear program for one task: scales, bounds and start values around the compiled one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models import Plant
+from ocp.collocation import GAUSS_WEIGHTS
+from ocp.profile import JointProfile
+from ocp.residual import residual_matrix
+from ocp.status import SolveStatus
+from ocp.task import PointToPoint
+from ocp.transcription import RESIDUAL, NonlinearProgram
+
+ENERGY = "energy"
+_OPTIONS: dict[str, object] = {
+    "print_level": 0,
+    "sb": "yes",
+    "tol": 1e-9,
+    "constr_viol_tol": 1e-10,
+    "mu_strategy": "adaptive",
+    "max_iter": 500,
+}
+_SLACK_ROOM = 1e-2
+"""How far the slacks of |power| start inside their constraints, as a share of the peak power."""
+
+
+@lru_cache(maxsize=16)
+def _compiled(
+    plant: Plant, profile: JointProfile, steps: int, quantities: tuple[str, ...], rows: int
+) -> NonlinearProgram:
+    return NonlinearProgram(plant, profile, steps, quantities, rows, _OPTIONS)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What one run of the solver gives, in SI units and by its own discretisation.
+
+    Attributes
+    ----------
+    coefficients : ndarray, shape (profile.size,)
+        The profile's coefficients.
+    energy : float
+        F2 [J].
+    peaks : dict of str to float
+        Each limited quantity, and the residual where the program has it as a variable.
+    status : SolveStatus
+        How it ended.
+    """
+
+    coefficients: NDArray[np.float64]
+    energy: float
+    peaks: dict[str, float]
+    status: SolveStatus
+
+
+class TaskProgram:
+    """The compiled program with one task's numbers in it.
+
+    Everything is measured against the profile with all coefficients zero, so that the solver sees
+    numbers of order one for any plant.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    steps : int
+        Number of steps.
+    with_residual : bool
+        Whether the residual is a variable, to be limited or minimised; else it is zero: the plant
+        is at rest on arrival.
+    """
+
+    def __init__(
+        self, task: PointToPoint, profile: JointProfile, steps: int, with_residual: bool
+    ) -> None:
+        self.task, self.steps = task, steps
+        matrix = residual_matrix(task) if with_residual else np.zeros((0, 2 * task.plant.modes))
+        self.program = _compiled(task.plant, profile, steps, tuple(task.limits), len(matrix))
+        layout, groups = self.program.layout, self.program.model.groups
+        states, outputs = self.program.simulate(
+            np.zeros(profile.size), task.move, np.ones(self.program.model.scales)
+        )
+        peaks = [np.abs(outputs[group.slice]).max() for group in groups[1:]]
+        self.scale = np.array([*np.abs(states).max(axis=1), *peaks])
+        self.scale[self.scale == 0] = 1.0
+        self.reference = {
+            group.name: float(scale)
+            for group, scale in zip(groups[1:], self.scale[layout.state :], strict=True)
+        }
+        self.matrix = matrix * self.scale[: layout.state]
+        if with_residual:
+            self.reference[RESIDUAL] = float(np.abs(self.matrix).max())
+            self.matrix = self.matrix / self.reference[RESIDUAL]
+
+    def solve(
+        self,
+        guess: NDArray[np.float64],
+        limits: Mapping[str, float],
+        bound: float | None,
+        minimise: str = ENERGY,
+    ) -> Solution:
+        """Run the solver from one vector of coefficients.
+
+        Parameters
+        ----------
+        guess : ndarray, shape (profile.size,)
+            Coefficients to start from.
+        limits : mapping of str to float
+            Largest residual [m] and peaks [SI units]; a quantity without an entry is free.
+        bound : float or None
+            Largest absolute coefficient.
+        minimise : str
+            ``"energy"`` or the name of a peak.
+
+        Returns
+        -------
+        Solution
+            The solution, whatever its status.
+        """
+        layout = self.program.layout
+        weights = [float(name == minimise) for name in (ENERGY, *layout.peaks)]
+        parameters = np.concatenate(
+            [self.task.move, self.scale, weights, self.matrix.ravel(order="F")]
+        )
+        lower, upper = self._bounds(limits, bound)
+        x, return_status = self.program.solve(self._start(guess), lower, upper, parameters)
+        mean_power = np.tile(GAUSS_WEIGHTS, layout.steps) @ x[layout.first_slack :] / layout.steps
+        peaks = x[layout.coefficients : layout.first_state]
+        return Solution(
+            coefficients=x[: layout.coefficients],
+            energy=float(mean_power * self.reference["power"] * self.task.duration),
+            peaks={
+                name: float(peak * self.reference[name])
+                for name, peak in zip(layout.peaks, peaks, strict=True)
+            },
+            status=SolveStatus.from_ipopt(return_status),
+        )
+
+    def _bounds(
+        self, limits: Mapping[str, float], bound: float | None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        layout = self.program.layout
+        lower, upper = np.full(layout.unknowns, -np.inf), np.full(layout.unknowns, np.inf)
+        if bound is not None:
+            lower[: layout.coefficients], upper[: layout.coefficients] = -bound, bound
+        for i, name in enumerate(layout.peaks, start=layout.coefficients):
+            lower[i], upper[i] = 0.0, limits.get(name, np.inf) / self.reference[name]
+        at_rest = [slice(layout.first_state, layout.first_state + layout.state)]
+        if RESIDUAL not in layout.peaks:
+            at_rest.append(slice(layout.first_slack - layout.state, layout.first_slack))
+        for entries in at_rest:
+            lower[entries] = upper[entries] = 0.0
+        return lower, upper
+
+    def _start(self, guess: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Unknowns that agree with the guess: its own states, slacks and peaks."""
+        states, outputs = self.program.simulate(guess, self.task.move, self.scale)
+        values = {group.name: outputs[group.slice] for group in self.program.model.groups}
+        values[RESIDUAL] = self.matrix @ states[:, -1]
+        peaks = [float(np.abs(values[name]).max()) for name in self.program.layout.peaks]
+        slack = np.abs(values["power"].ravel(order="F")) + _SLACK_ROOM
+        return np.concatenate([guess, peaks, states.ravel(order="F"), slack])

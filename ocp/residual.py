@@ -1,0 +1,73 @@
+"""After arrival: the tip's motion is a constant matrix times the state at arrival."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from models import JointMotion, Plant
+from ocp.collocation import NODES, modal_system, step
+from ocp.task import PointToPoint
+
+RADIANS_A_SAMPLE = 0.02
+"""Phase of the fastest mode between samples: a peak between two is missed by 5e-5 of it at most."""
+
+
+def fastest_mode(task: PointToPoint) -> float:
+    """Largest angular frequency of the plant at rest, over start and target [rad/s]."""
+    return max(_fastest(task.plant, task.start), _fastest(task.plant, task.target))
+
+
+@lru_cache(maxsize=256)
+def _fastest(plant: Plant, angle: float) -> float:
+    system = modal_system(plant, JointMotion(angle, 0.0, 0.0))
+    modes = plant.modes
+    state_matrix = np.zeros((2 * modes, 2 * modes))
+    state_matrix[:modes, modes:] = np.eye(modes)
+    state_matrix[modes:, :modes] = -_numbers(system.K)
+    state_matrix[modes:, modes:] = -_numbers(system.D)
+    return float(np.abs(np.linalg.eigvals(state_matrix)).max())
+
+
+def residual_matrix(task: PointToPoint) -> NDArray[np.float64]:
+    """Matrix that turns the state at arrival into the tip's motion afterwards.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move; its target and residual window count.
+
+    Returns
+    -------
+    ndarray, shape (samples * tips, 2 * modes), read-only
+        L, with tip displacements [m] = L @ [W, W'] at times over the window. F1 of eq (11) is
+        the largest absolute entry of the product.
+    """
+    return _residual_matrix(task.plant, task.target, task.residual_window)
+
+
+@lru_cache(maxsize=256)
+def _residual_matrix(plant: Plant, target: float, window: float) -> NDArray[np.float64]:
+    modes = plant.modes
+    samples = math.ceil(window * _fastest(plant, target) / RADIANS_A_SAMPLE) + 1
+    one = step(plant, [JointMotion(target, 0.0, 0.0)] * NODES, window / (samples - 1))
+    transition = _numbers(one.transition()[1]).T
+    tip_of_state = np.zeros((plant.tips, 2 * modes))
+    for mode in range(modes):
+        unit = [float(other == mode) for other in range(modes)]
+        tip_of_state[:, mode] = [float(tip) for tip in plant.tip_displacements(unit)]
+    rows = [tip_of_state]
+    for _ in range(samples - 1):
+        rows.append(rows[-1] @ transition)
+    matrix = np.vstack(rows)
+    matrix.setflags(write=False)
+    return matrix
+
+
+def _numbers(entries: list[list[float]]) -> NDArray[np.float64]:
+    """Nested casadi or Python numbers as an array."""
+    return np.array([[float(ca.DM(entry)) for entry in row] for row in entries])

@@ -1,0 +1,72 @@
+"""How a solve ended, in words that say what to try."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class SolveStatus(Enum):
+    """How a solve ended; `value` stands in files, `text` is for people."""
+
+    OPTIMAL = "optimal"
+    ACCEPTABLE = "acceptable"
+    INFEASIBLE = "infeasible"
+    ITERATION_LIMIT = "iteration limit"
+    NUMERICAL_TROUBLE = "numerical trouble"
+    NOT_OPTIMISED = "not optimised"
+
+    @property
+    def solved(self) -> bool:
+        """Whether the coefficients are a local optimum."""
+        return self in (SolveStatus.OPTIMAL, SolveStatus.ACCEPTABLE)
+
+    @property
+    def text(self) -> str:
+        """What happened and what to try."""
+        return _TEXTS[self]
+
+    @classmethod
+    def from_ipopt(cls, return_status: str) -> SolveStatus:
+        """Translate IPOPT's own status.
+
+        Parameters
+        ----------
+        return_status : str
+            ``stats()["return_status"]`` of the solver.
+
+        Returns
+        -------
+        SolveStatus
+            The status.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            When the user stopped the solve.
+        """
+        if return_status == "User_Requested_Stop":
+            raise KeyboardInterrupt
+        return _FROM_IPOPT.get(return_status, cls.NUMERICAL_TROUBLE)
+
+
+_TEXTS = {
+    SolveStatus.OPTIMAL: "IPOPT found a local optimum.",
+    SolveStatus.ACCEPTABLE: "IPOPT stopped at its looser, acceptable tolerance; more steps or "
+    "another seed may sharpen it.",
+    SolveStatus.INFEASIBLE: "IPOPT converged to a motion that breaks a limit; allow more residual, "
+    "wider limits, a longer duration or more terms.",
+    SolveStatus.ITERATION_LIMIT: "IPOPT ran out of iterations; try another seed, more starts or a "
+    "bound on the coefficients.",
+    SolveStatus.NUMERICAL_TROUBLE: "IPOPT lost its way; try another seed, fewer terms or a bound "
+    "on the coefficients.",
+    SolveStatus.NOT_OPTIMISED: "The coefficients were given, not optimised.",
+}
+
+_FROM_IPOPT = {
+    "Solve_Succeeded": SolveStatus.OPTIMAL,
+    "Solved_To_Acceptable_Level": SolveStatus.ACCEPTABLE,
+    "Feasible_Point_Found": SolveStatus.ACCEPTABLE,
+    "Infeasible_Problem_Detected": SolveStatus.INFEASIBLE,
+    "Not_Enough_Degrees_Of_Freedom": SolveStatus.INFEASIBLE,
+    "Maximum_Iterations_Exceeded": SolveStatus.ITERATION_LIMIT,
+}

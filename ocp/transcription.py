@@ -1,0 +1,359 @@
+"""From a task to a nonlinear program.
+
+Multiple shooting: the modes before every step are unknowns, and each step of the one simulation is
+a constraint. |power| is exact through slacks at the Gauss nodes (s >= p, s >= -p). Every quantity
+that may be limited has a variable for its peak, so that one program serves a limit (a bound on the
+variable), the least peak that is possible (a weight on it) and a weighted sum.
+
+All steps are alike, so the derivatives of one step are formed once, as small dense blocks, and
+mapped over the steps: building takes hundredths of a second whatever the number of steps, where
+casadi's own derivative of the whole graph takes half a second for a hundred.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from models import Plant
+from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, step
+from ocp.profile import JointProfile
+
+RESIDUAL = "residual"
+
+
+@dataclass(frozen=True)
+class Group:
+    """Outputs of a step that belong together: `rows` of them from row `first`."""
+
+    name: str
+    first: int
+    rows: int
+
+    @property
+    def slice(self) -> slice:
+        return slice(self.first, self.first + self.rows)
+
+
+class StepModel:
+    """One step as a small dense casadi function with its first and second derivatives.
+
+    Inputs are the scaled state before the step, the step's index, the coefficients, the move and
+    the scales; outputs are the scaled state after it, the power and each limited quantity at the
+    Gauss nodes.
+    """
+
+    def __init__(
+        self, plant: Plant, profile: JointProfile, steps: int, quantities: Sequence[str]
+    ) -> None:
+        self.size = 2 * plant.modes
+        at_nodes = {name: NODES for name in ("power", *quantities)}
+        if "deflection" in at_nodes:
+            at_nodes["deflection"] *= plant.tips
+        self.groups = [Group("state", 0, self.size)]
+        for name, rows in at_nodes.items():
+            last = self.groups[-1]
+            self.groups.append(Group(name, last.first + last.rows, rows))
+        self.scales = self.size + len(at_nodes)
+
+        state, index = ca.SX.sym("z", self.size), ca.SX.sym("k")
+        coefficients, move = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
+        scale = ca.SX.sym("scale", self.scales)
+        outputs = self._outputs(plant, profile, steps, state, index, coefficients, move, scale)
+        inputs = [state, index, coefficients, move, scale]
+        unknowns = ca.vertcat(coefficients, state)
+        multipliers = ca.SX.sym("lam", outputs.numel())
+        first = ca.densify(ca.jacobian(outputs, unknowns))
+        second = ca.densify(ca.hessian(ca.dot(multipliers, outputs), unknowns)[0])
+        n, options = profile.size, {"cse": True}
+        self.value = ca.Function("step", inputs, [outputs], options)
+        self.first = ca.Function("step_first", inputs, [first[:, :n], first[:, n:]], options)
+        self.second = ca.Function(
+            "step_second",
+            [*inputs, multipliers],
+            [second[:n, :n], second[:n, n:], second[n:, n:]],
+            options,
+        )
+
+    def _outputs(
+        self,
+        plant: Plant,
+        profile: JointProfile,
+        steps: int,
+        state: ca.SX,
+        index: ca.SX,
+        coefficients: ca.SX,
+        move: ca.SX,
+        scale: ca.SX,
+    ) -> ca.SX:
+        start, target, duration = ca.vertsplit(move)
+        physical = ca.vertsplit(state * scale[: self.size])
+        W, dW = physical[: plant.modes], physical[plant.modes :]
+        joints = [
+            profile.motion(
+                ca.vertsplit(coefficients), (index + node) / steps, start, target, duration
+            )
+            for node in GAUSS_NODES
+        ]
+        one = step(plant, joints, duration / steps)
+        ddW = one.accelerations(W, dW)
+        nodes = one.nodes(W, dW, ddW)
+        W_after, dW_after = one.end(W, dW, ddW)
+        torque = [
+            plant.torque(joint, node.W, node.dW, node.ddW)
+            for joint, node in zip(joints, nodes, strict=True)
+        ]
+        values = {
+            "power": [t * joint.speed for t, joint in zip(torque, joints, strict=True)],
+            "torque": torque,
+            "speed": [joint.speed for joint in joints],
+            "acceleration": [joint.acceleration for joint in joints],
+            "deflection": [tip for node in nodes for tip in plant.tip_displacements(node.W)],
+        }
+        rows = [ca.vertcat(*W_after, *dW_after) / scale[: self.size]]
+        for i, group in enumerate(self.groups[1:]):
+            rows.append(ca.vertcat(*values[group.name]) / scale[self.size + i])
+        return ca.vertcat(*rows)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where things stand in the vectors of the program.
+
+    Attributes
+    ----------
+    coefficients, state, steps : int
+        Number of coefficients, of entries of the state, and of steps.
+    peaks : tuple of str
+        Names of the peak variables, the residual first where it has one.
+    slacks : int
+        Number of slacks of |power|.
+    residual_rows : int
+        Rows of the residual matrix, 0 where the program has no residual variable.
+    """
+
+    coefficients: int
+    state: int
+    steps: int
+    peaks: tuple[str, ...]
+    slacks: int
+    residual_rows: int
+
+    @property
+    def first_state(self) -> int:
+        """Index of the first state among the unknowns."""
+        return self.coefficients + len(self.peaks)
+
+    @property
+    def first_slack(self) -> int:
+        """Index of the first slack among the unknowns."""
+        return self.first_state + self.state * (self.steps + 1)
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns."""
+        return self.first_slack + self.slacks
+
+
+class NonlinearProgram:
+    """A compiled program for a plant, a profile, a number of steps and the limited quantities.
+
+    Start, target, duration, scales, residual matrix and the weights of the objective are its
+    parameters; limits are bounds. It holds live casadi objects: keep it out of answers.
+    """
+
+    def __init__(
+        self,
+        plant: Plant,
+        profile: JointProfile,
+        steps: int,
+        quantities: tuple[str, ...],
+        residual_rows: int,
+        options: dict[str, object],
+    ) -> None:
+        self.model = model = StepModel(plant, profile, steps, quantities)
+        peaks = ((RESIDUAL,) if residual_rows else ()) + quantities
+        self.layout = layout = Layout(
+            profile.size, model.size, steps, peaks, NODES * steps, residual_rows
+        )
+        parameters = {
+            "move": 3,
+            "scale": model.scales,
+            "weights": 1 + len(peaks),
+            "residual": residual_rows * model.size,
+        }
+        x, p = ca.MX.sym("x", layout.unknowns), ca.MX.sym("p", sum(parameters.values()))
+        move, scale, weights, residual = ca.vertsplit(p, _offsets(parameters.values()))
+        residual = ca.reshape(residual, residual_rows, model.size)
+        a, peak, flat_states, slack = ca.vertsplit(
+            x, _offsets([layout.coefficients, len(peaks), model.size * (steps + 1), layout.slacks])
+        )
+        states = ca.reshape(flat_states, model.size, steps + 1)
+        arguments = (states[:, :-1], ca.DM(np.arange(steps)).T, a, move, scale)
+
+        outputs = _mapped(model.value, steps)(*arguments)
+        node_weights = ca.repmat(ca.DM(GAUSS_WEIGHTS), steps, 1) / steps
+        energy = ca.dot(node_weights, slack)
+        objective = weights[0] * energy + (ca.dot(weights[1:], peak) if peaks else 0)
+        constraints = self._constraints(outputs, states, slack, peak, residual)
+        self.lower, self.upper = self._constraint_bounds(constraints.numel())
+        self._solver = ca.nlpsol(
+            "quietarm",
+            "ipopt",
+            {"x": x, "p": p, "f": objective, "g": constraints},
+            {
+                "jac_g": ca.Function(
+                    "nlp_jac_g",
+                    [x, p],
+                    [constraints, self._jacobian(arguments, residual)],
+                    ["x", "p"],
+                    ["g", "jac_g_x"],
+                ),
+                "hess_lag": self._hessian(x, p, arguments, constraints.numel()),
+                "print_time": False,
+                "ipopt": options,
+            },
+        )
+        self._simulate = self._simulation()
+
+    def simulate(
+        self, coefficients: np.ndarray, move: Sequence[float], scale: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Scaled states (size, steps + 1) and step outputs (rows, steps) along a profile."""
+        states, outputs = self._simulate(ca.DM(coefficients), ca.DM(move), ca.DM(scale))
+        return states.full(), outputs.full()
+
+    def solve(
+        self, x0: np.ndarray, lower: np.ndarray, upper: np.ndarray, parameters: np.ndarray
+    ) -> tuple[np.ndarray, str]:
+        """Run IPOPT: the unknowns and IPOPT's own status."""
+        result = self._solver(
+            x0=x0, lbx=lower, ubx=upper, lbg=self.lower, ubg=self.upper, p=parameters
+        )
+        return result["x"].full().ravel(), str(self._solver.stats()["return_status"])
+
+    def _simulation(self) -> ca.Function:
+        steps, coefficients = self.layout.steps, self.layout.coefficients
+        sizes = [self.layout.state, 1, coefficients, 3, self.model.scales]
+        z, k, *shared = [ca.SX.sym(f"i{i}", size) for i, size in enumerate(sizes)]
+        outputs = self.model.value(z, k, *shared)
+        chain = ca.Function("chain", [z, k, *shared], [outputs[: sizes[0]], outputs])
+        inputs = [ca.MX.sym(f"i{i}", size) for i, size in enumerate(sizes[2:])]
+        after, all_outputs = chain.mapaccum(steps)(
+            ca.DM.zeros(sizes[0]),
+            ca.DM(np.arange(steps)).T,
+            *(ca.repmat(value, 1, steps) for value in inputs),
+        )
+        states = ca.horzcat(ca.DM.zeros(sizes[0]), after)
+        return ca.Function("simulate", inputs, [states, all_outputs])
+
+    # -- the program, in the order of its constraints: steps, power, limited peaks, residual --
+
+    def _constraints(
+        self, outputs: ca.MX, states: ca.MX, slack: ca.MX, peak: ca.MX, residual: ca.MX
+    ) -> ca.MX:
+        state, *bounded = self.model.groups
+        rows = [ca.vec(outputs[state.slice, :] - states[:, 1:])]
+        for group in bounded:
+            value = ca.vec(outputs[group.slice, :])
+            ceiling = slack if group.name == "power" else peak[self.layout.peaks.index(group.name)]
+            rows += [ceiling - value, ceiling + value]
+        if self.layout.residual_rows:
+            tip = residual @ states[:, -1]
+            rows += [peak[0] - tip, peak[0] + tip]
+        return ca.vertcat(*rows)
+
+    def _constraint_bounds(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        equalities = self.layout.state * self.layout.steps
+        lower, upper = np.zeros(count), np.full(count, np.inf)
+        upper[:equalities] = 0.0
+        return lower, upper
+
+    def _jacobian(self, arguments: tuple[ca.MX, ...], residual: ca.MX) -> ca.MX:
+        layout, steps = self.layout, self.layout.steps
+        by_coefficients, by_state = _mapped(self.model.first, steps)(*arguments)
+        size, n_peaks = layout.state, len(layout.peaks)
+        rows: list[ca.MX] = []
+        for group in self.model.groups:
+            count = group.rows * steps
+            of_a = ca.vertcat(*ca.horzsplit(by_coefficients[group.slice, :], layout.coefficients))
+            of_z = ca.horzcat(
+                _block_diagonal(by_state[group.slice, :], group.rows, size, steps),
+                ca.MX(count, size),
+            )
+            of_peak, of_slack = ca.MX(count, n_peaks), ca.MX(count, layout.slacks)
+            if group.name == "state":
+                of_next = ca.horzcat(ca.DM(count, size), ca.DM.eye(count))
+                rows.append(ca.horzcat(of_a, of_peak, of_z - of_next, of_slack))
+                continue
+            if group.name == "power":
+                of_slack = ca.MX(ca.DM.eye(count))
+            else:
+                of_peak = ca.MX(_unit_column(count, n_peaks, layout.peaks.index(group.name)))
+            rows += [
+                ca.horzcat(-of_a, of_peak, -of_z, of_slack),
+                ca.horzcat(of_a, of_peak, of_z, of_slack),
+            ]
+        if layout.residual_rows:
+            count = layout.residual_rows
+            before = ca.MX(count, layout.coefficients)
+            of_peak = ca.MX(_unit_column(count, n_peaks, 0))
+            middle, after = ca.MX(count, size * steps), ca.MX(count, layout.slacks)
+            rows += [
+                ca.horzcat(before, of_peak, middle, sign * residual, after) for sign in (-1, 1)
+            ]
+        return ca.vertcat(*rows)
+
+    def _hessian(
+        self, x: ca.MX, p: ca.MX, arguments: tuple[ca.MX, ...], constraints: int
+    ) -> ca.Function:
+        layout, steps, n = self.layout, self.layout.steps, self.layout.coefficients
+        of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
+        sizes: list[int] = []
+        for group in self.model.groups:
+            sizes += [group.rows * steps] * (1 if group.name == "state" else 2)
+        parts = ca.vertsplit(multipliers, _offsets([*sizes, 2 * layout.residual_rows]))
+        rows = [ca.reshape(parts[0], layout.state, steps)]
+        for i, group in enumerate(self.model.groups[1:]):
+            below, above = parts[1 + 2 * i], parts[2 + 2 * i]
+            rows.append(ca.reshape(above - below, group.rows, steps))
+        a_a, a_z, z_z = _mapped(self.model.second, steps)(*arguments, ca.vertcat(*rows))
+        a_a = ca.reshape(ca.sum2(ca.reshape(a_a, n * n, steps)), n, n)
+        z_z = _block_diagonal(z_z, layout.state, layout.state, steps)
+        n_peaks, rest = len(layout.peaks), layout.state + layout.slacks
+        inner = layout.state * steps
+        hessian = ca.vertcat(
+            ca.horzcat(a_a, ca.MX(n, n_peaks), a_z, ca.MX(n, rest)),
+            ca.MX(n_peaks, layout.unknowns),
+            ca.horzcat(ca.MX(inner, n + n_peaks), z_z, ca.MX(inner, rest)),
+            ca.MX(rest, layout.unknowns),
+        )
+        return ca.Function(
+            "nlp_hess_l",
+            [x, p, of_objective, multipliers],
+            [ca.triu(hessian)],
+            ["x", "p", "lam_f", "lam_g"],
+            ["triu_hess_gamma_x_x"],
+        )
+
+
+def _mapped(function: ca.Function, steps: int) -> ca.Function:
+    """The function over all steps; coefficients, move and scales are shared."""
+    return function.map(f"{function.name()}_all", "serial", steps, [2, 3, 4], [])
+
+
+def _block_diagonal(dense: ca.MX, rows: int, columns: int, blocks: int) -> ca.MX:
+    """Lay blocks that stand side by side along the diagonal; the entries stay where they are."""
+    pattern = ca.diagcat(*[ca.Sparsity.dense(rows, columns)] * blocks)
+    return ca.sparsity_cast(dense, pattern)
+
+
+def _unit_column(rows: int, columns: int, column: int) -> ca.DM:
+    return ca.horzcat(ca.DM(rows, column), ca.DM.ones(rows, 1), ca.DM(rows, columns - column - 1))
+
+
+def _offsets(sizes: Sequence[int]) -> list[int]:
+    return [0, *np.cumsum(list(sizes)).tolist()]
