@@ -2,84 +2,107 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ocp.errors import InfeasibleTaskError, SolverFailedError
-from ocp.plan import SolveSettings
 from ocp.profile import JointProfile
 from ocp.program import Solution, TaskProgram
-from ocp.rollout import default_steps
 from ocp.status import SolveStatus
-from ocp.task import LIMITS, PointToPoint
+from ocp.task import LIMITS
 from ocp.transcription import RESIDUAL
 
 _UNITS = {RESIDUAL: "m", **{name.removesuffix("_limit"): unit for name, unit in LIMITS.items()}}
-_STEPS = 100
 _ROOM = 1.001
 """A found least value is quoted with this room, so that asking for it is feasible."""
 
 
-def what_would_be_feasible(
-    task: PointToPoint,
+def least_peaks(
+    program: TaskProgram,
     profile: JointProfile,
-    settings: SolveSettings,
-    solutions: Sequence[Solution],
+    limits: Mapping[str, float],
+    bound: float | None,
     guesses: Sequence[NDArray[np.float64]],
-) -> SolverFailedError:
-    """The error for a task that no start solved.
-
-    Each limit in turn is made as small as it can be while the others are kept. A least value above
-    the limit says that the task is infeasible, and what would be feasible.
+) -> dict[str, Solution]:
+    """Make each limited quantity in turn as small as it can be while the other limits are kept.
 
     Parameters
     ----------
-    task : PointToPoint
-        The move and its limits.
+    program : TaskProgram
+        The task's program that was not solved.
     profile : JointProfile
         How the joint moves.
-    settings : SolveSettings
-        What was asked of the solver.
+    limits : mapping of str to float
+        Residual [m] and peaks [SI units] that were asked for.
+    bound : float or None
+        Largest absolute coefficient.
+    guesses : sequence of ndarray
+        Vectors of coefficients to start from.
+
+    Returns
+    -------
+    dict of str to Solution
+        The best solution found for each quantity; a quantity without any is left out.
+    """
+    best: dict[str, Solution] = {}
+    for name in limits:
+        with_residual = name == RESIDUAL or limits[RESIDUAL] > 0
+        relaxed = TaskProgram(program.task, profile, program.steps, with_residual=with_residual)
+        others = {key: value for key, value in limits.items() if key != name}
+        found = [relaxed.solve(guess, others, bound, minimise=name) for guess in guesses]
+        solved = [solution for solution in found if solution.status.solved]
+        if solved:
+            best[name] = min(solved, key=lambda solution: solution.peaks[name])
+    return best
+
+
+def explain(
+    profile: JointProfile,
+    limits: Mapping[str, float],
+    bound: float | None,
+    solutions: Sequence[Solution],
+    least: Mapping[str, Solution],
+) -> SolverFailedError:
+    """The error for a task that no start solved, to be raised by the caller.
+
+    Parameters
+    ----------
+    profile : JointProfile
+        How the joint moves.
+    limits : mapping of str to float
+        Residual [m] and peaks [SI units] that were asked for.
+    bound : float or None
+        Largest absolute coefficient.
     solutions : sequence of Solution
         The runs that failed.
-    guesses : sequence of ndarray
-        Their start values, used again.
+    least : mapping of str to Solution
+        What `least_peaks` found.
 
     Returns
     -------
     SolverFailedError
-        An InfeasibleTaskError where a remedy was found; to be raised by the caller.
+        An InfeasibleTaskError where the runs ended at infeasible motions.
     """
-    limits = {RESIDUAL: settings.residual_limit, **task.limits}
-    steps = settings.steps or default_steps(task, least=_STEPS)
-    remedies: list[str] = []
-    for name, limit in limits.items():
-        with_residual = name == RESIDUAL or limits[RESIDUAL] > 0
-        program = TaskProgram(task, profile, steps, with_residual=with_residual)
-        others = {key: value for key, value in limits.items() if key != name}
-        found = [program.solve(guess, others, settings.bound, minimise=name) for guess in guesses]
-        least = [solution.peaks[name] for solution in found if solution.status.solved]
-        if least and min(least) > limit:
-            remedies.append(f"a {name} limit of {_quoted(min(least))} {_UNITS[name]}")
-    asked = ", ".join(f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items())
-    box = "" if settings.bound is None else f", coefficients within +-{settings.bound:g}"
-    terms = f"{profile.size} term{'s' if profile.size > 1 else ''}"
-    if remedies:
-        return InfeasibleTaskError(
-            f"no motion of {terms} meets {asked}{box}. Feasible with the rest kept: "
-            f"{' or '.join(remedies)}. Or give more terms or a longer duration."
-        )
     statuses = {solution.status for solution in solutions}
-    if statuses == {SolveStatus.INFEASIBLE}:
-        return InfeasibleTaskError(
-            f"no motion of {terms} meets {asked}{box}, nor with any one of these limits taken "
-            "away; widen several, or give more terms or a longer duration."
-        )
-    text = next(iter(statuses - {SolveStatus.INFEASIBLE})).text
-    return SolverFailedError(f"none of {len(solutions)} starts was solved: {text}")
-
-
-def _quoted(value: float) -> str:
-    return f"{value * _ROOM:.4g}"
+    if SolveStatus.INFEASIBLE not in statuses:
+        text = next(iter(statuses)).text
+        return SolverFailedError(f"none of {len(solutions)} starts was solved: {text}")
+    asked = ", ".join(f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items())
+    box = "" if bound is None else f", coefficients within +-{bound:g}"
+    terms = f"{profile.size} term{'s' if profile.size > 1 else ''}"
+    remedies = [
+        f"{name} limit {found.peaks[name] * _ROOM:.4g} {_UNITS[name]}"
+        for name, found in least.items()
+        if found.peaks[name] > limits[name]
+    ]
+    feasible = (
+        f"feasible with the rest kept: {' or '.join(remedies)}"
+        if remedies
+        else "taking any one of these limits away does not help, so widen several"
+    )
+    return InfeasibleTaskError(
+        f"found no motion of {terms} with {asked}{box}; {feasible}; more terms or a longer "
+        "duration may also do"
+    )

@@ -176,7 +176,9 @@ class CycloidPolynomial(JointProfile):
             start + span * (U - sine * cosine / pi),
             2 * span * speed_shape * dU,
             2 * span * sine * (2 * pi * cosine * dU * dU + sine * ddU),
-            2 * span * (
+            2
+            * span
+            * (
                 2 * pi * pi * (cosine * cosine - speed_shape) * dU * dU * dU
                 + 6 * pi * sine * cosine * dU * ddU
                 + speed_shape * dddU

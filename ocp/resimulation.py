@@ -218,9 +218,7 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     )
 
 
-def _energy(
-    flow: _Resimulation, times: NDArray[np.float64], power: NDArray[np.float64]
-) -> float:
+def _energy(flow: _Resimulation, times: NDArray[np.float64], power: NDArray[np.float64]) -> float:
     """Integral of |power|, from the signed work at its sign changes."""
     change = np.flatnonzero(power[:-1] * power[1:] < 0)
     share = power[change] / (power[change] - power[change + 1])

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.errors import SolverFailedError
-from ocp.feasibility import what_would_be_feasible
+from ocp.feasibility import explain, least_peaks
 from ocp.objective import Motion
 from ocp.plan import Plan, Provenance, SolveSettings, Verification
 from ocp.profile import CycloidPolynomial, JointProfile
@@ -91,7 +91,13 @@ def plan_move(
     solutions = [program.solve(guess, limits, bound) for guess in guesses]
     solved = [solution for solution in solutions if solution.status.solved]
     if not solved:
-        raise what_would_be_feasible(task, profile, settings, solutions, guesses)
+        least = least_peaks(program, profile, limits, bound, guesses[:2])
+        rescues = [found.coefficients for name, found in least.items()
+                   if found.peaks[name] <= limits[name]]  # fmt: skip
+        solutions += [program.solve(guess, limits, bound) for guess in rescues]
+        solved = [solution for solution in solutions if solution.status.solved]
+        if not solved:
+            raise explain(profile, limits, bound, solutions, least)
     best = min(solved, key=lambda solution: solution.energy)
     best, motion, steps_used = _verified(program, profile, best, limits, bound)
     return Plan(
@@ -139,9 +145,7 @@ def _verified(
                 program.task, profile, 2 * program.steps, with_residual=limits[RESIDUAL] > 0
             )
         elif any(ratio > 1 for ratio in overrun.values()):
-            used = {
-                name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()
-            }
+            used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
         else:
             break
         again = program.solve(best.coefficients, used, bound)

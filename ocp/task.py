@@ -75,7 +75,7 @@ class PointToPoint:
 
     @property
     def span(self) -> float:
-        """target - start [rad]."""
+        """Target - start [rad]."""
         return self.target - self.start
 
     @property

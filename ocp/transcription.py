@@ -50,7 +50,7 @@ class StepModel:
         self, plant: Plant, profile: JointProfile, steps: int, quantities: Sequence[str]
     ) -> None:
         self.size = 2 * plant.modes
-        at_nodes = {name: NODES for name in ("power", *quantities)}
+        at_nodes = dict.fromkeys(("power", *quantities), NODES)
         if "deflection" in at_nodes:
             at_nodes["deflection"] *= plant.tips
         self.groups = [Group("state", 0, self.size)]
