@@ -6,10 +6,10 @@ import json
 import platform
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from models import __version__, known_plants
@@ -25,7 +25,7 @@ def versions() -> dict[str, str]:
     """Versions of what computed an answer."""
     return {
         "quietarm": __version__,
-        "casadi": ca.__version__,
+        "casadi": metadata.version("casadi"),
         "numpy": np.__version__,
         "python": platform.python_version(),
     }

@@ -53,7 +53,7 @@ class SolveSettings:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.residual_limit) and self.residual_limit >= 0):
             raise ValueError(
-                f"residual limit is {self.residual_limit:g} m; give 0 (at rest) or a positive length"
+                f"residual limit is {self.residual_limit:g} m; give 0 (at rest) or more"
             )
         if self.bound is not None and not (math.isfinite(self.bound) and self.bound > 0):
             raise ValueError(

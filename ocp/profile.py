@@ -145,7 +145,8 @@ class CycloidPolynomial(JointProfile):
     terms: int = 6
 
     def __post_init__(self) -> None:
-        if isinstance(self.terms, bool) or not isinstance(self.terms, int | np.integer):
+        terms: object = self.terms
+        if isinstance(terms, bool) or not isinstance(terms, int | np.integer):
             raise ValueError(f"terms is {self.terms!r}; give a whole number from 0 to {MAX_TERMS}")
         if not 0 <= self.terms <= MAX_TERMS:
             raise ValueError(

@@ -18,7 +18,7 @@ from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL, NonlinearProgram
 
 ENERGY = "energy"
-_OPTIONS: dict[str, object] = {
+_OPTIONS: dict[str, str | int | float] = {
     "print_level": 0,
     "sb": "yes",
     "tol": 1e-9,
@@ -93,7 +93,7 @@ class TaskProgram:
         states, outputs = self.program.simulate(
             np.zeros(profile.size), task.move, np.ones(self.program.model.scales)
         )
-        peaks = [np.abs(outputs[group.slice]).max() for group in groups[1:]]
+        peaks = [np.abs(outputs[group.where]).max() for group in groups[1:]]
         self.scale = np.array([*np.abs(states).max(axis=1), *peaks])
         self.scale[self.scale == 0] = 1.0
         self.reference = {
@@ -168,7 +168,7 @@ class TaskProgram:
     def _start(self, guess: NDArray[np.float64]) -> NDArray[np.float64]:
         """Unknowns that agree with the guess: its own states, slacks and peaks."""
         states, outputs = self.program.simulate(guess, self.task.move, self.scale)
-        values = {group.name: outputs[group.slice] for group in self.program.model.groups}
+        values = {group.name: outputs[group.where] for group in self.program.model.groups}
         values[RESIDUAL] = self.matrix @ states[:, -1]
         peaks = [float(np.abs(values[name]).max()) for name in self.program.layout.peaks]
         slack = np.abs(values["power"].ravel(order="F")) + _SLACK_ROOM

@@ -55,7 +55,7 @@ class PointToPoint:
     residual_window: float = 1.0
 
     def __post_init__(self) -> None:
-        if not isinstance(self.plant, Plant):  # pyright: ignore[reportUnnecessaryIsInstance]
+        if not isinstance(self.plant, Plant):
             raise ValueError(f"plant is {self.plant!r}; give a Plant, as SingleLinkManipulator()")
         self.plant.validate()
         for name in ("start", "target"):
@@ -95,6 +95,7 @@ class PointToPoint:
 
 
 def _finite(name: str, value: object, unit: str) -> float:
+    name = name.replace("_", " ")
     if isinstance(value, bool) or not isinstance(value, int | float):
         try:
             value = float(value)  # type: ignore[arg-type]  # numpy's numbers
@@ -108,5 +109,6 @@ def _finite(name: str, value: object, unit: str) -> float:
 def _positive(name: str, value: object, unit: str) -> float:
     number = _finite(name, value, unit)
     if number <= 0:
+        name = name.replace("_", " ")
         raise ValueError(f"{name} is {number:g} {unit}; give a positive number")
     return number

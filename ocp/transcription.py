@@ -12,111 +12,18 @@ casadi's own derivative of the whole graph takes half a second for a hundred.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
 from models import Plant
-from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, step
+from ocp.collocation import GAUSS_WEIGHTS, NODES
 from ocp.profile import JointProfile
+from ocp.step_model import StepModel
 
 RESIDUAL = "residual"
-
-
-@dataclass(frozen=True)
-class Group:
-    """Outputs of a step that belong together: `rows` of them from row `first`."""
-
-    name: str
-    first: int
-    rows: int
-
-    @property
-    def slice(self) -> slice:
-        return slice(self.first, self.first + self.rows)
-
-
-class StepModel:
-    """One step as a small dense casadi function with its first and second derivatives.
-
-    Inputs are the scaled state before the step, the step's index, the coefficients, the move and
-    the scales; outputs are the scaled state after it, the power and each limited quantity at the
-    Gauss nodes.
-    """
-
-    def __init__(
-        self, plant: Plant, profile: JointProfile, steps: int, quantities: Sequence[str]
-    ) -> None:
-        self.size = 2 * plant.modes
-        at_nodes = dict.fromkeys(("power", *quantities), NODES)
-        if "deflection" in at_nodes:
-            at_nodes["deflection"] *= plant.tips
-        self.groups = [Group("state", 0, self.size)]
-        for name, rows in at_nodes.items():
-            last = self.groups[-1]
-            self.groups.append(Group(name, last.first + last.rows, rows))
-        self.scales = self.size + len(at_nodes)
-
-        state, index = ca.SX.sym("z", self.size), ca.SX.sym("k")
-        coefficients, move = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
-        scale = ca.SX.sym("scale", self.scales)
-        outputs = self._outputs(plant, profile, steps, state, index, coefficients, move, scale)
-        inputs = [state, index, coefficients, move, scale]
-        unknowns = ca.vertcat(coefficients, state)
-        multipliers = ca.SX.sym("lam", outputs.numel())
-        first = ca.densify(ca.jacobian(outputs, unknowns))
-        second = ca.densify(ca.hessian(ca.dot(multipliers, outputs), unknowns)[0])
-        n, options = profile.size, {"cse": True}
-        self.value = ca.Function("step", inputs, [outputs], options)
-        self.first = ca.Function("step_first", inputs, [first[:, :n], first[:, n:]], options)
-        self.second = ca.Function(
-            "step_second",
-            [*inputs, multipliers],
-            [second[:n, :n], second[:n, n:], second[n:, n:]],
-            options,
-        )
-
-    def _outputs(
-        self,
-        plant: Plant,
-        profile: JointProfile,
-        steps: int,
-        state: ca.SX,
-        index: ca.SX,
-        coefficients: ca.SX,
-        move: ca.SX,
-        scale: ca.SX,
-    ) -> ca.SX:
-        start, target, duration = ca.vertsplit(move)
-        physical = ca.vertsplit(state * scale[: self.size])
-        W, dW = physical[: plant.modes], physical[plant.modes :]
-        joints = [
-            profile.motion(
-                ca.vertsplit(coefficients), (index + node) / steps, start, target, duration
-            )
-            for node in GAUSS_NODES
-        ]
-        one = step(plant, joints, duration / steps)
-        ddW = one.accelerations(W, dW)
-        nodes = one.nodes(W, dW, ddW)
-        W_after, dW_after = one.end(W, dW, ddW)
-        torque = [
-            plant.torque(joint, node.W, node.dW, node.ddW)
-            for joint, node in zip(joints, nodes, strict=True)
-        ]
-        values = {
-            "power": [t * joint.speed for t, joint in zip(torque, joints, strict=True)],
-            "torque": torque,
-            "speed": [joint.speed for joint in joints],
-            "acceleration": [joint.acceleration for joint in joints],
-            "deflection": [tip for node in nodes for tip in plant.tip_displacements(node.W)],
-        }
-        rows = [ca.vertcat(*W_after, *dW_after) / scale[: self.size]]
-        for i, group in enumerate(self.groups[1:]):
-            rows.append(ca.vertcat(*values[group.name]) / scale[self.size + i])
-        return ca.vertcat(*rows)
 
 
 @dataclass(frozen=True)
@@ -172,7 +79,7 @@ class NonlinearProgram:
         steps: int,
         quantities: tuple[str, ...],
         residual_rows: int,
-        options: dict[str, object],
+        options: Mapping[str, str | int | float],
     ) -> None:
         self.model = model = StepModel(plant, profile, steps, quantities)
         peaks = ((RESIDUAL,) if residual_rows else ()) + quantities
@@ -192,7 +99,7 @@ class NonlinearProgram:
             x, _offsets([layout.coefficients, len(peaks), model.size * (steps + 1), layout.slacks])
         )
         states = ca.reshape(flat_states, model.size, steps + 1)
-        arguments = (states[:, :-1], ca.DM(np.arange(steps)).T, a, move, scale)
+        arguments = (states[:, :-1], ca.MX(ca.DM(np.arange(steps)).T), a, move, scale)
 
         outputs = _mapped(model.value, steps)(*arguments)
         node_weights = ca.repmat(ca.DM(GAUSS_WEIGHTS), steps, 1) / steps
@@ -214,7 +121,7 @@ class NonlinearProgram:
                 ),
                 "hess_lag": self._hessian(x, p, arguments, constraints.numel()),
                 "print_time": False,
-                "ipopt": options,
+                "ipopt": dict(options),
             },
         )
         self._simulate = self._simulation()
@@ -256,9 +163,9 @@ class NonlinearProgram:
         self, outputs: ca.MX, states: ca.MX, slack: ca.MX, peak: ca.MX, residual: ca.MX
     ) -> ca.MX:
         state, *bounded = self.model.groups
-        rows = [ca.vec(outputs[state.slice, :] - states[:, 1:])]
+        rows = [ca.vec(outputs[state.where, :] - states[:, 1:])]
         for group in bounded:
-            value = ca.vec(outputs[group.slice, :])
+            value = ca.vec(outputs[group.where, :])
             ceiling = slack if group.name == "power" else peak[self.layout.peaks.index(group.name)]
             rows += [ceiling - value, ceiling + value]
         if self.layout.residual_rows:
@@ -279,9 +186,9 @@ class NonlinearProgram:
         rows: list[ca.MX] = []
         for group in self.model.groups:
             count = group.rows * steps
-            of_a = ca.vertcat(*ca.horzsplit(by_coefficients[group.slice, :], layout.coefficients))
+            of_a = ca.vertcat(*ca.horzsplit(by_coefficients[group.where, :], layout.coefficients))
             of_z = ca.horzcat(
-                _block_diagonal(by_state[group.slice, :], group.rows, size, steps),
+                _block_diagonal(by_state[group.where, :], group.rows, size, steps),
                 ca.MX(count, size),
             )
             of_peak, of_slack = ca.MX(count, n_peaks), ca.MX(count, layout.slacks)
@@ -355,5 +262,5 @@ def _unit_column(rows: int, columns: int, column: int) -> ca.DM:
     return ca.horzcat(ca.DM(rows, column), ca.DM.ones(rows, 1), ca.DM(rows, columns - column - 1))
 
 
-def _offsets(sizes: Sequence[int]) -> list[int]:
+def _offsets(sizes: Iterable[int]) -> list[int]:
     return [0, *np.cumsum(list(sizes)).tolist()]

@@ -292,11 +292,15 @@ def test_no_candidate_leaves_the_box(boundary, limit):
 
 def test_first_positions_are_uniform_in_the_box():
     algorithm = VEPSO(500).setup(Targets(), seed=1)
-    X = algorithm.ask().get("X")
+    algorithm.next()
+    X = algorithm.pop.get("X")
     counts = np.apply_along_axis(lambda x: np.histogram(x, 10, (-1.0, 2.0))[0], 0, X)
     assert counts.sum(axis=0).tolist() == [1000] * 3
     assert counts.min() > 60
     assert counts.max() < 140
+    goals = X + 2 * algorithm.state()["velocities"].reshape(X.shape)  # the first move is halfway
+    assert ((goals >= -1 - 1e-12) & (goals <= 2 + 1e-12)).all()
+    assert abs(np.corrcoef(X.T, goals.T)[:3, 3:]).max() < 0.15
 
 
 def test_sampling_as_array_or_population_is_used_and_evaluated():
@@ -470,6 +474,7 @@ def test_undefined_candidates_become_no_best_and_stay_out_of_the_archive():
     assert np.isinf(np.concatenate(problem.F)).sum() > 10
     assert np.isfinite(result.F).all()
     for state in states.states:
+        assert not np.isnan(state["best_merit"]).any()
         found = np.isfinite(state["best_merit"][..., 0])
         assert np.isfinite(state["best_merit"][found]).all()
         x1 = state["best_X"][found][:, 0]
@@ -477,12 +482,22 @@ def test_undefined_candidates_become_no_best_and_stay_out_of_the_archive():
     assert found.all()
 
 
-def test_nothing_defined_at_all_gives_no_result():
-    class Nowhere(Targets):
-        def _evaluate(self, x, out, *args, **kwargs):
-            super()._evaluate(x, out)
-            out["F"][:, 1] = np.nan
+class Nowhere(Targets):
+    """NaN everywhere, in the second objective."""
 
+    def _evaluate(self, x, out, *args, **kwargs):
+        super()._evaluate(x, out)
+        out["F"][:, 1] = np.nan
+
+
+def test_who_has_found_nothing_usable_draws_nobody():
+    problem = Nowhere()
+    rule = VelocityRule(0.0, 0.0, 1.0, 2.0, 2.0)  # moves by the pulls only
+    minimize(problem, VEPSO(5, rule), ("n_gen", 5), seed=1)
+    assert np.ptp(problem.X, axis=0).max() == 0
+
+
+def test_nothing_defined_at_all_gives_no_result():
     for termination in (("n_gen", 10), None):
         problem = Nowhere()
         result = minimize(problem, VEPSO(5), termination, seed=1)
@@ -502,8 +517,8 @@ def test_constraints_come_before_objectives():
     state = result.algorithm.state()
     assert (state["best_merit"][..., 0] == 0).all()
     # the constrained minima of the objectives: x1 = 1.9, the rest as in the targets
-    # (measured for seeds 0 to 19: at most 0.016 above)
-    assert result.F.min(axis=0) == pytest.approx([0.9**2, 1.9**2], abs=0.1)
+    # (measured for seeds 0 to 19: at most 0.005 above)
+    assert result.F.min(axis=0) == pytest.approx([0.9**2, 1.9**2], abs=0.03)
 
 
 def test_infeasible_run_gives_none_or_the_least_infeasible():
@@ -588,7 +603,7 @@ def test_state_between_ask_and_tell_is_that_before_the_ask():
     assert np.array_equal(restored.ask().get("X"), candidates.get("X"))
 
 
-def test_state_is_not_changed_by_going_on():
+def test_state_and_run_do_not_share_memory():
     algorithm = VEPSO(5).setup(Targets(), seed=1)
     state = step(algorithm)
     copy = json.dumps(plain(state))
@@ -597,6 +612,12 @@ def test_state_is_not_changed_by_going_on():
     restored.restore(state)
     restored.next()
     assert json.dumps(plain(state)) == copy
+    state = algorithm.state()
+    copy = json.dumps(plain(state))
+    for array in (*state.values(), *state["particles"].values(), *state["archive"].values()):
+        if isinstance(array, np.ndarray):
+            array[...] = 0
+    assert json.dumps(plain(algorithm.state())) == copy
 
 
 def test_restored_run_may_be_given_more_iterations():

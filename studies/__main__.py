@@ -1,0 +1,5 @@
+"""`python -m studies` is `quietarm`."""
+
+from studies.cli import main
+
+main()

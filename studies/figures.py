@@ -1,0 +1,118 @@
+"""Pictures: the paper's four panels."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from ocp import Plan
+from ocp.files import check_writable, write_whole
+
+SUFFIXES = (".png", ".pdf", ".svg")
+_SAMPLES = 1500
+
+
+@dataclass(frozen=True)
+class Line:
+    """One motion in a picture: its plan, label, colour and matplotlib line style."""
+
+    plan: Plan
+    label: str
+    colour: str
+    style: str = "-"
+
+
+def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
+    """Draw joint angle, angular velocity, tip displacement and motor torque against time.
+
+    Parameters
+    ----------
+    lines : sequence of Line, or Plan
+        The motions, of one task's duration; a plan alone is drawn with its plain cycloid's
+        residual window beside it.
+    title : str, optional
+        Title of the picture.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The four panels, in the order of the paper's Figs 2 and 5; time goes on through the
+        residual window after arrival.
+    """
+    if isinstance(lines, Plan):
+        lines = [Line(lines, "plan", "tab:blue")]
+    figure = Figure(figsize=(10, 6.4), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes: list[Axes] = list(figure.subplots(2, 2, sharex=True).flat)
+    for line in lines:
+        task = line.plan.task
+        end = task.duration + task.residual_window
+        times = np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration])
+        sampled = line.plan.trajectory(times)
+        tips = sampled.tips * 1e3
+        panels = [sampled.joint[:, :1], sampled.joint[:, 1:2], tips, sampled.torque[:, None]]
+        for axis, values in zip(axes, panels, strict=True):
+            for i in range(values.shape[1]):
+                axis.plot(
+                    sampled.time,
+                    values[:, i],
+                    line.style if i == 0 else ":",
+                    color=line.colour,
+                    linewidth=1.6,
+                    label=line.label if values.shape[1] == 1 else f"{line.label}, tip {i + 1}",
+                )
+    labels = [
+        "joint angle [rad]",
+        "angular velocity [rad/s]",
+        "tip displacement [mm]",
+        "motor torque [N m]",
+    ]
+    arrival = lines[0].plan.task.duration
+    for letter, axis, label in zip("abcd", axes, labels, strict=True):
+        axis.axvline(arrival, color="0.6", linewidth=0.8, linestyle="--")
+        axis.set_title(f"({letter}) {label}", fontsize=10, loc="left")
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.25)
+        axis.margins(x=0)
+    for axis in axes[2:]:
+        axis.set_xlabel("time [s]  (dashed: arrival)")
+    axes[2].legend(fontsize=8, loc="best")
+    if title:
+        figure.suptitle(title, fontsize=12)
+    return figure
+
+
+def check_figure(path: str | Path) -> Path:
+    """Make sure that a picture can be written under this name; ValueError otherwise."""
+    target = check_writable(path)
+    if target.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{target} is no picture; end its name in {', '.join(SUFFIXES)}")
+    return target
+
+
+def save_figure(figure: Figure, path: str | Path) -> None:
+    """Write a picture whole or not at all.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The picture.
+    path : str or Path
+        The file; its ending, .png, .pdf or .svg, says the format.
+
+    Raises
+    ------
+    ValueError
+        When the file cannot be written or its ending is unknown.
+    """
+    target = check_figure(path)
+    content = io.BytesIO()
+    figure.savefig(content, format=target.suffix[1:].lower(), dpi=150)
+    write_whole(target, content.getvalue())

@@ -1,0 +1,98 @@
+"""What the paper prints: conditions, coefficients and energies of its Tables 1 to 6."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+from models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
+from ocp import PointToPoint
+
+SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
+SEARCH_BOX: dict[str, float] = {SINGLE_LINK.name: 0.2, ARM.name: 0.5}
+"""Largest absolute coefficient in the paper's searches: eqs (12) and (17)."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A driving condition of the paper: start and target [rad], duration [s]."""
+
+    plant: Plant
+    start: float
+    target: float
+    duration: float
+    label: str
+
+    @property
+    def task(self) -> PointToPoint:
+        """The condition as a task without limits."""
+        return PointToPoint(self.plant, self.target, self.duration, self.start)
+
+    @property
+    def box(self) -> float:
+        """The paper's bound on the coefficients."""
+        return SEARCH_BOX[self.plant.name]
+
+
+SINGLE_LINK_SIXTH = Condition(SINGLE_LINK, 0.0, pi / 6, 0.8, "0 to pi/6, 0.8 s")
+SINGLE_LINK_HALF_1_0 = Condition(SINGLE_LINK, 0.0, pi / 2, 1.0, "0 to pi/2, 1.0 s")
+SINGLE_LINK_HALF_1_1 = Condition(SINGLE_LINK, 0.0, pi / 2, 1.1, "0 to pi/2, 1.1 s")
+ARM_HALF = Condition(ARM, 0.0, pi / 2, 0.8, "0 to pi/2, 0.8 s")
+ARM_THREE_QUARTERS = Condition(ARM, -pi / 2, pi / 4, 1.0, "-pi/2 to pi/4, 1.0 s")
+ARM_WHOLE = Condition(ARM, -pi / 2, pi / 2, 1.2, "-pi/2 to pi/2, 1.2 s")
+
+COEFFICIENTS: dict[tuple[Condition, int], tuple[float, ...]] = {
+    (SINGLE_LINK_SIXTH, 2): (3.347e-3, -1.697e-1),
+    (SINGLE_LINK_SIXTH, 4): (-1.690e-3, -1.367e-1, -1.951e-2, -1.971e-1),
+    (SINGLE_LINK_SIXTH, 6): (-1.889e-3, -1.427e-1, -4.247e-2, -1.187e-1, 4.800e-2, -1.890e-1),
+    (ARM_HALF, 2): (-1.023e-1, -4.365e-1),
+    (ARM_HALF, 4): (-9.583e-2, -3.350e-1, 2.090e-1, -2.854e-1),
+    (ARM_HALF, 6): (-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-1, -2.377e-1),
+}
+"""Tables 1 and 4, as printed."""
+
+MENDED: dict[tuple[Condition, int], tuple[float, ...]] = {
+    (ARM_HALF, 6): (-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-2, -2.377e-1),
+}
+"""Table 4, N = 6, with the exponent of a_5 mended: only this reproduces Table 5's 0.149 J."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of Tables 2, 3, 5 or 6.
+
+    Attributes
+    ----------
+    table : int
+        Number of the table.
+    condition : Condition
+        The driving condition.
+    terms : int
+        N of eq (6).
+    energy : float
+        F2 that is printed for the proposed method [J].
+    earlier_energy : float or None
+        F2 that is printed for the earlier study, ref. [23] or [24] [J].
+    """
+
+    table: int
+    condition: Condition
+    terms: int
+    energy: float
+    earlier_energy: float | None = None
+
+
+ROWS: tuple[Row, ...] = (
+    Row(2, SINGLE_LINK_SIXTH, 2, 6.29e-2),
+    Row(2, SINGLE_LINK_SIXTH, 4, 5.26e-2),
+    Row(2, SINGLE_LINK_SIXTH, 6, 5.15e-2),
+    Row(3, SINGLE_LINK_SIXTH, 6, 5.15e-2, 6.30e-2),
+    Row(3, SINGLE_LINK_HALF_1_0, 6, 2.96e-1, 4.21e-1),
+    Row(3, SINGLE_LINK_HALF_1_1, 6, 2.23e-1, 3.52e-1),
+    Row(5, ARM_HALF, 2, 2.09e-1),
+    Row(5, ARM_HALF, 4, 1.65e-1),
+    Row(5, ARM_HALF, 6, 1.49e-1),
+    Row(6, ARM_HALF, 6, 1.49e-1, 2.00e-1),
+    Row(6, ARM_THREE_QUARTERS, 6, 1.43e-1, 1.55e-1),
+    Row(6, ARM_WHOLE, 6, 2.00e-1, 2.22e-1),
+)

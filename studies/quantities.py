@@ -1,0 +1,76 @@
+"""Angles, lengths and times as people write them: 30deg, -pi/2, 1mm, 800ms."""
+
+from __future__ import annotations
+
+import math
+import re
+
+_NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
+_PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
+_PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ]*)")
+_LENGTHS = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6}
+_TIMES = {"": 1.0, "s": 1.0, "ms": 1e-3}
+_ANGLES = {"": 1.0, "rad": 1.0, "deg": math.pi / 180}
+
+
+def parse_angle(text: str) -> float:
+    """Read an angle.
+
+    Parameters
+    ----------
+    text : str
+        Radians, or degrees with ``deg``, or a multiple of pi: ``0.5``, ``30deg``, ``-pi/2``.
+
+    Returns
+    -------
+    float
+        The angle [rad].
+
+    Raises
+    ------
+    ValueError
+        When it is none of these.
+    """
+    match = _PI.fullmatch(text.strip())
+    if match:
+        sign, factor, divisor = match.groups()
+        if divisor is None or float(divisor) != 0:
+            size = float(factor or 1) * math.pi / float(divisor or 1)
+            return -size if sign == "-" else size
+    return _with_unit(text, _ANGLES, "an angle", "radians (0.5), 30deg, pi/6 or -pi/2")
+
+
+def parse_length(text: str) -> float:
+    """Read a length: metres, or with m, cm, mm or um. ValueError when it is none."""
+    return _with_unit(text, _LENGTHS, "a length", "metres (0.001) or 1mm")
+
+
+def parse_time(text: str) -> float:
+    """Read a time: seconds, or with s or ms. ValueError when it is none."""
+    return _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")
+
+
+def parse_coefficients(text: str) -> list[float]:
+    """Read numbers that are separated by commas. ValueError when one is not a finite number."""
+    values: list[float] = []
+    for i, entry in enumerate(text.split(","), start=1):
+        try:
+            value = float(entry)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise ValueError(
+                f"coefficient {i} is {entry.strip()!r}; give finite numbers separated by commas"
+            )
+        values.append(value)
+    return values
+
+
+def _with_unit(text: str, units: dict[str, float], kind: str, examples: str) -> float:
+    match = _PLAIN.fullmatch(text.strip())
+    if match and match.group(2) in units:
+        return float(match.group(1)) * units[match.group(2)]
+    try:
+        return float(text)  # nan and inf, for the task to refuse with its own words
+    except ValueError:
+        raise ValueError(f"{text!r} is not {kind}; give {examples}") from None

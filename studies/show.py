@@ -1,0 +1,61 @@
+"""A plan on screen."""
+
+from __future__ import annotations
+
+import math
+
+from rich.console import Console
+from rich.table import Table
+
+from ocp import Plan
+
+
+def show_plan(console: Console, plan: Plan) -> None:
+    """Print a plan's coefficients, figures and verification.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    plan : Plan
+        The plan.
+    """
+    task, motion, check = plan.task, plan.motion, plan.verification
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="bold")
+    table.add_column()
+    table.add_row(
+        "move",
+        f"{task.plant.name}, {_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s",
+    )
+    limits = ", ".join(f"{name} {value:g}" for name, value in task.limits.items())
+    if limits:
+        table.add_row("limits", limits)
+    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    table.add_row("coefficients", coefficients or "none: the plain cycloid")
+    table.add_row("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)")
+    table.add_row(
+        "residual F1", f"{_length(motion.residual)} at the tip within {task.residual_window:g} s"
+    )
+    table.add_row("peak torque", f"{motion.peak_torque:.4g} N m")
+    table.add_row("peak speed", f"{motion.peak_speed:.4g} rad/s")
+    table.add_row("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2")
+    table.add_row("peak deflection", _length(motion.peak_deflection))
+    table.add_row("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none")
+    table.add_row("status", plan.status.text)
+    relative = abs(check.energy_difference) / motion.energy if motion.energy else 0.0
+    table.add_row(
+        "verified",
+        f"by CVODES: {check.steps} fixed steps differ by {relative:.0e} in energy and "
+        f"{_length(abs(check.residual_difference))} in residual",
+    )
+    table.add_row("time", f"{plan.provenance.seconds:.2f} s")
+    console.print(table, highlight=False)
+
+
+def _angle(value: float) -> str:
+    return f"{math.degrees(value):.6g}deg"
+
+
+def _length(value: float) -> str:
+    return f"{value * 1e3:.3g} mm"

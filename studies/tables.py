@@ -1,0 +1,76 @@
+"""Tables that read the same on screen, in Markdown and in CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from rich import box
+from rich.table import Table as ScreenTable
+
+Cell = str | int | float | None
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column: its heading (with the unit) and how its numbers are written for people."""
+
+    heading: str
+    show: Callable[[float], str] = "{:.4g}".format
+
+    def text(self, cell: Cell) -> str:
+        """A cell for people; a dash where there is nothing."""
+        if cell is None:
+            return "-"
+        return self.show(cell) if isinstance(cell, float) else str(cell)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells under columns; CSV keeps every digit, the other forms are for people.
+
+    For people a row stands upright, beside the others: a table has few rows and many quantities,
+    and so fits a narrow terminal. The first column names the rows.
+    """
+
+    title: str
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[Cell]]
+
+    def for_screen(self) -> ScreenTable:
+        """The table for rich's console."""
+        table = ScreenTable(title=self.title, title_justify="left", box=box.SIMPLE_HEAD)
+        heading, *lines = self._upright()
+        table.add_column(heading[0])
+        for name in heading[1:]:
+            table.add_column(name, justify="right")
+        for line in lines:
+            table.add_row(*line)
+        return table
+
+    def markdown(self) -> str:
+        """The table in Markdown, with its title above it."""
+        heading, *lines = self._upright()
+        rule = ["---", *["---:"] * (len(heading) - 1)]
+        rows = [_line(line) for line in (heading, rule, *lines)]
+        return "\n".join([f"**{self.title}**", "", *rows]) + "\n"
+
+    def csv(self) -> str:
+        """The table as comma-separated values, a row a line, numbers in full."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow([column.heading for column in self.columns])
+        writer.writerows([["" if cell is None else cell for cell in row] for row in self.rows])
+        return text.getvalue()
+
+    def _upright(self) -> list[list[str]]:
+        return [
+            [column.heading, *(column.text(row[i]) for row in self.rows)]
+            for i, column in enumerate(self.columns)
+        ]
+
+
+def _line(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |"
