@@ -1,5 +1,10 @@
 """What is asked, and the gradient answer."""
 
+# ruff: noqa: E402  # the check must come before anything that imports models
+from ocp.shadowing import refuse_shadow
+
+refuse_shadow("models")
+
 from ocp.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
 from ocp.objective import Motion
 from ocp.plan import Plan, SolveSettings, Verification, evaluate_coefficients

@@ -10,7 +10,7 @@ from studies.paper import ROWS, Condition
 from studies.reproduce import BEYOND_SIX, STUDIED, Reproduction
 
 _AT_REST = 1e-7
-"""A residual below this [m] counts as cancelled: the targets of physics and solver are set there."""
+"""A residual below this [m] counts as cancelled."""
 _GAIN = 0.01
 """A fall of the energy by more than this share counts as a gain."""
 
@@ -25,7 +25,7 @@ class Claim:
 
     @property
     def verdict(self) -> str:
-        """ "supported" or "refuted"."""
+        """Whether the figures bear the claim out: supported, or refuted."""
         return "supported" if self.holds else "refuted"
 
 

@@ -31,7 +31,7 @@ BAD_INPUT, NOT_SOLVED = 2, 1
 )
 @click.version_option(__version__, prog_name="quietarm")
 def quietarm() -> None:
-    """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
+    r"""Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
 
     PLANT is single-link or arm-on-flexible-link. Angles are radians, or 30deg, pi/6, -pi/2;
     lengths are metres, or 1mm; times are seconds, or 800ms.
@@ -40,9 +40,9 @@ def quietarm() -> None:
     Examples:
       quietarm reproduce --output results
       quietarm plan single-link --target 30deg --duration 0.8 --figure move.png
-      quietarm plan arm-on-flexible-link --start=-pi/2 --target pi/4 --duration 1.0 \\
+      quietarm plan arm-on-flexible-link --start=-pi/2 --target pi/4 --duration 1.0 \
           --torque-limit 0.4 --output plan.json --csv move.csv
-      quietarm evaluate single-link --target pi/6 --duration 0.8 \\
+      quietarm evaluate single-link --target pi/6 --duration 0.8 \
           --coefficients=0.003347,-0.1697
     """
 
@@ -66,13 +66,13 @@ def plan(
     seed: int,
     **rest: Any,
 ) -> None:
-    """Find the move of least energy whose residual vibration is within a limit.
+    r"""Find the move of least energy whose residual vibration is within a limit.
 
     \b
     Examples:
       quietarm plan single-link --target 30deg --duration 0.8
       quietarm plan single-link --target pi/2 --duration 1.0 --bound 0.2 --residual-limit 1mm
-      quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \\
+      quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \
           --output plan.json --csv move.csv --figure move.png
     """
     from studies.show import show_plan
@@ -98,7 +98,7 @@ def plan(
 )  # fmt: skip
 @output_options
 def evaluate(coefficients: list[float], **rest: Any) -> None:
-    """Compute residual, energy and peaks of given coefficients.
+    r"""Compute residual, energy and peaks of given coefficients.
 
     \b
     Example, the paper's two terms for the single link:
@@ -116,7 +116,7 @@ def evaluate(coefficients: list[float], **rest: Any) -> None:
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 def reproduce(output: Path | None, quiet: bool) -> None:
-    """Recompute the paper's Tables 2, 3, 5 and 6 beside the printed figures, and its claims.
+    r"""Recompute the paper's Tables 2, 3, 5 and 6 beside the printed figures, and its claims.
 
     \b
     Example:

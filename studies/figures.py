@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ocp import Plan
+from ocp import Plan, evaluate_coefficients
 from ocp.files import check_writable, write_whole
 
 SUFFIXES = (".png", ".pdf", ".svg")
@@ -35,8 +35,8 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
     Parameters
     ----------
     lines : sequence of Line, or Plan
-        The motions, of one task's duration; a plan alone is drawn with its plain cycloid's
-        residual window beside it.
+        The motions, all of one duration; a plan alone is drawn over the plain cycloid of its
+        task.
     title : str, optional
         Title of the picture.
 
@@ -47,7 +47,8 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
         residual window after arrival.
     """
     if isinstance(lines, Plan):
-        lines = [Line(lines, "plan", "tab:blue")]
+        cycloid = evaluate_coefficients(lines.task, [])
+        lines = [Line(cycloid, "plain cycloid", "0.55"), Line(lines, "this plan", "tab:blue")]
     figure = Figure(figsize=(10, 6.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes: list[Axes] = list(figure.subplots(2, 2, sharex=True).flat)
@@ -68,22 +69,22 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
                     linewidth=1.6,
                     label=line.label if values.shape[1] == 1 else f"{line.label}, tip {i + 1}",
                 )
-    labels = [
-        "joint angle [rad]",
-        "angular velocity [rad/s]",
-        "tip displacement [mm]",
-        "motor torque [N m]",
+    quantities = [
+        ("joint angle", "[rad]"),
+        ("angular velocity", "[rad/s]"),
+        ("tip displacement", "[mm]"),
+        ("motor torque", "[N m]"),
     ]
     arrival = lines[0].plan.task.duration
-    for letter, axis, label in zip("abcd", axes, labels, strict=True):
+    for letter, axis, (name, unit) in zip("abcd", axes, quantities, strict=True):
         axis.axvline(arrival, color="0.6", linewidth=0.8, linestyle="--")
-        axis.set_title(f"({letter}) {label}", fontsize=10, loc="left")
-        axis.set_ylabel(label)
+        axis.set_title(f"({letter}) {name} {unit}", fontsize=10, loc="left")
         axis.grid(alpha=0.25)
         axis.margins(x=0)
     for axis in axes[2:]:
         axis.set_xlabel("time [s]  (dashed: arrival)")
-    axes[2].legend(fontsize=8, loc="best")
+    handles, labels = axes[2].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=9, frameon=False)
     if title:
         figure.suptitle(title, fontsize=12)
     return figure

@@ -49,10 +49,12 @@ def _is_output(text: str) -> Path:
 
 def _is_folder(text: str) -> Path:
     folder = Path(text)
-    if folder.exists() and not folder.is_dir():
+    if folder.is_dir():
+        check_writable(folder / "any")
+    elif folder.exists():
         raise ValueError(f"{folder} is a file; give a folder")
-    check_writable((folder if folder.is_dir() else folder.absolute()) / "x" if folder.is_dir()
-                   else folder.absolute())  # fmt: skip
+    else:
+        check_writable(folder)  # it will be made; the folder around it must be there
     return folder
 
 
@@ -67,7 +69,8 @@ FOLDER = Parsed("folder", _is_folder)
 
 _TASK_OPTIONS = (
     click.argument("plant", type=PLANT),
-    click.option("--start", type=ANGLE, default=0.0, show_default=True, help="Joint angle at the start."),
+    click.option("--start", type=ANGLE, default=0.0, show_default=True,
+                 help="Joint angle at the start."),
     click.option("--target", type=ANGLE, required=True, help="Joint angle at the end."),
     click.option("--duration", type=TIME, required=True, help="Travelling time."),
     click.option("--torque-limit", type=float, help="Largest joint torque on the way [N m]."),
