@@ -12,7 +12,9 @@ casadi's own derivative of the whole graph takes half a second for a hundred.
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import redirect_stderr
 from dataclasses import dataclass
 
 import casadi as ca
@@ -136,10 +138,11 @@ class NonlinearProgram:
     def solve(
         self, x0: np.ndarray, lower: np.ndarray, upper: np.ndarray, parameters: np.ndarray
     ) -> tuple[np.ndarray, str]:
-        """Run IPOPT: the unknowns and IPOPT's own status."""
-        result = self._solver(
-            x0=x0, lbx=lower, ubx=upper, lbg=self.lower, ubg=self.upper, p=parameters
-        )
+        """Run IPOPT: the unknowns and IPOPT's own status, which tells all that casadi warns of."""
+        with redirect_stderr(io.StringIO()):
+            result = self._solver(
+                x0=x0, lbx=lower, ubx=upper, lbg=self.lower, ubg=self.upper, p=parameters
+            )
         return result["x"].full().ravel(), str(self._solver.stats()["return_status"])
 
     def _simulation(self) -> ca.Function:

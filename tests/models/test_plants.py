@@ -1,0 +1,348 @@
+"""The plants: the paper's equations, the contract, and what breaks it."""
+
+import math
+from dataclasses import FrozenInstanceError, dataclass, fields
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models import (
+    ArmOnFlexibleLink,
+    JointMotion,
+    Plant,
+    SingleLinkManipulator,
+    known_plants,
+    parameter,
+)
+
+motions = st.floats(-10.0, 10.0)
+"""Angles, speeds, accelerations, amplitudes and rates: larger than any in the paper's figures."""
+
+# Eq (10) of the paper.
+SINGLE_LINK = {
+    "alpha1": 2.383e-2,
+    "alpha2": 9.261e-2,
+    "c": 3.091e-2,
+    "beta1": 2.555e-1,
+    "beta2": 2.614e-1,
+    "zeta": 9.636e-3,
+    "omega": 10.43,
+}
+# Eq (15) of the paper.
+ARM = {
+    "alpha1": -1.055e-1,
+    "alpha2": -9.949e-3,
+    "alpha3": 5.256e-2,
+    "alpha4": 7.634e-2,
+    "zeta": 1.500e-3,
+    "beta1": 5.366e-3,
+    "beta2": -4.944e-3,
+    "beta3": 2.399e-2,
+    "omega": 7.320,
+    "c": 1.965e-2,
+}
+
+
+@pytest.fixture(autouse=True)
+def _plants_of_these_tests_stay_here(monkeypatch):
+    monkeypatch.setattr(Plant, "_known", dict(Plant._known))
+
+
+@pytest.fixture(params=["single link", "arm", "two links"])
+def plant(request, two_links):
+    plants = {
+        "single link": SingleLinkManipulator(),
+        "arm": ArmOnFlexibleLink(),
+        "two links": two_links,
+    }
+    return plants[request.param]
+
+
+# -- the paper's equations and numbers --
+
+
+def test_single_link_has_the_coefficients_of_eq_10():
+    printed = {name: SingleLinkManipulator().parameters[name] for name in SINGLE_LINK}
+    assert printed == SINGLE_LINK
+
+
+def test_arm_has_the_coefficients_of_eq_15():
+    printed = {name: ArmOnFlexibleLink().parameters[name] for name in ARM}
+    assert printed == ARM
+
+
+def test_mode_shapes_at_the_tips():
+    # physics.md: 2.28 from the paper's 'about 7.7 cm' over max |W| = 0.03382 m, 0.508 from
+    # beta3/(M lbar) with M = 0.450 kg, lbar = 0.105 m.
+    assert SingleLinkManipulator().phi == pytest.approx(0.077 / 0.03382, abs=0.005)
+    assert ArmOnFlexibleLink().phi == pytest.approx(2.399e-2 / (0.450 * 0.105), abs=0.0005)
+
+
+@given(angle=motions, speed=motions, acceleration=motions, W=motions, dW=motions)
+def test_single_link_meets_eqs_8_and_9(angle, speed, acceleration, W, dW):
+    p, joint = SINGLE_LINK, JointMotion(angle, speed, acceleration)
+    plant = SingleLinkManipulator()
+    (ddW,) = plant.modal_accelerations(joint, [W], [dW])
+    eq9 = (
+        ddW
+        + 2 * p["zeta"] * p["omega"] * dW
+        + p["omega"] ** 2 * W
+        + p["beta1"] * acceleration
+        + p["beta2"] * speed**2 * W
+    )
+    assert eq9 == pytest.approx(0.0, abs=1e-11)
+    eq8 = p["alpha1"] * acceleration + p["alpha2"] * ddW + p["c"] * speed
+    assert plant.torque(joint, [W], [dW], [ddW]) == pytest.approx(eq8, rel=1e-13, abs=1e-13)
+
+
+@given(angle=motions, speed=motions, acceleration=motions, W=motions, dW=motions)
+def test_arm_meets_eqs_13_and_14(angle, speed, acceleration, W, dW):
+    p, joint = ARM, JointMotion(angle, speed, acceleration)
+    plant = ArmOnFlexibleLink()
+    ddW = float(plant.modal_accelerations(joint, [W], [dW])[0])
+    eq13 = (
+        (1 + p["alpha1"] * math.cos(angle)) * ddW
+        + 2 * p["zeta"] * p["omega"] * dW
+        + p["omega"] ** 2 * W
+        + (p["alpha2"] + p["alpha3"] * math.cos(angle)) * acceleration
+        + (p["alpha4"] * dW * speed - p["alpha3"] * speed**2) * math.sin(angle)
+    )
+    assert eq13 == pytest.approx(0.0, abs=1e-11)
+    eq14 = (
+        p["beta1"] * acceleration
+        + p["c"] * speed
+        + (p["beta2"] + p["beta3"] * math.cos(angle)) * ddW
+    )
+    torque = float(plant.torque(joint, [W], [dW], [ddW]))
+    assert torque == pytest.approx(eq14, rel=1e-13, abs=1e-13)
+
+
+@pytest.mark.parametrize("plant_class", [SingleLinkManipulator, ArmOnFlexibleLink])
+def test_tip_displacement_is_phi_times_the_amplitude(plant_class):
+    assert plant_class(phi=3.0).tip_displacements([0.02]) == [pytest.approx(0.06)]
+
+
+@pytest.mark.parametrize("plant_class", [SingleLinkManipulator, ArmOnFlexibleLink])
+@given(angle=motions, speed=motions, acceleration=motions, W=motions, dW=motions)
+def test_mirrored_motion_has_mirrored_acceleration_and_torque(
+    plant_class, angle, speed, acceleration, W, dW
+):
+    # Eqs (8), (9), (13), (14) are odd in (theta, W) together: cos is even, sin is odd.
+    plant, joint = plant_class(), JointMotion(angle, speed, acceleration)
+    mirror = JointMotion(-angle, -speed, -acceleration)
+    (ddW,) = plant.modal_accelerations(joint, [W], [dW])
+    (mirrored,) = plant.modal_accelerations(mirror, [-W], [-dW])
+    assert float(mirrored) == -float(ddW)
+    there = plant.torque(joint, [W], [dW], [ddW])
+    back = plant.torque(mirror, [-W], [-dW], [-ddW])
+    assert float(back) == -float(there)
+
+
+@given(angle=motions, shift=motions, speed=motions, W=motions)
+def test_single_link_does_not_depend_on_the_angle(angle, shift, speed, W):
+    # Section 3.1: 'the dynamics of the flexible manipulator are not dependent on the initial angle'
+    plant = SingleLinkManipulator()
+    here = plant.modal_accelerations(JointMotion(angle, speed, 1.0), [W], [0.0])
+    there = plant.modal_accelerations(JointMotion(angle + shift, speed, 1.0), [W], [0.0])
+    assert here == there
+
+
+# -- one set of lines for symbols, matrices and numbers --
+
+
+def _flat(plant, joint, W, dW):
+    """Every output of a plant: accelerations, torque, tips."""
+    ddW = plant.modal_accelerations(joint, W, dW)
+    return [*ddW, plant.torque(joint, W, dW, ddW), *plant.tip_displacements(W)]
+
+
+def test_numbers_symbols_and_matrices_give_the_same(plant):
+    rows, columns, entries = 3, 4, 3 + 2 * plant.modes
+    values = np.random.default_rng(7).uniform(-3, 3, (entries, rows, columns))
+
+    def outputs(arguments):
+        m = plant.modes
+        return _flat(
+            plant, JointMotion(*arguments[:3]), arguments[3 : 3 + m], arguments[3 + m : 3 + 2 * m]
+        )
+
+    scalars = [ca.SX.sym(f"x{i}") for i in range(entries)]
+    of_scalars = ca.Function("scalars", scalars, [ca.vertcat(*outputs(scalars))])
+    matrices = [ca.MX.sym(f"X{i}", rows, columns) for i in range(entries)]
+    of_matrices = ca.Function("matrices", matrices, outputs(matrices))
+    by_matrix = [value.full() for value in of_matrices.call([ca.DM(v) for v in values])]
+
+    for row in range(rows):
+        for column in range(columns):
+            one = values[:, row, column].tolist()
+            by_number = np.array([float(value) for value in outputs(one)])
+            assert of_scalars(*one).full().ravel() == pytest.approx(by_number, rel=1e-13)
+            here = np.array([matrix[row, column] for matrix in by_matrix])
+            assert here == pytest.approx(by_number, rel=1e-13)
+
+
+# -- parameters --
+
+
+def test_every_parameter_has_a_unit_and_a_source(plant):
+    for entry in fields(plant):
+        assert entry.metadata["unit"], entry.name
+        assert entry.metadata["source"], entry.name
+
+
+def test_a_parameter_can_be_changed_when_the_plant_is_made():
+    soft = SingleLinkManipulator(omega=5)
+    assert soft.parameters == {**SingleLinkManipulator().parameters, "omega": 5.0}
+
+
+def test_a_parameter_cannot_be_changed_afterwards(plant):
+    with pytest.raises(FrozenInstanceError):
+        plant.phi = 1.0
+
+
+def test_plants_are_equal_by_class_and_parameters():
+    assert SingleLinkManipulator() == SingleLinkManipulator()
+    assert SingleLinkManipulator() != SingleLinkManipulator(omega=10.0)
+    assert SingleLinkManipulator() != ArmOnFlexibleLink()
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, "10", None, True, [1.0]])
+def test_a_parameter_that_is_not_a_finite_number_is_named(value):
+    with pytest.raises(ValueError, match=r"single-link: parameter omega is .*finite number") as e:
+        SingleLinkManipulator(omega=value)
+    assert "\n" not in str(e.value)
+
+
+# -- the contract --
+
+
+@dataclass(frozen=True)
+class _Probe(Plant):
+    """A plant whose three equations are given as functions."""
+
+    modes: ClassVar[int] = 1
+    omega: float = parameter(10.0, "rad/s", "a round number")
+
+    def modal_accelerations(self, joint, W, dW):
+        return [-(self.omega**2) * W[0] - joint.acceleration]
+
+    def torque(self, joint, W, dW, ddW):
+        return joint.acceleration + ddW[0]
+
+    def tip_displacements(self, W):
+        return [W[0]]
+
+
+def _broken(**changes):
+    """A class of plants with some of `_Probe`'s members replaced."""
+    return type("Broken", (_Probe,), {"name": "broken", **changes})()
+
+
+def test_the_plants_meet_their_contract(plant):
+    plant.validate()
+    assert plant.tips == plant.modes  # one tip a flexible link, in all three
+
+
+def test_a_plant_must_give_its_equations():
+    with pytest.raises(TypeError, match="abstract"):
+        type("Empty", (Plant,), {"name": "empty", "modes": 1})()
+
+
+@pytest.mark.parametrize(
+    "acceleration",
+    [
+        pytest.param(lambda p, j, W, dW: [-(W[0] ** 3)], id="cubic spring"),
+        pytest.param(lambda p, j, W, dW: [-W[0] - dW[0] * ca.fabs(dW[0])], id="quadratic damping"),
+        pytest.param(lambda p, j, W, dW: [-W[0] - W[0] * dW[0]], id="product"),
+        pytest.param(lambda p, j, W, dW: [-ca.sin(W[0]) - j.acceleration], id="sine"),
+    ],
+)
+def test_modes_that_are_not_linear_are_refused(acceleration):
+    with pytest.raises(ValueError, match=r"'broken'.*not affine in W and W'"):
+        _broken(modal_accelerations=acceleration).validate()
+
+
+def test_time_varying_modes_are_linear_enough():
+    _broken(
+        modal_accelerations=lambda p, j, W, dW: [
+            -(1 + j.speed**2) * W[0] - ca.sin(j.angle) * dW[0] - j.acceleration
+        ]
+    ).validate()
+
+
+@pytest.mark.parametrize(("modes", "given"), [(1, 2), (2, 1), (2, 3)])
+def test_the_wrong_number_of_modes_is_refused(modes, given):
+    def accelerations(p, j, W, dW):
+        return [-W[0]] * given
+
+    with pytest.raises(ValueError, match=rf"modes = {modes} but gives {given}"):
+        _broken(modes=modes, modal_accelerations=accelerations).validate()
+
+
+def test_equations_of_more_modes_than_the_plant_says_are_refused():
+    def accelerations(p, j, W, dW):
+        return [-W[0] + W[1]]
+
+    with pytest.raises(ValueError, match="broken.*mode"):
+        _broken(modal_accelerations=accelerations).validate()
+
+
+def test_a_plant_without_modes_is_refused():
+    nothing = {"modal_accelerations": lambda p, j, W, dW: [], "tip_displacements": lambda p, W: []}
+    with pytest.raises(ValueError, match="broken.*mode"):
+        _broken(modes=0, **nothing).validate()
+
+
+def test_a_plant_without_a_tip_is_refused():
+    with pytest.raises(ValueError, match="broken.*tip"):
+        _broken(tip_displacements=lambda p, W: []).validate()
+
+
+def test_a_tip_that_is_not_linear_is_refused():
+    with pytest.raises(ValueError, match="'broken'.*tip displacement is not linear"):
+        _broken(tip_displacements=lambda p, W: [W[0] ** 2]).validate()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        pytest.param(
+            {"modal_accelerations": lambda p, j, W, dW: [-W[0] - 9.81 * ca.sin(j.angle)]},
+            id="gravity",
+        ),
+        pytest.param({"modal_accelerations": lambda p, j, W, dW: [1.0 - W[0]]}, id="preload"),
+        pytest.param({"tip_displacements": lambda p, W: [W[0] + 1e-3]}, id="tip offset"),
+    ],
+)
+def test_a_structure_that_does_not_stay_at_rest_is_refused(changes):
+    with pytest.raises(ValueError, match="'broken' does not stay at rest"):
+        _broken(**changes).validate()
+
+
+# -- plants by name --
+
+
+def test_the_papers_plants_are_known_by_name():
+    assert known_plants()["single-link"] is SingleLinkManipulator
+    assert known_plants()["arm-on-flexible-link"] is ArmOnFlexibleLink
+
+
+def test_a_users_plant_is_known_from_its_definition_on():
+    assert "of-a-user" not in known_plants()
+    mine = _broken(name="of-a-user")
+    assert known_plants()["of-a-user"] is type(mine)
+
+
+def test_a_variant_without_a_name_of_its_own_does_not_take_its_parents():
+    # Else a saved plan of the parent would load as the variant.
+    type("Variant", (SingleLinkManipulator,), {})
+    assert known_plants()["single-link"] is SingleLinkManipulator
+
+
+def test_the_list_of_known_plants_is_a_copy():
+    known_plants().clear()
+    assert "single-link" in known_plants()

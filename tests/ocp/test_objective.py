@@ -1,0 +1,115 @@
+"""Energy with resolved sign changes, and the diagnostics of samples."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models import SingleLinkManipulator
+from ocp import Motion, PointToPoint
+from ocp.collocation import GAUSS_NODES
+from ocp.objective import resolved_energy
+
+numbers = st.floats(-10.0, 10.0)
+
+
+def _energy(power, h=1.0):
+    """Resolved energy of one step along which the power is a function of 0 <= x <= 1."""
+    return float(resolved_energy([ca.DM(float(power(x))) for x in GAUSS_NODES], h))
+
+
+def _integral_of_absolute(polynomial):
+    """Integral of |polynomial| over [0, 1], split at the roots that numpy finds."""
+    roots = [r.real for r in polynomial.roots() if abs(r.imag) < 1e-9 and 0 < r.real < 1]
+    primitive = polynomial.integ()
+    return np.abs(np.diff(primitive(np.array([0.0, *sorted(roots), 1.0])))).sum()
+
+
+@pytest.mark.parametrize(
+    ("power", "energy"),
+    [
+        pytest.param(lambda x: 3.0, 3.0, id="constant"),
+        pytest.param(lambda x: -3.0, 3.0, id="braking costs as much"),
+        pytest.param(lambda x: 0.0, 0.0, id="none"),
+        pytest.param(lambda x: x, 1 / 2, id="ramp"),
+        pytest.param(lambda x: 2 * x - 1, 1 / 2, id="ramp through zero"),
+        pytest.param(lambda x: x * x, 1 / 3, id="parabola"),
+        pytest.param(lambda x: (2 * x - 1) ** 2, 1 / 3, id="double zero"),
+        # x^2 - 1/4: 1/12 below zero up to x = 1/2, 1/6 above.
+        pytest.param(lambda x: x * x - 1 / 4, 1 / 4, id="one zero"),
+        # (x - 1/4)(x - 3/4): 1/48 + 1/32 * 2/3 * ... = (7/192 - 1/48) + 1/48 by hand: 5/96 and 1/48.
+        pytest.param(lambda x: (x - 1 / 4) * (x - 3 / 4), 1 / 16, id="two zeros"),
+    ],
+)
+def test_energy_of_a_quadratic_power(power, energy):
+    assert _energy(power) == pytest.approx(energy, abs=1e-14)
+    assert _energy(power, h=0.02) == pytest.approx(0.02 * energy, abs=1e-15)
+
+
+@given(c0=numbers, c1=numbers, c2=numbers)
+def test_energy_of_any_quadratic_power(c0, c1, c2):
+    quadratic = np.polynomial.Polynomial([c0, c1, c2])
+    expected = _integral_of_absolute(quadratic.trim(1e-12))
+    assert _energy(quadratic) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+@given(c0=numbers, c1=numbers, c2=numbers)
+def test_energy_is_never_less_than_the_net_work(c0, c1, c2):
+    quadratic = np.polynomial.Polynomial([c0, c1, c2])
+    net = abs(quadratic.integ()(1.0))
+    assert _energy(quadratic) >= net - 1e-12 * (1 + net)
+
+
+def test_energy_adds_up_over_the_steps_of_each_candidate():
+    powers = np.random.default_rng(4).normal(size=(3, 5, 7))  # nodes, candidates, steps
+    together = resolved_energy([ca.DM(p) for p in powers], 0.1).full()
+    assert together.shape == (5, 1)
+    for row in range(5):
+        steps = [resolved_energy([ca.DM(p[row, k]) for p in powers], 0.1) for k in range(7)]
+        assert together[row, 0] == pytest.approx(sum(float(step) for step in steps), rel=1e-12)
+
+
+# -- diagnostics --
+
+
+def _motion(joint, **changes):
+    task = PointToPoint(SingleLinkManipulator(), changes.pop("target", 1.0), 0.8)
+    samples = len(joint)
+    defaults = {"tips": np.zeros((samples, 1)), "torque": np.zeros(samples)}
+    figures = {"residual": 0.01, "energy": 0.2, "net_work": 0.1}
+    return Motion.from_samples(task, np.array(joint, dtype=float), **{**defaults, **figures}, **{})
+
+
+def test_peaks_are_of_absolute_values():
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
+    motion = Motion.from_samples(
+        task,
+        joint=np.array([[0.0, 1.0, -7.0], [0.5, -3.0, 5.0]]),
+        tips=np.array([[0.01, -0.04], [0.02, 0.03]]),
+        torque=np.array([0.3, -0.6]),
+        residual=0.005,
+        energy=0.2,
+        net_work=0.1,
+    )
+    peaks = {name: motion.peak(name) for name in ("speed", "acceleration", "torque", "deflection")}
+    assert peaks == {"speed": 3.0, "acceleration": 7.0, "torque": 0.6, "deflection": 0.04}
+    assert (motion.peak("residual"), motion.energy, motion.net_work) == (0.005, 0.2, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("target", "angles", "overshoot"),
+    [
+        (1.0, [0.0, 0.5, 1.0], 0.0),
+        (1.0, [0.0, 1.25, 1.0], 0.25),
+        (1.0, [0.0, -0.3, 1.0], 0.0),  # backing off first is not an overshoot
+        (-1.0, [0.0, -0.5, -1.0], 0.0),
+        (-1.0, [0.0, -1.25, -1.0], 0.25),
+    ],
+)
+def test_overshoot_is_how_far_the_joint_passes_the_target(target, angles, overshoot):
+    motion = _motion([[angle, 0.0, 0.0] for angle in angles], target=target)
+    assert motion.overshoot == pytest.approx(overshoot, abs=1e-15)
+    assert math.copysign(1.0, motion.overshoot) == 1.0

@@ -1,0 +1,115 @@
+"""The tip's motion after arrival, against the free decay of a damped oscillator."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import PointToPoint, residual_matrix
+from ocp.residual import RADIANS_A_SAMPLE, fastest_mode
+
+
+def _decay(W, dW, omega, zeta, t):
+    """Free decay of W'' + 2 zeta omega W' + omega^2 W = 0 in closed form."""
+    damped = omega * math.sqrt(1 - zeta**2)
+    sine = (dW + zeta * omega * W) / damped
+    return np.exp(-zeta * omega * t) * (W * np.cos(damped * t) + sine * np.sin(damped * t))
+
+
+def _times(task, rows):
+    return np.linspace(0.0, task.residual_window, rows)
+
+
+@given(W=st.floats(-0.1, 0.1), dW=st.floats(-1.0, 1.0))
+def test_the_single_links_tip_decays_freely(W, dW):
+    # Eq (9) with the joint at rest: zeta = 9.636e-3, omega = 10.43 of eq (10); w = 2.28 W.
+    task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+    matrix = residual_matrix(task)
+    expected = 2.28 * _decay(W, dW, 10.43, 9.636e-3, _times(task, len(matrix)))
+    assert matrix @ [W, dW] == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize("target", [math.pi / 2, math.pi / 4, 0.3, -2.0])
+def test_the_arms_tip_decays_freely_with_the_mass_of_its_target(target):
+    # Eq (13) with the joint at rest: (1 + alpha1 cos theta_E) W'' + 2 zeta omega W' + omega^2 W = 0.
+    task = PointToPoint(ArmOnFlexibleLink(), target, 0.8)
+    mass = 1 - 1.055e-1 * math.cos(target)
+    omega, zeta = 7.320 / math.sqrt(mass), 1.500e-3 / math.sqrt(mass)
+    matrix = residual_matrix(task)
+    expected = 0.508 * _decay(0.01, -0.2, omega, zeta, _times(task, len(matrix)))
+    assert matrix @ [0.01, -0.2] == pytest.approx(expected, abs=1e-12)
+
+
+def test_two_tips_decay_each_at_its_own_frequency(two_links):
+    task = PointToPoint(two_links, math.pi / 2, 0.9)
+    matrix = residual_matrix(task)
+    assert matrix.shape[1] == 4
+    tips = (matrix @ [0.02, -0.01, 0.3, 0.1]).reshape(-1, 2)
+    t = _times(task, len(tips))
+    # physics.md: omega_i, zeta_i; tips are 2.7244 W_i.
+    first = 2.7244 * _decay(0.02, 0.3, 12.68 * 0.993, 15.49e-3 * 1.214, t)
+    second = 2.7244 * _decay(-0.01, 0.1, 10.71 * 0.993, 14.27e-3 * 1.071, t)
+    assert tips == pytest.approx(np.column_stack([first, second]), abs=1e-12)
+
+
+def test_an_arm_at_rest_has_no_residual(two_links):
+    matrix = residual_matrix(PointToPoint(two_links, 1.0, 1.0))
+    assert np.abs(matrix @ np.zeros(4)).max() == 0.0
+
+
+def test_the_largest_entry_is_the_amplitude():
+    # Undamped: |w| peaks at phi sqrt(W^2 + (W'/omega)^2), at a phase between two samples that is
+    # at most half of RADIANS_A_SAMPLE away.
+    plant = SingleLinkManipulator(zeta=0.0)
+    matrix = residual_matrix(PointToPoint(plant, 1.0, 1.0))
+    for phase in np.linspace(0.0, 2 * np.pi, 50):
+        state = [0.01 * math.cos(phase), -0.1043 * math.sin(phase)]
+        peak = np.abs(matrix @ state).max()
+        assert peak <= 0.0228 * (1 + 1e-9)
+        assert peak >= 0.0228 * math.cos(RADIANS_A_SAMPLE / 2) * (1 - 1e-9)
+
+
+@pytest.mark.parametrize("window", [0.01, 0.5, 1.0, 3.0])
+def test_the_last_sample_is_at_the_end_of_the_window(window):
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0, residual_window=window)
+    last = residual_matrix(task)[-1] @ [0.01, 0.1]
+    assert last == pytest.approx(2.28 * _decay(0.01, 0.1, 10.43, 9.636e-3, window), abs=1e-12)
+
+
+def test_a_longer_window_never_shows_less():
+    plant, state = ArmOnFlexibleLink(), [0.0, -0.1]
+    peaks = [
+        np.abs(residual_matrix(PointToPoint(plant, 1.0, 1.0, residual_window=w)) @ state).max()
+        for w in (0.05, 0.1, 0.2, 0.4, 0.8)
+    ]
+    assert peaks == sorted(peaks)
+    assert peaks[0] < peaks[-1] / 2  # a quarter period is 0.21 s: the first windows end before it
+
+
+def test_the_matrix_cannot_be_written_to():
+    # It is shared by everyone who asks for the same task.
+    with pytest.raises(ValueError, match="read-only"):
+        residual_matrix(PointToPoint(SingleLinkManipulator(), 1.0, 1.0))[0, 0] = 1.0
+
+
+# -- the fastest mode --
+
+
+@pytest.mark.parametrize("start", [0.0, -1.0])
+def test_the_single_links_fastest_mode_is_omega(start):
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8, start=start)
+    assert fastest_mode(task) == pytest.approx(10.43)
+
+
+@pytest.mark.parametrize(("start", "target"), [(0.0, math.pi / 2), (math.pi / 2, 0.0)])
+def test_the_arms_fastest_mode_is_at_the_angle_of_least_mass(start, target):
+    # omega/sqrt(1 + alpha1 cos theta) is largest at theta = 0.
+    task = PointToPoint(ArmOnFlexibleLink(), target, 0.8, start=start)
+    assert fastest_mode(task) == pytest.approx(7.320 / math.sqrt(1 - 1.055e-1))
+
+
+def test_the_fastest_of_two_modes_counts(two_links):
+    assert fastest_mode(PointToPoint(two_links, 1.0, 1.0)) == pytest.approx(12.68 * 0.993)
