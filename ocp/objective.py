@@ -31,7 +31,7 @@ def resolved_energy(power: Sequence[Expression], h: Expression) -> Expression:
     power : sequence of Expression
         Power at the Gauss nodes of every step [W]: three entries of shape (candidates, steps).
     h : Expression
-        Length of a step [s].
+        Length of every step [s], of the shape of an entry of `power`.
 
     Returns
     -------
@@ -47,7 +47,7 @@ def resolved_energy(power: Sequence[Expression], h: Expression) -> Expression:
     breaks = [ca.fmin(*zeros), ca.fmax(*zeros)]
     work = [x * (c0 + x * (c1 / 2 + x * (c2 / 3))) for x in breaks]
     pieces = ca.fabs(work[0]) + ca.fabs(work[1] - work[0]) + ca.fabs(c0 + c1 / 2 + c2 / 3 - work[1])
-    return h * ca.sum2(pieces)
+    return ca.sum2(h * pieces)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import Plant
-from ocp.collocation import GAUSS_WEIGHTS
 from ocp.profile import JointProfile
 from ocp.residual import residual_matrix
 from ocp.status import SolveStatus
@@ -137,7 +136,7 @@ class TaskProgram:
         )
         lower, upper = self._bounds(limits, bound)
         x, return_status = self.program.solve(self._start(guess), lower, upper, parameters)
-        mean_power = np.tile(GAUSS_WEIGHTS, layout.steps) @ x[layout.first_slack :] / layout.steps
+        mean_power = self.program.node_weights @ x[layout.first_slack :]
         peaks = x[layout.coefficients : layout.first_state]
         return Solution(
             coefficients=x[: layout.coefficients],

@@ -33,13 +33,21 @@ def _fastest(plant: Plant, angle: float) -> float:
     return float(np.abs(np.linalg.eigvals(state_matrix)).max())
 
 
-def residual_matrix(task: PointToPoint) -> NDArray[np.float64]:
+def residual_samples(task: PointToPoint) -> int:
+    """Times in the residual window that resolve the plant's fastest mode at the target."""
+    fastest = _fastest(task.plant, task.target)
+    return math.ceil(task.residual_window * fastest / RADIANS_A_SAMPLE) + 1
+
+
+def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[np.float64]:
     """Matrix that turns the state at arrival into the tip's motion afterwards.
 
     Parameters
     ----------
     task : PointToPoint
         The move; its target and residual window count.
+    samples : int, optional
+        Number of times in the window; `residual_samples` of the task by default.
 
     Returns
     -------
@@ -47,13 +55,15 @@ def residual_matrix(task: PointToPoint) -> NDArray[np.float64]:
         L, with tip displacements [m] = L @ [W, W'] at times over the window. F1 of eq (11) is
         the largest absolute entry of the product.
     """
-    return _residual_matrix(task.plant, task.target, task.residual_window)
+    samples = samples or residual_samples(task)
+    return _residual_matrix(task.plant, task.target, task.residual_window, samples)
 
 
 @lru_cache(maxsize=256)
-def _residual_matrix(plant: Plant, target: float, window: float) -> NDArray[np.float64]:
+def _residual_matrix(
+    plant: Plant, target: float, window: float, samples: int
+) -> NDArray[np.float64]:
     modes = plant.modes
-    samples = math.ceil(window * _fastest(plant, target) / RADIANS_A_SAMPLE) + 1
     one = step(plant, [JointMotion(target, 0.0, 0.0)] * NODES, window / (samples - 1))
     transition = _numbers(one.transition()[1]).T
     tip_of_state = np.zeros((plant.tips, 2 * modes))

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from models import Expression, JointMotion, Plant
-from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NodeState, Step, step
+from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NodeState, Step, mesh, step
 from ocp.objective import Motion, resolved_energy
 from ocp.profile import JointProfile
 from ocp.residual import fastest_mode, residual_matrix
 from ocp.task import PointToPoint
 
-LEAST_STEPS = 240
+LEAST_STEPS = 140
 """Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
 
 
@@ -37,7 +37,7 @@ class SymbolicRollout:
     arrival : Expression
         W (m) and then W' (m/s) at arrival, one row a candidate.
     h : Expression
-        Length of a step [s].
+        Length of every step [s].
     """
 
     joints: list[JointMotion]
@@ -67,7 +67,7 @@ def symbolic_rollout(
     steps: int,
     candidates: int = 1,
 ) -> SymbolicRollout:
-    """Simulate the modes from rest along the profile, with a fixed number of equal steps.
+    """Simulate the modes from rest along the profile, with a fixed number of steps.
 
     Parameters
     ----------
@@ -90,10 +90,10 @@ def symbolic_rollout(
         Every joint, mode and torque at the Gauss nodes, and the state at arrival.
     """
     start, target, duration = move
-    h = duration / steps
-    first = ca.repmat(ca.DM(np.arange(steps)).T, candidates, 1)
+    begin, length = mesh(ca.repmat(ca.DM(np.arange(steps)).T, candidates, 1), steps)
+    h = duration * length
     joints = [
-        profile.motion(coefficients, (first + node) / steps, start, target, duration)
+        profile.motion(coefficients, begin + node * length, start, target, duration)
         for node in GAUSS_NODES
     ]
     steps_at_once = step(plant, joints, h)
@@ -148,8 +148,8 @@ def _compiled(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
         return ca.vec(ca.vertcat(*at_nodes))
 
     tips = [plant.tip_displacements(state.W) for state in rollout.states]
-    net_work = rollout.h * ca.sum2(
-        sum(weight * p for weight, p in zip(GAUSS_WEIGHTS, rollout.power, strict=True))
+    net_work = ca.sum2(
+        rollout.h * sum(weight * p for weight, p in zip(GAUSS_WEIGHTS, rollout.power, strict=True))
     )
     outputs = [
         ca.horzcat(*(in_time([joint[i] for joint in rollout.joints]) for i in range(3))),

@@ -19,7 +19,7 @@ from ocp.rollout import default_steps
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 
-LEAST_STEPS = 100
+LEAST_STEPS = 80
 MOST_STEPS = 3200
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""

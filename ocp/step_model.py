@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from models import Plant
-from ocp.collocation import GAUSS_NODES, NODES, step
+from ocp.collocation import GAUSS_NODES, NODES, mesh, step
 from ocp.profile import JointProfile
 
 
@@ -80,13 +80,14 @@ class StepModel:
         start, target, duration = ca.vertsplit(move)
         physical = ca.vertsplit(state * scale[: self.size])
         W, dW = physical[: plant.modes], physical[plant.modes :]
+        begin, length = mesh(index, steps)
         joints = [
             profile.motion(
-                ca.vertsplit(coefficients), (index + node) / steps, start, target, duration
+                ca.vertsplit(coefficients), begin + node * length, start, target, duration
             )
             for node in GAUSS_NODES
         ]
-        one = step(plant, joints, duration / steps)
+        one = step(plant, joints, duration * length)
         ddW = one.accelerations(W, dW)
         nodes = one.nodes(W, dW, ddW)
         W_after, dW_after = one.end(W, dW, ddW)

@@ -21,7 +21,7 @@ import casadi as ca
 import numpy as np
 
 from models import Plant
-from ocp.collocation import GAUSS_WEIGHTS, NODES
+from ocp.collocation import GAUSS_WEIGHTS, NODES, mesh
 from ocp.profile import JointProfile
 from ocp.step_model import StepModel
 
@@ -104,8 +104,9 @@ class NonlinearProgram:
         arguments = (states[:, :-1], ca.MX(ca.DM(np.arange(steps)).T), a, move, scale)
 
         outputs = _mapped(model.value, steps)(*arguments)
-        node_weights = ca.repmat(ca.DM(GAUSS_WEIGHTS), steps, 1) / steps
-        energy = ca.dot(node_weights, slack)
+        lengths = mesh(ca.DM(np.arange(steps)), steps)[1].full()
+        self.node_weights = np.outer(lengths, GAUSS_WEIGHTS).ravel()
+        energy = ca.dot(self.node_weights, slack)
         objective = weights[0] * energy + (ca.dot(weights[1:], peak) if peaks else 0)
         constraints = self._constraints(outputs, states, slack, peak, residual)
         self.lower, self.upper = self._constraint_bounds(constraints.numel())

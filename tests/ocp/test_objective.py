@@ -40,7 +40,7 @@ def _integral_of_absolute(polynomial):
         pytest.param(lambda x: (2 * x - 1) ** 2, 1 / 3, id="double zero"),
         # x^2 - 1/4: 1/12 below zero up to x = 1/2, 1/6 above.
         pytest.param(lambda x: x * x - 1 / 4, 1 / 4, id="one zero"),
-        # (x - 1/4)(x - 3/4): 1/48 + 1/32 * 2/3 * ... = (7/192 - 1/48) + 1/48 by hand: 5/96 and 1/48.
+        # (x - 1/4)(x - 3/4): 1/48, -1/48, 1/48 between its zeros.
         pytest.param(lambda x: (x - 1 / 4) * (x - 3 / 4), 1 / 16, id="two zeros"),
     ],
 )
@@ -75,14 +75,6 @@ def test_energy_adds_up_over_the_steps_of_each_candidate():
 # -- diagnostics --
 
 
-def _motion(joint, **changes):
-    task = PointToPoint(SingleLinkManipulator(), changes.pop("target", 1.0), 0.8)
-    samples = len(joint)
-    defaults = {"tips": np.zeros((samples, 1)), "torque": np.zeros(samples)}
-    figures = {"residual": 0.01, "energy": 0.2, "net_work": 0.1}
-    return Motion.from_samples(task, np.array(joint, dtype=float), **{**defaults, **figures}, **{})
-
-
 def test_peaks_are_of_absolute_values():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
     motion = Motion.from_samples(
@@ -110,6 +102,14 @@ def test_peaks_are_of_absolute_values():
     ],
 )
 def test_overshoot_is_how_far_the_joint_passes_the_target(target, angles, overshoot):
-    motion = _motion([[angle, 0.0, 0.0] for angle in angles], target=target)
+    motion = Motion.from_samples(
+        PointToPoint(SingleLinkManipulator(), target, 0.8),
+        joint=np.array([[angle, 0.0, 0.0] for angle in angles]),
+        tips=np.zeros((len(angles), 1)),
+        torque=np.zeros(len(angles)),
+        residual=0.0,
+        energy=0.0,
+        net_work=0.0,
+    )
     assert motion.overshoot == pytest.approx(overshoot, abs=1e-15)
-    assert math.copysign(1.0, motion.overshoot) == 1.0
+    assert math.copysign(1.0, motion.overshoot) == 1.0  # else a table prints -0

@@ -1,0 +1,87 @@
+"""Tables read the same on screen, in Markdown and in CSV."""
+
+import csv
+import io
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.console import Console
+
+from studies.tables import Column, Table
+
+TABLE = Table(
+    "Two moves",
+    [Column("move"), Column("terms N"), Column("F2 [J]"), Column("time [s]", "{:.2f}".format)],
+    [["0 to pi/6, 0.8 s", 2, 0.062973456789, 0.5], ["a|b", 6, None, 1.0]],
+)
+
+
+def on_screen(table, width=80):
+    console = Console(file=io.StringIO(), width=width)
+    console.print(table.for_screen())
+    return console.file.getvalue()
+
+
+def test_markdown_stands_upright_with_the_moves_beside_each_other():
+    assert TABLE.markdown() == (
+        "**Two moves**\n"
+        "\n"
+        "| move | 0 to pi/6, 0.8 s | a/b |\n"  # a bar would end the cell
+        "| --- | ---: | ---: |\n"
+        "| terms N | 2 | 6 |\n"
+        "| F2 [J] | 0.06297 | - |\n"
+        "| time [s] | 0.50 | 1.00 |\n"
+    )
+
+
+def test_screen_shows_the_same_cells_as_markdown():
+    lines = on_screen(TABLE).splitlines()
+    assert lines[0].rstrip() == "Two moves"
+    shown = [line.split() for line in lines if line.startswith("  terms N")]
+    assert shown == [["terms", "N", "2", "6"]]
+    energies = [line.split() for line in lines if "F2" in line]
+    assert energies == [["F2", "[J]", "0.06297", "-"]]
+
+
+def test_screen_fits_a_narrow_terminal_without_cutting_a_figure():
+    text = on_screen(TABLE, width=50)
+    assert max(map(len, text.splitlines())) <= 50
+    assert "…" not in text
+    assert "0.06297" in text
+
+
+def test_csv_has_a_row_a_line_and_every_digit():
+    rows = list(csv.reader(io.StringIO(TABLE.csv())))
+    assert rows == [
+        ["move", "terms N", "F2 [J]", "time [s]"],
+        ["0 to pi/6, 0.8 s", "2", "0.062973456789", "0.5"],
+        ["a|b", "6", "", "1.0"],
+    ]
+
+
+@given(st.lists(st.floats(allow_nan=False), min_size=1, max_size=5))
+def test_csv_numbers_come_back_exactly(numbers):
+    table = Table("t", [Column("x")] * len(numbers), [numbers])
+    _, row = csv.reader(io.StringIO(table.csv()))
+    assert [float(cell) for cell in row] == numbers
+
+
+@pytest.mark.parametrize(
+    ("cell", "text"),
+    [(None, "-"), (3, "3"), ("N = 6", "N = 6"), (math.pi, "3.142"), (1e-9, "1e-09"), (0.0, "0")],
+)
+def test_cells_for_people(cell, text):
+    assert Column("x").text(cell) == text
+
+
+def test_a_column_may_write_its_numbers_its_own_way_and_leaves_counts_alone():
+    column = Column("time [s]", "{:.1f}".format)
+    assert (column.text(2.0), column.text(2)) == ("2.0", "2")
+
+
+def test_a_table_without_rows_still_names_its_columns():
+    empty = Table("none", TABLE.columns, [])
+    assert empty.csv() == "move,terms N,F2 [J],time [s]\n"
+    assert "| terms N |" in empty.markdown()
