@@ -1,1 +1,24 @@
-"""The derivative-free answer."""
+"""The derivative-free answer: the paper's VEPSO and NSGA-II, and any other of pymoo's."""
+
+from metaheuristics.nsga2 import PaperNSGA2
+from metaheuristics.population import PopulationObjective, PopulationValues
+from metaheuristics.presets import PAPER_BOX, PRESETS, Preset
+from metaheuristics.search import MoveProblem, SearchProgress, search
+from metaheuristics.vepso import CONSTRICTION, INERTIA_2002, PAPER_GROUP, VEPSO, VelocityRule
+
+__all__ = [
+    "CONSTRICTION",
+    "INERTIA_2002",
+    "PAPER_BOX",
+    "PAPER_GROUP",
+    "PRESETS",
+    "VEPSO",
+    "MoveProblem",
+    "PaperNSGA2",
+    "PopulationObjective",
+    "PopulationValues",
+    "Preset",
+    "SearchProgress",
+    "VelocityRule",
+    "search",
+]

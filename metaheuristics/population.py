@@ -22,7 +22,7 @@ from ocp.residual import residual_samples
 from ocp.rollout import SymbolicRollout, default_steps
 
 LEAST_STEPS = 40
-"""Steps that keep nine in ten random candidates of the paper's boxes within 1e-4 of their energy."""
+"""Steps that keep nine in ten random candidates of the paper's boxes within 1e-4 in energy."""
 BLOCK = 200
 """Candidates a call: their intermediate values fit the processor's cache."""
 
@@ -143,9 +143,7 @@ def _compiled(
     move, limits = ca.MX.sym("move", 3), ca.MX.sym("limits", len(limited))
     tip_of_state = ca.MX.sym("L", 2 * plant.modes, samples * plant.tips)
     columns = [ca.repmat(column, 1, steps) for column in ca.horzsplit(population, 1)]
-    rollout = symbolic_rollout(
-        plant, profile, columns, ca.vertsplit(move), steps, candidates=BLOCK
-    )
+    rollout = symbolic_rollout(plant, profile, columns, ca.vertsplit(move), steps, candidates=BLOCK)
     residual = _row_peak([rollout.arrival @ tip_of_state])
     peaks = _peaks(plant, rollout)
     violations = [_row_peak(peaks[name]) / limits[i] - 1 for i, name in enumerate(limited)]

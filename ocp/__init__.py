@@ -6,6 +6,7 @@ from ocp.shadowing import refuse_shadow
 refuse_shadow("models")
 
 from ocp.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
+from ocp.front import Front, FrontPoint, Generation, non_dominated
 from ocp.objective import Motion
 from ocp.plan import Plan, SolveSettings, Verification, evaluate_coefficients
 from ocp.profile import MAX_TERMS, CycloidPolynomial, JointPath, JointProfile
@@ -20,6 +21,9 @@ __all__ = [
     "MAX_TERMS",
     "CycloidPolynomial",
     "FileFormatError",
+    "Front",
+    "FrontPoint",
+    "Generation",
     "InfeasibleTaskError",
     "JointPath",
     "JointProfile",
@@ -34,6 +38,7 @@ __all__ = [
     "Trajectory",
     "Verification",
     "evaluate_coefficients",
+    "non_dominated",
     "plan_move",
     "residual_matrix",
     "resimulate",

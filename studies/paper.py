@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
+from metaheuristics.presets import PAPER_BOX
 from models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
 from ocp import PointToPoint
 
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
-SEARCH_BOX: dict[str, float] = {SINGLE_LINK.name: 0.2, ARM.name: 0.5}
-"""Largest absolute coefficient in the paper's searches: eqs (12) and (17)."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,7 @@ class Condition:
     @property
     def box(self) -> float:
         """The paper's bound on the coefficients."""
-        return SEARCH_BOX[self.plant.name]
+        return PAPER_BOX[self.plant.name]
 
 
 SINGLE_LINK_SIXTH = Condition(SINGLE_LINK, 0.0, pi / 6, 0.8, "0 to pi/6, 0.8 s")

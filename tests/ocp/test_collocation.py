@@ -8,7 +8,7 @@ import pytest
 
 from models import ArmOnFlexibleLink, JointMotion, SingleLinkManipulator
 from ocp import CycloidPolynomial
-from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, modal_system, step
+from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh, modal_system, step
 
 STILL = JointMotion(0.4, 0.0, 0.0)
 
@@ -48,6 +48,36 @@ def test_nodes_and_weights_are_those_of_gauss():
 def test_the_weights_integrate_up_to_degree_five_exactly(power):
     integral = sum(w * x**power for w, x in zip(GAUSS_WEIGHTS, GAUSS_NODES, strict=True))
     assert integral == pytest.approx(1 / (power + 1), abs=1e-15)
+
+
+# -- the steps --
+
+
+@pytest.mark.parametrize("steps", [1, 2, 7, 140])
+def test_the_steps_cover_the_move_once(steps):
+    begins, lengths = (np.array([float(x) for x in xs]) for xs in zip(
+        *(mesh(k, steps) for k in range(steps)), strict=True
+    ))
+    ends = begins + lengths
+    assert begins[0] == 0.0
+    assert begins[1:] == pytest.approx(ends[:-1], abs=1e-15)
+    assert ends[-1] == pytest.approx(1.0, abs=1e-15)
+    assert lengths.min() > 0
+
+
+def test_the_steps_are_finer_at_the_ends_and_the_same_from_both():
+    lengths = np.array([float(mesh(k, 100)[1]) for k in range(100)])
+    assert lengths == pytest.approx(lengths[::-1], rel=1e-9)
+    assert np.all(np.diff(lengths[:50]) > 0)
+    # Half even, half Chebyshev: 1/2 + pi/4 times the even length in the middle, 1/2 at the ends.
+    assert lengths[50] == pytest.approx((1 / 2 + math.pi / 4) / 100, rel=1e-3)
+    assert lengths[0] == pytest.approx(1 / 2 / 100, rel=0.05)
+
+
+def test_all_steps_at_once_are_each_step():
+    together = [value.full().ravel() for value in mesh(ca.DM(range(9)), 9)]
+    for k in range(9):
+        assert [float(x) for x in mesh(k, 9)] == [value[k] for value in together]
 
 
 # -- the coefficients of the modes --

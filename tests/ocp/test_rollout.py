@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import CycloidPolynomial, PointToPoint, resimulate, rollout, symbolic_rollout
 from ocp.resimulation import sample_trajectory
-from ocp.rollout import default_steps
+from ocp.rollout import LEAST_STEPS, default_steps
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)
@@ -127,16 +127,17 @@ def test_the_error_falls_with_the_sixth_power_of_the_step():
 # -- how many steps --
 
 
-def test_default_steps():
-    # 240 at least; four a radian of the fastest mode.
-    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8)) == 240
+def test_default_steps_resolve_the_profile_and_the_fastest_mode():
+    # LEAST_STEPS at least; four a radian of the fastest mode.
+    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8)) == LEAST_STEPS
     assert default_steps(PointToPoint(SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 800
     assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 10.0)) == 418  # 4 * 104.3
+    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
 
 
 def test_a_rollout_says_how_many_steps_it_took():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
-    assert rollout(task, PLAIN, []).steps == 240
+    assert rollout(task, PLAIN, []).steps == LEAST_STEPS
     assert rollout(task, PLAIN, [], steps=50).steps == 50
 
 

@@ -20,6 +20,14 @@ def test_elsewhere_than_on_a_terminal_every_piece_is_one_plain_line():
     assert pipe.file.getvalue() == "[1/3] arm, N = 2\n[2/3] [bold]arm[/bold]\n[3/3] arm, N = 6\n"
 
 
+def test_a_line_is_not_broken_however_narrow_the_console_is():
+    pipe = Console(file=io.StringIO(), width=30)
+    name = "arm-on-flexible-link, -pi/2 to pi/4, 1.0 s, N = 6, in the box"
+    with progress(1, pipe) as begin:
+        begin(name)
+    assert pipe.file.getvalue() == f"[1/1] {name}\n"
+
+
 def test_a_line_is_out_when_its_piece_begins_not_when_it_ends():
     pipe = console()
     with progress(2, pipe) as begin:

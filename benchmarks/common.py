@@ -1,0 +1,52 @@
+"""What the benchmarks share: cold starts, timing, tables that fit a screen."""
+
+from __future__ import annotations
+
+import gc
+import os
+import platform
+import sys
+import time
+from collections.abc import Callable
+from importlib import metadata
+from typing import TypeVar
+
+import casadi as ca
+from rich.console import Console
+
+Result = TypeVar("Result")
+
+
+def load_plugins() -> None:
+    """Load casadi's shared libraries, which would otherwise count against whoever is first."""
+    ca.load_nlpsol("ipopt")
+    ca.load_integrator("cvodes")
+
+
+def forget_compiled() -> None:
+    """Empty every cache of ocp, so that the next plan builds all of its functions anew."""
+    for name, module in list(sys.modules.items()):
+        if name.startswith("ocp."):
+            for value in vars(module).values():
+                if hasattr(value, "cache_clear"):
+                    value.cache_clear()
+
+
+def timed(action: Callable[[], Result]) -> tuple[float, Result]:
+    """Wall time [s] of an action, and what it returned; garbage is collected beforehand."""
+    gc.collect()
+    began = time.perf_counter()
+    result = action()
+    return time.perf_counter() - began, result
+
+
+def machine(*distributions: str) -> str:
+    """A line about the machine and the versions that the figures belong to."""
+    versions = [f"{name} {metadata.version(name)}" for name in ("casadi", *distributions)]
+    python = f"Python {platform.python_version()}"
+    return f"{platform.machine()}, {os.cpu_count()} cores, {python}, {', '.join(versions)}"
+
+
+def console() -> Console:
+    """A console whose tables keep their width in a file or a pipe."""
+    return Console(width=None if sys.stdout.isatty() else 110, highlight=False)

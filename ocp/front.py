@@ -1,0 +1,237 @@
+"""Front: the trade-off between residual and energy, by whatever method it was found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.documents import (
+    Document,
+    profile_from_document,
+    profile_to_document,
+    read_document,
+    reading,
+    task_from_document,
+    task_to_document,
+    versions,
+    write_document,
+)
+from ocp.profile import JointProfile
+from ocp.task import PointToPoint
+
+FORMAT, VERSION = "quietarm-front", 1
+Setting = str | int | float | None
+
+
+@dataclass(frozen=True)
+class FrontPoint:
+    """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J]."""
+
+    coefficients: tuple[float, ...]
+    residual: float
+    energy: float
+
+
+@dataclass(frozen=True)
+class Generation:
+    """The state of a search after one generation.
+
+    Attributes
+    ----------
+    evaluations : int
+        Candidates evaluated so far.
+    hypervolume : float
+        Share of the reference box (`Front.reference`) that the points found dominate.
+    """
+
+    evaluations: int
+    hypervolume: float
+
+
+@dataclass(frozen=True)
+class Front:
+    """Points of which none is better than another in both residual and energy.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    points : tuple of FrontPoint
+        Sorted by residual, stillest first; energies fall along the front.
+    method : str
+        How it was found.
+    settings : dict
+        Settings of the method, the bound on the coefficients among them.
+    seed : int or None
+        Seed of the random numbers.
+    reference : tuple of float
+        Residual [m] and energy [J] of the corner that hypervolumes are measured from.
+    evaluations : int
+        Candidates evaluated.
+    failed : int
+        Candidates whose objectives were not finite; they never enter a front.
+    history : tuple of Generation
+        Hypervolume by generation.
+    complete : bool
+        Whether the method ran to its end.
+    versions : dict of str to str
+        Versions of what computed it.
+    seconds : float
+        How long it took; not compared.
+    """
+
+    task: PointToPoint
+    profile: JointProfile
+    points: tuple[FrontPoint, ...]
+    method: str
+    settings: Mapping[str, Setting]
+    seed: int | None
+    reference: tuple[float, float]
+    evaluations: int
+    failed: int = 0
+    history: tuple[Generation, ...] = ()
+    complete: bool = True
+    versions: Mapping[str, str] = field(default_factory=versions)
+    seconds: float = field(default=0.0, compare=False)
+
+    @property
+    def residuals(self) -> NDArray[np.float64]:
+        """F1 of every point [m]."""
+        return np.array([point.residual for point in self.points])
+
+    @property
+    def energies(self) -> NDArray[np.float64]:
+        """F2 of every point [J]."""
+        return np.array([point.energy for point in self.points])
+
+    def stillest(self) -> FrontPoint:
+        """The point of least residual; ValueError when the front is empty."""
+        return self._nonempty()[0]
+
+    def cheapest(self, residual_limit: float | None = None) -> FrontPoint:
+        """The point of least energy.
+
+        Parameters
+        ----------
+        residual_limit : float, optional
+            Largest residual [m] that counts; any by default.
+
+        Returns
+        -------
+        FrontPoint
+            The point.
+
+        Raises
+        ------
+        ValueError
+            When no point is within the limit, with the least residual there is.
+        """
+        points = self._nonempty()
+        if residual_limit is None:
+            return points[-1]
+        still = [point for point in points if point.residual <= residual_limit]
+        if not still:
+            raise ValueError(
+                f"no point of the front has a residual of {residual_limit:g} m or less; the "
+                f"stillest has {points[0].residual:.3g} m"
+            )
+        return still[-1]
+
+    def knee(self) -> FrontPoint:
+        """The point farthest below the straight line between the ends, both objectives scaled."""
+        points = self._nonempty()
+        spans = np.array([np.ptp(self.residuals), np.ptp(self.energies)])
+        if len(points) < 3 or not np.all(spans > 0):
+            return points[0]
+        scaled = np.column_stack([self.residuals, self.energies]) / spans
+        return points[int(np.argmin(scaled.sum(axis=1)))]
+
+    def save(self, path: str | Path) -> None:
+        """Write the front as JSON; ValueError when the file cannot be written."""
+        write_document(path, FORMAT, VERSION, self.to_document())
+
+    @classmethod
+    def load(cls, path: str | Path) -> Front:
+        """Read a front that `save` wrote; FileFormatError when the file is not one."""
+        document = read_document(path, FORMAT, VERSION)
+        with reading(path, "front"):
+            return cls.from_document(document)
+
+    def to_document(self) -> Document:
+        """The front in JSON's types, SI units and radians."""
+        return {
+            **task_to_document(self.task),
+            "profile": profile_to_document(self.profile),
+            "method": self.method,
+            "settings": dict(self.settings),
+            "seed": self.seed,
+            "points": [asdict(point) for point in self.points],
+            "reference": list(self.reference),
+            "evaluations": self.evaluations,
+            "failed": self.failed,
+            "history": [asdict(generation) for generation in self.history],
+            "complete": self.complete,
+            "versions": dict(self.versions),
+            "seconds": self.seconds,
+        }
+
+    @classmethod
+    def from_document(cls, document: Document) -> Front:
+        """The front of a document; KeyError, TypeError or ValueError where it is not one."""
+        profile = profile_from_document(document["profile"])
+        points = tuple(
+            FrontPoint(
+                profile.checked(point["coefficients"]),
+                float(point["residual"]),
+                float(point["energy"]),
+            )
+            for point in document["points"]
+        )
+        residual, energy = document["reference"]
+        return cls(
+            task=task_from_document(document),
+            profile=profile,
+            points=points,
+            method=document["method"],
+            settings=document["settings"],
+            seed=document["seed"],
+            reference=(float(residual), float(energy)),
+            evaluations=document["evaluations"],
+            failed=document["failed"],
+            history=tuple(Generation(**entry) for entry in document["history"]),
+            complete=document["complete"],
+            versions=document["versions"],
+            seconds=document["seconds"],
+        )
+
+    def _nonempty(self) -> Sequence[FrontPoint]:
+        if len(self.points) == 0:
+            raise ValueError("the front has no point; search longer or widen the bound")
+        return self.points
+
+
+def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
+    """The points that no other beats in both objectives, stillest first.
+
+    Parameters
+    ----------
+    points : iterable of FrontPoint
+        Any points; those that are not finite are left out, of equal ones the first is kept.
+
+    Returns
+    -------
+    tuple of FrontPoint
+        Sorted by residual; energies fall.
+    """
+    finite = [p for p in points if np.isfinite(p.residual) and np.isfinite(p.energy)]
+    kept: list[FrontPoint] = []
+    for point in sorted(finite, key=lambda p: (p.residual, p.energy)):
+        if not kept or point.energy < kept[-1].energy:
+            kept.append(point)
+    return tuple(kept)
