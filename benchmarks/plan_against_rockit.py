@@ -87,10 +87,11 @@ class Samples:
 
     @classmethod
     def of(cls, program: TaskProgram) -> Samples:
+        """The plain cycloid's samples, as quietarm's program starts from them."""
         states, outputs = program.program.simulate(
             np.zeros(PROFILE.size), program.task.move, program.scale
         )
-        begin, length = (part.full() for part in mesh(ca.DM(np.arange(program.steps)), program.steps))
+        begin, length = (part.full() for part in mesh(_indices(program.steps), program.steps))
         power = outputs[program.program.model.groups[1].where]
         return cls(
             boundaries=np.append(begin, 1.0),
@@ -143,6 +144,7 @@ class RockitMove:
                 ocp.set_initial(unknown, along(ocp.t))
 
     def solve(self) -> rockit.ocp.OcpSolution:
+        """Transcribe where that has not been done, and run IPOPT."""
         return self.ocp.solve()
 
     def energy(self, solution: rockit.ocp.OcpSolution) -> float:
@@ -150,8 +152,12 @@ class RockitMove:
         return float(solution.value(self.ocp.objective)) * self.energy_scale
 
 
+def _indices(count: int) -> ca.DM:
+    return ca.DM(np.arange(count))
+
+
 def _boundaries(steps: int) -> list[float]:
-    return mesh(ca.DM(np.arange(steps + 1)), steps)[0].full().ravel().tolist()
+    return mesh(_indices(steps + 1), steps)[0].full().ravel().tolist()
 
 
 @dataclass(frozen=True)

@@ -69,9 +69,10 @@ class PaperNSGA2(NSGA2):
         random: Any = self.random_state
         random.bit_generator.state = state["random_state"]
         self.start_time, self.is_initialized = time.time(), True
-        self.n_iter = state["iteration"]
+        iteration: int = state["iteration"]
+        self.n_iter = iteration
         self.evaluator.n_eval = state["evaluations"]
         self._set_optimum()
         termination: Any = self.termination
         termination.update(self)
-        self.n_iter += 1
+        self.n_iter = iteration + 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import time
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 
@@ -100,9 +101,9 @@ class Provenance:
     Attributes
     ----------
     method : str
-        ``"ipopt"`` or ``"given coefficients"``.
-    settings : SolveSettings or None
-        What was asked of the solver, with the seed.
+        ``"ipopt"``, ``"given coefficients"`` or the name of a metaheuristic.
+    settings : dict
+        What was asked of the method, the seed included.
     versions : dict of str to str
         Versions of quietarm, casadi, numpy and Python.
     seconds : float
@@ -110,7 +111,7 @@ class Provenance:
     """
 
     method: str
-    settings: SolveSettings | None
+    settings: Mapping[str, str | int | float | None]
     versions: dict[str, str] = field(default_factory=versions)
     seconds: float = field(default=0.0, compare=False)
 
@@ -203,7 +204,7 @@ class Plan:
             "diagnostics": diagnostics,
             "status": self.status.value,
             "verification": asdict(self.verification),
-            "provenance": asdict(self.provenance),
+            "provenance": {**vars(self.provenance), "settings": dict(self.provenance.settings)},
         }
 
     @classmethod
@@ -215,8 +216,6 @@ class Plan:
             "energy": document["energy"],
             **document["diagnostics"],
         }
-        provenance = dict(document["provenance"])
-        settings = provenance.pop("settings")
         return cls(
             task=task_from_document(document),
             profile=profile,
@@ -224,9 +223,7 @@ class Plan:
             motion=Motion(**{entry.name: _number(figures, entry.name) for entry in fields(Motion)}),
             status=SolveStatus(document["status"]),
             verification=Verification(**document["verification"]),
-            provenance=Provenance(
-                settings=None if settings is None else SolveSettings(**settings), **provenance
-            ),
+            provenance=Provenance(**document["provenance"]),
         )
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
@@ -265,7 +262,13 @@ class Plan:
         write_whole(path, text.getvalue())
 
 
-def evaluate_coefficients(task: PointToPoint, coefficients: ArrayLike) -> Plan:
+def evaluate_coefficients(
+    task: PointToPoint,
+    coefficients: ArrayLike,
+    *,
+    method: str = "given coefficients",
+    settings: Mapping[str, str | int | float | None] | None = None,
+) -> Plan:
     """The figures of given coefficients of the cycloid of a polynomial.
 
     Parameters
@@ -274,6 +277,10 @@ def evaluate_coefficients(task: PointToPoint, coefficients: ArrayLike) -> Plan:
         The move.
     coefficients : array_like, shape (terms,)
         a_1 to a_N of eq (6); none for the plain cycloid.
+    method : str
+        Where the coefficients come from, for the plan's provenance.
+    settings : mapping, optional
+        Settings of that method.
 
     Returns
     -------
@@ -301,7 +308,7 @@ def evaluate_coefficients(task: PointToPoint, coefficients: ArrayLike) -> Plan:
         verification=Verification.between(
             fixed.steps, fixed.motion.energy, fixed.motion.residual, motion
         ),
-        provenance=Provenance("given coefficients", None, seconds=time.perf_counter() - began),
+        provenance=Provenance(method, settings or {}, seconds=time.perf_counter() - began),
     )
 
 

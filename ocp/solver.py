@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import asdict
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ocp.errors import SolverFailedError
 from ocp.feasibility import explain, least_peaks
@@ -40,6 +41,7 @@ def plan_move(
     starts: int = 4,
     seed: int = 0,
     steps: int | None = None,
+    guess: ArrayLike | None = None,
 ) -> Plan:
     """Find the motion of least energy whose residual vibration is within a limit.
 
@@ -54,12 +56,14 @@ def plan_move(
     bound : float, optional
         Largest absolute coefficient; none by default.
     starts : int
-        How many starts: the plain cycloid first, then random ones.
+        How many starts: the guess or the plain cycloid first, then random ones.
     seed : int
         Seed of the random starts.
     steps : int, optional
         Steps of the solver's discretisation, chosen from the task by default; they are doubled
         while the verification disagrees.
+    guess : array_like, shape (profile.size,), optional
+        Coefficients to start from first, such as a metaheuristic's, to be improved.
 
     Returns
     -------
@@ -87,6 +91,8 @@ def plan_move(
         with_residual=residual_limit > 0,
     )
     guesses = start_coefficients(profile.size, settings)
+    if guess is not None:
+        guesses[0] = np.array(profile.checked(guess))
     limits = {RESIDUAL: residual_limit, **task.limits}
     solutions = [program.solve(guess, limits, bound) for guess in guesses]
     solved = [solution for solution in solutions if solution.status.solved]
@@ -109,7 +115,7 @@ def plan_move(
         verification=Verification.between(
             steps_used, best.energy, best.peaks.get(RESIDUAL, 0.0), motion
         ),
-        provenance=Provenance("ipopt", settings, seconds=time.perf_counter() - began),
+        provenance=Provenance("ipopt", asdict(settings), seconds=time.perf_counter() - began),
     )
 
 

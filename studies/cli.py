@@ -20,7 +20,15 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from studies.options import COEFFICIENTS, FOLDER, LENGTH, output_options, task_options
+from studies.options import (
+    COEFFICIENTS,
+    FOLDER,
+    LENGTH,
+    OUTPUT,
+    PICTURE,
+    output_options,
+    task_options,
+)
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
@@ -57,6 +65,12 @@ def quietarm() -> None:
 )  # fmt: skip
 @click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random starts.")
+@click.option(
+    "--method", type=click.Choice(["ipopt", "nsga2", "vepso"]), default="ipopt", show_default=True,
+    help="The gradient, or the cheapest point of a metaheuristic's front within the residual "
+    "limit (1mm where none is given).",
+)  # fmt: skip
+@click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
 @output_options
 def plan(
     terms: int,
@@ -64,6 +78,8 @@ def plan(
     residual_limit: float,
     starts: int,
     seed: int,
+    method: str,
+    polish: bool,
     **rest: Any,
 ) -> None:
     r"""Find the move of least energy whose residual vibration is within a limit.
@@ -78,14 +94,15 @@ def plan(
     from studies.show import show_plan
 
     task, outputs = _split(rest)
-    found = plan_move(
-        task,
-        CycloidPolynomial(terms),
-        residual_limit=residual_limit,
-        bound=bound,
-        starts=starts,
-        seed=seed,
-    )
+    profile = CycloidPolynomial(terms)
+    if method == "ipopt":
+        found = plan_move(
+            task, profile, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed
+        )
+    else:
+        from studies.searching import plan_by_search
+
+        found = plan_by_search(task, method, profile, bound, residual_limit, seed, polish)
     show_plan(Console(), found)
     _write(found, **outputs)
 
@@ -110,6 +127,46 @@ def evaluate(coefficients: list[float], **rest: Any) -> None:
     found = evaluate_coefficients(task, coefficients)
     show_plan(Console(), found)
     _write(found, **outputs)
+
+
+@quietarm.command(short_help="Search the trade-off of residual and energy.")
+@task_options
+@click.option(
+    "--method", type=click.Choice(["nsga2", "vepso"]), required=True, help="The metaheuristic."
+)
+@click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
+@click.option("--bound", type=float, help="Largest coefficient; required.")
+@click.option(
+    "--population", type=int, help="Individuals, or particles a swarm; the paper's by default."
+)
+@click.option("--generations", type=int, help="Generations; the paper's by default.")
+@click.option("--seed", type=int, default=0, show_default=True, help="(First) seed.")
+@click.option("--runs", type=int, default=1, show_default=True, help="Independent seeds.")
+@click.option("--workers", type=int, default=1, show_default=True, help="Processes for the runs.")
+@click.option("--checkpoint", type=OUTPUT, help="Write the state here every few seconds.")
+@click.option("--resume", type=click.Path(path_type=Path), help="Go on from this checkpoint.")
+@click.option("--output", type=OUTPUT, help="Write the front here; a file a seed with --runs.")
+@click.option("--figure", type=PICTURE, help="Draw the front (.png, .pdf or .svg).")
+@click.option("--quiet", is_flag=True, help="Show no progress.")
+def front(output: Path | None, figure: Path | None, quiet: bool, **rest: Any) -> None:
+    r"""Search the trade-off of residual and energy with NSGA-II or VEPSO.
+
+    \b
+    Examples, the paper's settings:
+      quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --method nsga2 \
+          --output front.json --figure front.png
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \
+          --runs 5 --workers 2
+    """
+    from studies.searching import run_front
+
+    names = [
+        "method", "terms", "bound", "population", "generations", "seed", "runs", "workers",
+        "checkpoint", "resume",
+    ]  # fmt: skip
+    options = {name: rest.pop(name) for name in names}
+    for path in run_front(_task(rest), options, output, figure, quiet):
+        click.echo(f"wrote {path}")
 
 
 @quietarm.command(short_help="Recompute the paper.")
@@ -143,8 +200,12 @@ def reproduce(output: Path | None, quiet: bool) -> None:
 def _split(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
     """The task and the output options, from a command's shared options."""
     outputs = {name: rest.pop(name) for name in ("output", "csv_file", "sample_rate", "figure")}
+    return _task(rest), outputs
+
+
+def _task(rest: dict[str, Any]) -> PointToPoint:
     plant: Plant = rest.pop("plant")
-    return PointToPoint(plant, **rest), outputs
+    return PointToPoint(plant, **rest)
 
 
 def _write(

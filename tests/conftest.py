@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from models import Plant
+
 # Derandomised, so that a run on another day gives the same answer; `--hypothesis-profile=search`
 # looks further. No deadline: the first example of a kind compiles.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
@@ -21,3 +23,9 @@ def two_links():
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.TwoLinksOnOneHub()
+
+
+@pytest.fixture
+def _plants_of_this_test_are_forgotten(monkeypatch):
+    """Plants that a test defines are known by name during that test only."""
+    monkeypatch.setattr(Plant, "_known", dict(Plant._known))

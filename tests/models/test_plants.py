@@ -47,9 +47,7 @@ ARM = {
 }
 
 
-@pytest.fixture(autouse=True)
-def _plants_of_these_tests_stay_here(monkeypatch):
-    monkeypatch.setattr(Plant, "_known", dict(Plant._known))
+pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])

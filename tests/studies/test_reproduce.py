@@ -43,14 +43,15 @@ PRINTED = {
     (ARM_HALF, 6): (0.15465, 0.508 * 3.11e-3),
 }
 # Issue 2, item 6: what N = 6 must reach in the paper's box [J]; and physics.md, 'The published
-# optima are not optimal': what it reaches without one [J], printed to three digits.
+# optima are not optimal': what it reaches without one [J], 0.0237, 0.142, 0.121, 0.124, 0.136 and
+# 0.193 there, so that half a unit of the last digit is added.
 GRADIENT = {
-    SINGLE_LINK_SIXTH: (0.0445, 0.0237),
-    SINGLE_LINK_HALF_1_0: (0.2199, 0.142),
-    SINGLE_LINK_HALF_1_1: (0.1591, 0.121),
-    ARM_HALF: (0.1316, 0.124),
-    ARM_THREE_QUARTERS: (0.1379, 0.136),
-    ARM_WHOLE: (0.1954, 0.193),
+    SINGLE_LINK_SIXTH: (0.0445, 0.02375),
+    SINGLE_LINK_HALF_1_0: (0.2199, 0.1425),
+    SINGLE_LINK_HALF_1_1: (0.1591, 0.1215),
+    ARM_HALF: (0.1316, 0.1245),
+    ARM_THREE_QUARTERS: (0.1379, 0.1365),
+    ARM_WHOLE: (0.1954, 0.1935),
 }
 
 
@@ -134,9 +135,8 @@ def test_the_gradient_answers_are_at_rest_on_arrival_and_verified(reproduction):
     plans += reproduction.more_terms.values()
     for plan in plans:
         assert plan.status.solved
-        assert plan.residual < 1e-8  # README, 'How exact'; CVODES
+        assert plan.residual < 1e-8  # README, 'How exact'; issue 2, item 6, asks for 1e-7 m
         assert abs(plan.verification.energy_difference) < 1e-3 * plan.energy
-    # The issue asks for 1e-7 m.
 
 
 def test_the_box_is_kept(reproduction):
@@ -152,7 +152,7 @@ def test_the_gradient_reaches_the_energies_asked_for(reproduction, condition):
     in_box, free = GRADIENT[condition]
     result = found(reproduction, condition, 6)
     assert result.in_box.energy <= in_box
-    assert result.free.energy <= free + 0.5e-3 * 10 ** (free < 0.1 and -1)
+    assert result.free.energy <= free
     assert result.free.energy < result.in_box.energy
 
 
