@@ -171,8 +171,15 @@ def front(output: Path | None, figure: Path | None, quiet: bool, **rest: Any) ->
 
 @quietarm.command(short_help="Recompute the paper.")
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
+@click.option(
+    "--seeds",
+    type=int,
+    default=1,
+    show_default=True,
+    help="Seeds of VEPSO and NSGA-II; 5 give medians and quartiles.",
+)
 @click.option("--quiet", is_flag=True, help="Show no progress.")
-def reproduce(output: Path | None, quiet: bool) -> None:
+def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
     r"""Recompute the paper's Tables 2, 3, 5 and 6 beside the printed figures, and its claims.
 
     \b
@@ -181,14 +188,14 @@ def reproduce(output: Path | None, quiet: bool) -> None:
     """
     from studies.claims import claims
     from studies.progress import progress
+    from studies.reproduce import amount_of_work
     from studies.reproduce import reproduce as recompute
-    from studies.reproduce import solve_keys
     from studies.reproduce_report import show, write
 
     if output is not None:
         output.mkdir(exist_ok=True)
-    with progress(len(solve_keys()), Console(stderr=True), quiet=quiet) as begin:
-        result = recompute(begin)
+    with progress(amount_of_work(seeds), Console(stderr=True), quiet=quiet) as begin:
+        result = recompute(begin, seeds)
     verdicts = claims(result)
     console = Console()
     show(console, result, verdicts)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ocp import CycloidPolynomial, Plan, evaluate_coefficients, plan_move
+from metaheuristics import search
+from metaheuristics.ensemble import Spread, energies_at
+from ocp import CycloidPolynomial, Front, Plan, evaluate_coefficients, plan_move
 from studies.paper import (
     ARM_HALF,
     COEFFICIENTS,
@@ -18,6 +20,8 @@ from studies.paper import (
 
 BEYOND_SIX = (8, 10)
 """Numbers of terms that check the paper's 'no gain above six'."""
+PAPER_METHOD = {SINGLE_LINK_SIXTH.plant.name: "vepso", ARM_HALF.plant.name: "nsga2"}
+"""The paper's search for each plant: sections 3.1 and 3.2."""
 STUDIED = (SINGLE_LINK_SIXTH, ARM_HALF)
 """The conditions whose number of terms the paper varies: its Figs 2 and 5."""
 
@@ -36,6 +40,12 @@ class RowResult:
         The same with a misprint mended, where there is one.
     in_box, free : Plan
         The gradient answer at rest on arrival, in the paper's box and without one.
+    fronts : tuple of Front
+        The paper's own search with its settings, a front a seed: VEPSO for the single link,
+        NSGA-II for the arm.
+    residual_level : float
+        Residual [m] of the paper's coefficients, or where it prints none, of its N = 6 row for the
+        same plant (with the misprint mended).
     """
 
     row: Row
@@ -43,6 +53,18 @@ class RowResult:
     mended: Plan | None
     in_box: Plan
     free: Plan
+    fronts: tuple[Front, ...]
+    residual_level: float
+
+    @property
+    def searched(self) -> Spread:
+        """Quartiles over the seeds of the least energy [J] at the residual level."""
+        return energies_at(self.fronts, self.residual_level)
+
+    @property
+    def search_seconds(self) -> float:
+        """Median time of a search [s]."""
+        return Spread.of([front.seconds for front in self.fronts]).median
 
 
 @dataclass(frozen=True)
@@ -74,51 +96,111 @@ class Reproduction:
 
 def solve_keys() -> list[tuple[Condition, int, bool]]:
     """What the gradient has to solve, each once: (condition, terms, whether in the box)."""
-    cases = [(row.condition, row.terms) for row in ROWS]
-    cases += [(condition, terms) for condition in STUDIED for terms in BEYOND_SIX]
-    return [(*case, boxed) for case in dict.fromkeys(cases) for boxed in (True, False)]
+    cases = [*search_keys(), *((c, terms) for c in STUDIED for terms in BEYOND_SIX)]
+    return [(*case, boxed) for case in cases for boxed in (True, False)]
 
 
-def reproduce(begin: Callable[[str], None] = lambda name: None) -> Reproduction:
-    """Recompute the paper's tables with the gradient answer beside them.
+def search_keys() -> list[tuple[Condition, int]]:
+    """What the metaheuristics have to search, each once: (condition, terms)."""
+    return list(dict.fromkeys((row.condition, row.terms) for row in ROWS))
+
+
+def amount_of_work(seeds: int) -> int:
+    """How many solves and searches `reproduce` begins."""
+    return len(solve_keys()) + seeds * len(search_keys())
+
+
+def reproduce(begin: Callable[[str], None] = lambda name: None, seeds: int = 1) -> Reproduction:
+    """Recompute the paper's tables with the gradient and the metaheuristics beside them.
 
     Parameters
     ----------
     begin : callable, optional
-        Called with the name of every solve when it begins; `solve_keys` says how many there are.
+        Called with the name of every solve and search when it begins; `amount_of_work` says how
+        many there are.
+    seeds : int
+        Seeds of the metaheuristics.
 
     Returns
     -------
     Reproduction
-        Plans for every row, verified by the independent integrator.
+        Plans and fronts for every row; plans are verified by the independent integrator.
+
+    Raises
+    ------
+    ValueError
+        When `seeds` is below 1.
+    KeyboardInterrupt
+        When a search was interrupted.
     """
-    solved: dict[tuple[Condition, int, bool], Plan] = {}
-    for condition, terms, boxed in solve_keys():
-        begin(f"{condition.plant.name}, {condition.label}, N = {terms}{', in the box' * boxed}")
-        solved[condition, terms, boxed] = plan_move(
-            condition.task,
-            CycloidPolynomial(terms),
-            bound=condition.box if boxed else None,
+    if seeds < 1:
+        raise ValueError(f"seeds is {seeds}; give 1 or more")
+    solved = _solve(begin)
+    fronts = _search(begin, seeds)
+    rows: list[RowResult] = []
+    for row in ROWS:
+        key = (row.condition, row.terms)
+        rows.append(
+            RowResult(
+                row,
+                printed=_evaluated(COEFFICIENTS, *key),
+                mended=_evaluated(MENDED, *key),
+                in_box=solved[*key, True],
+                free=solved[*key, False],
+                fronts=fronts[key],
+                residual_level=_residual_level(*key),
+            )
         )
-
-    def evaluated(table: dict[tuple[Condition, int], tuple[float, ...]], row: Row) -> Plan | None:
-        coefficients = table.get((row.condition, row.terms))
-        if coefficients is None:
-            return None
-        return evaluate_coefficients(row.condition.task, coefficients)
-
-    rows = tuple(
-        RowResult(
-            row,
-            printed=evaluated(COEFFICIENTS, row),
-            mended=evaluated(MENDED, row),
-            in_box=solved[row.condition, row.terms, True],
-            free=solved[row.condition, row.terms, False],
-        )
-        for row in ROWS
-    )
     return Reproduction(
-        rows,
+        tuple(rows),
         cycloids={c: evaluate_coefficients(c.task, []) for c in STUDIED},
         more_terms={key: plan for key, plan in solved.items() if key[0] in STUDIED},
     )
+
+
+def _solve(begin: Callable[[str], None]) -> dict[tuple[Condition, int, bool], Plan]:
+    solved: dict[tuple[Condition, int, bool], Plan] = {}
+    for condition, terms, boxed in solve_keys():
+        begin(f"gradient: {_label(condition, terms)}{', in the box' * boxed}")
+        bound = condition.box if boxed else None
+        solved[condition, terms, boxed] = plan_move(
+            condition.task, CycloidPolynomial(terms), bound=bound
+        )
+    return solved
+
+
+def _search(
+    begin: Callable[[str], None], seeds: int
+) -> dict[tuple[Condition, int], tuple[Front, ...]]:
+    found: dict[tuple[Condition, int], tuple[Front, ...]] = {}
+    for condition, terms in search_keys():
+        method = PAPER_METHOD[condition.plant.name]
+        fronts: list[Front] = []
+        for seed in range(seeds):
+            begin(f"{method}: {_label(condition, terms)}, seed {seed}")
+            profile = CycloidPolynomial(terms)
+            front = search(condition.task, method, profile=profile, bound=condition.box, seed=seed)
+            if not front.complete:
+                raise KeyboardInterrupt
+            fronts.append(front)
+        found[condition, terms] = tuple(fronts)
+    return found
+
+
+def _label(condition: Condition, terms: int) -> str:
+    return f"{condition.plant.name}, {condition.label}, N = {terms}"
+
+
+def _evaluated(
+    table: dict[tuple[Condition, int], tuple[float, ...]], condition: Condition, terms: int
+) -> Plan | None:
+    coefficients = table.get((condition, terms))
+    return None if coefficients is None else evaluate_coefficients(condition.task, coefficients)
+
+
+def _residual_level(condition: Condition, terms: int) -> float:
+    key = (condition, terms)
+    if key not in COEFFICIENTS:
+        key = next(k for k in COEFFICIENTS if k[0].plant == condition.plant and k[1] == terms)
+    coefficients = MENDED.get(key, COEFFICIENTS[key])
+    return evaluate_coefficients(key[0].task, coefficients).residual

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from rich import box
 from rich.table import Table as ScreenTable
+from rich.text import Text
 
 Cell = str | int | float | None
 
@@ -32,7 +33,7 @@ class Table:
     """Rows of cells under columns; CSV keeps every digit, the other forms are for people.
 
     For people a row stands upright, beside the others: a table has few rows and many quantities,
-    and so fits a narrow terminal. The first column names the rows.
+    and so fits a narrow terminal. The first column names the rows; empty ones are left out.
     """
 
     title: str
@@ -43,11 +44,11 @@ class Table:
         """The table for rich's console."""
         table = ScreenTable(title=self.title, title_justify="left", box=box.SIMPLE_HEAD)
         heading, *lines = self._upright()
-        table.add_column(heading[0])
+        table.add_column(Text(heading[0]), no_wrap=True)
         for name in heading[1:]:
-            table.add_column(name, justify="right")
+            table.add_column(Text(name), justify="right")
         for line in lines:
-            table.add_row(*line)
+            table.add_row(*(Text(cell) for cell in line))  # Text: a unit in brackets is no markup
         return table
 
     def markdown(self) -> str:
@@ -69,6 +70,7 @@ class Table:
         return [
             [column.heading, *(column.text(row[i]) for row in self.rows)]
             for i, column in enumerate(self.columns)
+            if any(row[i] is not None for row in self.rows)
         ]
 
 

@@ -502,15 +502,12 @@ def test_a_failed_solve_leaves_an_older_plan_alone(refused, folder):
     assert (folder / "plan.json").read_text() == "older"
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt, InfeasibleTaskError("no way\nat all")])
-def test_whatever_ends_a_solve_takes_one_line(refused, monkeypatch, error):
+def test_a_reason_of_several_lines_is_put_on_one(refused, monkeypatch):
     def end(*arguments, **settings):
-        raise error
+        raise InfeasibleTaskError("no way\n  at all")
 
     monkeypatch.setattr(studies.cli, "plan_move", end)
-    message = refused(f"{PLAN} {EVERY_FILE}", status=1)
-    said = "interrupted; nothing was written" if error is KeyboardInterrupt else "no way at all"
-    assert message == f"quietarm: {said}\n"
+    assert refused(f"{PLAN} {EVERY_FILE}", status=1) == "quietarm: no way at all\n"
 
 
 def test_a_full_disk_leaves_nothing_half_written(call, folder, monkeypatch):
@@ -528,6 +525,8 @@ def test_a_full_disk_leaves_nothing_half_written(call, folder, monkeypatch):
 
 # Ctrl-C
 
+INTERRUPTED = "quietarm: interrupted; nothing was written"
+# The command, which says when it begins to solve, so that the signal comes then and not before.
 ANNOUNCED = """
 import studies.cli
 
@@ -551,19 +550,18 @@ def interrupt(process, delay):
             process.send_signal(signal.SIGINT)
         else:
             pytest.fail("the solves were over before the interrupt")
-        return process.communicate(timeout=30)
+        return process.communicate(timeout=15)
     finally:
         process.kill()
-        process.wait()
+        process.communicate()  # closes its pipes
 
 
-@pytest.mark.parametrize("delay", [0.01, 2.0])
+# At once and soon: casadi is building the program; after a second: IPOPT is at work. casadi has a
+# habit of losing an interrupt, and 400 starts take half a minute without one.
+@pytest.mark.parametrize("delay", [0.002, 0.03, 1.0])
 def test_ctrl_c_ends_a_solve_soon_and_writes_nothing(folder, delay):
-    # A process that says when it begins to solve, so that the signal comes then and not before;
-    # 400 starts take half a minute or more.
-    line = shlex.split(f"plan {MOVE} --starts 400 {EVERY_FILE}")
     process = subprocess.Popen(
-        [sys.executable, "-c", ANNOUNCED, *line],
+        [sys.executable, "-c", ANNOUNCED, *shlex.split(f"plan {MOVE} --starts 400 {EVERY_FILE}")],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -571,7 +569,7 @@ def test_ctrl_c_ends_a_solve_soon_and_writes_nothing(folder, delay):
     assert process.stdout.readline() == "begun\n"
     out, err = interrupt(process, delay)
     assert (process.returncode, out) == (1, "")
-    assert err == "quietarm: interrupted; nothing was written\n"
+    assert err.lstrip("\n") == f"{INTERRUPTED}\n"  # click first ends the terminal's line of ^C
     assert list(folder.iterdir()) == []
 
 
@@ -585,9 +583,10 @@ def test_ctrl_c_ends_a_reproduction_soon_and_writes_nothing(folder):
     for number in (1, 2, 3):  # the third solve has begun
         assert process.stderr.readline().startswith(f"[{number}/28] ")
     out, err = interrupt(process, 0.05)
-    progress_lines = [line for line in err.splitlines() if not re.match(r"\[\d+/28\] ", line)]
     assert (process.returncode, out) == (1, "")
-    assert progress_lines == ["quietarm: interrupted; nothing was written"]
+    said = [line for line in err.splitlines() if not re.match(r"\[\d+/28\] ", line)]
+    assert said[-1] == INTERRUPTED
+    assert "".join(said[:-1]) == ""
     assert list(folder.iterdir()) == []
 
 
@@ -657,9 +656,7 @@ def test_a_users_own_models_is_named_as_what_is_in_the_way(folder, package, shad
     (folder / shadow).parent.mkdir(exist_ok=True)
     (folder / shadow).write_text("class Car: ...\n")
     (folder / "script.py").write_text(f"import {package}\n")
-    ran = subprocess.run(
-        [sys.executable, "script.py"], capture_output=True, text=True, timeout=60
-    )
+    ran = subprocess.run([sys.executable, "script.py"], capture_output=True, text=True, timeout=60)
     assert ran.returncode == 1
     last = ran.stderr.splitlines()[-1]
     assert last.startswith(f"ImportError: {folder / shadow} takes the place of quietarm's package")
@@ -670,9 +667,7 @@ def test_a_users_own_models_is_named_as_what_is_in_the_way(folder, package, shad
 def test_a_users_own_models_that_is_loaded_already_is_named_too(folder):
     (folder / "models.py").write_text("class Car: ...\n")
     (folder / "script.py").write_text("import models\nimport ocp\n")
-    ran = subprocess.run(
-        [sys.executable, "script.py"], capture_output=True, text=True, timeout=60
-    )
+    ran = subprocess.run([sys.executable, "script.py"], capture_output=True, text=True, timeout=60)
     assert ran.returncode == 1
     assert ran.stderr.splitlines()[-1].startswith(f"ImportError: {folder / 'models.py'} takes")
 
