@@ -138,8 +138,8 @@ def _tuned_to_the_optimum(result: Reproduction) -> Claim:
         if row.earlier_energy is not None
     }
     evidence = tuple(
-        f"{_name(row.condition)}: the printed {row.energy:.3g} J is {share:+.1%} of the optimum "
-        "found in the same box, at rest on arrival"
+        f"{_name(row.condition)}: the printed {row.energy:.3g} J is {share:.1%} above what the "
+        "gradient needs in the same box, at rest on arrival"
         for row, share in excess.items()
     )
     holds = all(share <= _GAIN for share in excess.values())

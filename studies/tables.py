@@ -16,10 +16,11 @@ Cell = str | int | float | None
 
 @dataclass(frozen=True)
 class Column:
-    """A column: its heading (with the unit) and how its numbers are written for people."""
+    """A column: its heading (with the unit), how its numbers are written, its name in CSV."""
 
     heading: str
     show: Callable[[float], str] = "{:.4g}".format
+    key: str = ""
 
     def text(self, cell: Cell) -> str:
         """A cell for people; a dash where there is nothing."""
@@ -62,7 +63,7 @@ class Table:
         """The table as comma-separated values, a row a line, numbers in full."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow([column.heading for column in self.columns])
+        writer.writerow([column.key or column.heading for column in self.columns])
         writer.writerows([["" if cell is None else cell for cell in row] for row in self.rows])
         return text.getvalue()
 
