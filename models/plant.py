@@ -11,6 +11,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
+from numbers import Real
 from typing import Any, ClassVar, NamedTuple
 
 import casadi as ca
@@ -82,20 +83,18 @@ class Plant(ABC):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if isinstance(getattr(cls, "name", None), str):
+        if isinstance(cls.__dict__.get("name"), str):
             Plant._known[cls.name] = cls
 
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise ValueError(
-                    f"{self.name}: parameter {entry.name} is {value!r}; give a finite number"
-                )
-            if not math.isfinite(value):
+            number = isinstance(value, Real) and not isinstance(value, bool)
+            if not number or not math.isfinite(value):
                 raise ValueError(
                     f"{self.name}: parameter {entry.name} is {value}; give a finite number"
                 )
+            object.__setattr__(self, entry.name, float(value))
 
     @abstractmethod
     def modal_accelerations(
@@ -149,6 +148,17 @@ class Plant(ABC):
             When the number of modal accelerations is not `modes`, the equations are not affine in
             the modes, the tip is not linear in them, or the structure does not stay at rest.
         """
+        if isinstance(self.modes, bool) or not isinstance(self.modes, int) or self.modes < 1:
+            raise ValueError(f"plant {self.name!r} has {self.modes!r} modes; give it 1 or more")
+        try:
+            self._validate_equations()
+        except IndexError:
+            raise ValueError(
+                f"plant {self.name!r} says modes = {self.modes} but its equations use more; "
+                "set modes to their number"
+            ) from None
+
+    def _validate_equations(self) -> None:
         angle, speed, acceleration = ca.SX.sym("q"), ca.SX.sym("dq"), ca.SX.sym("ddq")
         W, dW = ca.SX.sym("W", self.modes), ca.SX.sym("dW", self.modes)
         state = ca.vertcat(W, dW)
@@ -165,6 +175,8 @@ class Plant(ABC):
                 f"plant {self.name!r}: the modal accelerations are not affine in W and W'; "
                 "linearise them, quietarm integrates modes that are linear for a given joint motion"
             )
+        if self.tips < 1:
+            raise ValueError(f"plant {self.name!r} has no tip displacement; give it 1 or more")
         tips = ca.vertcat(*self.tip_displacements(ca.vertsplit(W)))
         if not ca.is_linear(tips, W):
             raise ValueError(f"plant {self.name!r}: the tip displacement is not linear in W")

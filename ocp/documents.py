@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from models import __version__, known_plants
+from ocp.checks import finite
 from ocp.errors import FileFormatError
 from ocp.files import write_whole
 from ocp.profile import JointProfile, known_profiles
@@ -78,7 +79,9 @@ def read_document(path: str | Path, kind: str, version: int) -> Document:
     """
     name = kind.removeprefix("quietarm-")
     try:
-        document = json.loads(Path(path).read_text(encoding="utf-8"), parse_constant=_no_constant)
+        document = json.loads(
+            Path(path).read_text(encoding="utf-8"), parse_constant=_no_constant, parse_float=_finite
+        )
     except OSError as error:
         reason = error.strerror or str(error)
         raise FileFormatError(f"{path} cannot be read: {reason.lower()}") from None
@@ -161,6 +164,10 @@ def profile_from_document(document: Document) -> JointProfile:
     if profile is None:
         raise ValueError(f"its profile {name!r} is not known here")
     return profile(**arguments)
+
+
+def _finite(text: str) -> float:
+    return finite("a number of the file", float(text))
 
 
 def _no_constant(name: str) -> float:

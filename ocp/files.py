@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
 from pathlib import Path
 
@@ -27,11 +28,20 @@ def check_writable(path: str | Path) -> Path:
     """
     target = Path(path)
     folder = target.parent
-    if target.is_dir():
+    try:
+        mode = target.stat().st_mode
+    except FileNotFoundError:
+        mode = None
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ValueError(f"{target} cannot be written: {reason}") from None
+    if mode is not None and stat.S_ISDIR(mode):
         raise ValueError(f"{target} is a folder; give the name of a file in it")
+    if mode is not None and not stat.S_ISREG(mode):
+        raise ValueError(f"{target} is no ordinary file; give the name of one")
     if not folder.is_dir():
         raise ValueError(f"folder {folder} does not exist; make it first")
-    if not os.access(folder, os.W_OK) or (target.exists() and not os.access(target, os.W_OK)):
+    if not os.access(folder, os.W_OK) or (mode is not None and not os.access(target, os.W_OK)):
         raise ValueError(f"{target} cannot be written; choose another place")
     return target
 
@@ -51,9 +61,17 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
     ValueError
         When the file cannot be written.
     """
-    target = check_writable(path)
+    target = check_writable(path).resolve()  # a link stays a link, to the new content
     data = content.encode() if isinstance(content, str) else content
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    try:
+        _replace(target, data)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ValueError(f"{target} cannot be written: {reason}") from error
+
+
+def _replace(target: Path, data: bytes) -> None:
+    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".quietarm-")
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)

@@ -124,5 +124,5 @@ class Motion:
             peak_speed=float(np.abs(joint[:, 1]).max()),
             peak_acceleration=float(np.abs(joint[:, 2]).max()),
             peak_deflection=float(np.abs(tips).max()),
-            overshoot=max(float(past_target.max()), 0.0),
+            overshoot=max(0.0, float(past_target.max())),
         )

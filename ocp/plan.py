@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ocp.checks import finite, positive, whole
 from ocp.documents import (
     Document,
     profile_from_document,
@@ -52,20 +53,16 @@ class SolveSettings:
     steps: int | None = None
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.residual_limit) and self.residual_limit >= 0):
-            raise ValueError(
-                f"residual limit is {self.residual_limit:g} m; give 0 (at rest) or more"
-            )
-        if self.bound is not None and not (math.isfinite(self.bound) and self.bound > 0):
-            raise ValueError(
-                f"bound on the coefficients is {self.bound:g}; give a positive number, or none"
-            )
+        limit = finite("residual limit", self.residual_limit, "m")
+        if limit < 0:
+            raise ValueError(f"residual limit is {limit:g} m; give 0 (at rest) or more")
+        object.__setattr__(self, "residual_limit", limit)
+        if self.bound is not None:
+            object.__setattr__(self, "bound", positive("bound on the coefficients", self.bound))
         for name, least in (("starts", 1), ("seed", 0), ("steps", 1)):
             value = getattr(self, name)
-            if name == "steps" and value is None:
-                continue
-            if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-                raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
+            if value is not None or name != "steps":
+                object.__setattr__(self, name, whole(name, value, least))
 
 
 @dataclass(frozen=True)
@@ -242,13 +239,7 @@ class Plan:
         ValueError
             When the rate is out of range or the file cannot be written.
         """
-        if not (math.isfinite(sample_rate) and sample_rate > 0):
-            raise ValueError(f"sample rate is {sample_rate:g} Hz; give a positive number")
-        ticks = math.ceil(self.task.duration * sample_rate - 1e-9)
-        if ticks > _MOST_SAMPLES:
-            raise ValueError(
-                f"sample rate {sample_rate:g} Hz asks for {ticks} rows; give a lower rate"
-            )
+        ticks = ticks_of_move(self.task.duration, sample_rate)
         sampled = self.trajectory(np.arange(ticks + 1) / sample_rate)
         tips = sampled.tips.shape[1]
         tip_names = ["tip_m"] if tips == 1 else [f"tip_{i + 1}_m" for i in range(tips)]
@@ -310,6 +301,34 @@ def evaluate_coefficients(
         ),
         provenance=Provenance(method, settings or {}, seconds=time.perf_counter() - began),
     )
+
+
+def ticks_of_move(duration: float, sample_rate: float) -> int:
+    """Ticks from the start to the first at or after arrival.
+
+    Parameters
+    ----------
+    duration : float
+        Travelling time [s].
+    sample_rate : float
+        Ticks per second [Hz].
+
+    Returns
+    -------
+    int
+        The last tick's number, 1 or more.
+
+    Raises
+    ------
+    ValueError
+        When the rate is not positive and finite, or asks for more rows than a table should have.
+    """
+    ticks = duration * positive("sample rate", sample_rate, "Hz")
+    if ticks > _MOST_SAMPLES:
+        raise ValueError(
+            f"sample rate {sample_rate:g} Hz asks for {ticks:.3g} rows; give a lower rate"
+        )
+    return max(1, math.ceil(ticks - 1e-9))
 
 
 def _number(figures: Document, name: str) -> float:

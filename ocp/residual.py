@@ -13,6 +13,7 @@ from models import JointMotion, Plant
 from ocp.collocation import NODES, modal_system, step
 from ocp.task import PointToPoint
 
+MOST_SAMPLES = 1_000_000
 RADIANS_A_SAMPLE = 0.02
 """Phase of the fastest mode between samples: a peak between two is missed by 5e-5 of it at most."""
 
@@ -36,7 +37,13 @@ def _fastest(plant: Plant, angle: float) -> float:
 def residual_samples(task: PointToPoint) -> int:
     """Times in the residual window that resolve the plant's fastest mode at the target."""
     fastest = _fastest(task.plant, task.target)
-    return math.ceil(task.residual_window * fastest / RADIANS_A_SAMPLE) + 1
+    samples = task.residual_window * fastest / RADIANS_A_SAMPLE
+    if samples > MOST_SAMPLES:
+        raise ValueError(
+            f"residual window {task.residual_window:g} s is {samples * RADIANS_A_SAMPLE:.3g} "
+            "radians of the plant's fastest mode; give a shorter one"
+        )
+    return math.ceil(samples) + 1
 
 
 def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[np.float64]:

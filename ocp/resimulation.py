@@ -5,7 +5,9 @@ Every figure that a plan reports comes from here, not from the optimiser's own f
 
 from __future__ import annotations
 
+import io
 import math
+from contextlib import redirect_stderr
 from dataclasses import dataclass
 
 import casadi as ca
@@ -100,7 +102,8 @@ class _Resimulation:
                  "max_num_steps": 200_000},
             )  # fmt: skip
             try:
-                later = integrate(x0=ca.DM(initial))["xf"].full().T
+                with redirect_stderr(io.StringIO()):  # the error below says it for people
+                    later = integrate(x0=ca.DM(initial))["xf"].full().T
             except RuntimeError as error:
                 raise SolverFailedError(
                     "CVODES could not follow this motion; are the coefficients far out of scale? "
@@ -146,7 +149,8 @@ def sample_trajectory(
         When CVODES cannot follow the motion.
     """
     grid = np.atleast_1d(np.asarray(times, dtype=float))
-    if not (np.all(np.isfinite(grid)) and grid[0] >= 0 and np.all(np.diff(grid) > 0)):
+    ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
+    if not (ordered and np.all(np.isfinite(grid))):
         raise ValueError("sample times must be finite and increase from 0 or later")
     flow = _Resimulation(task, profile, profile.checked(coefficients))
     before = grid[grid <= task.duration]

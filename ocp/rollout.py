@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from models import Expression, JointMotion, Plant
+from ocp.checks import whole
 from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NodeState, Step, mesh, step
 from ocp.objective import Motion, resolved_energy
 from ocp.profile import JointProfile
 from ocp.residual import fastest_mode, residual_matrix
 from ocp.task import PointToPoint
 
+MOST_STEPS = 20_000
 LEAST_STEPS = 140
 """Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
 
@@ -133,7 +135,13 @@ def _march(
 
 def default_steps(task: PointToPoint, least: int = LEAST_STEPS) -> int:
     """Steps that resolve the profile (`least`) and the plant's fastest mode (4 a radian)."""
-    return max(least, math.ceil(4 * fastest_mode(task) * task.duration))
+    radians = fastest_mode(task) * task.duration
+    if 4 * radians > MOST_STEPS:
+        raise ValueError(
+            f"duration {task.duration:g} s is {radians:.3g} radians of the plant's fastest mode; "
+            f"quietarm resolves up to {MOST_STEPS // 4}: give a shorter duration"
+        )
+    return max(least, math.ceil(4 * radians))
 
 
 @lru_cache(maxsize=32)
@@ -207,7 +215,7 @@ def rollout(
     ValueError
         When the coefficients do not fit the profile.
     """
-    steps = steps or default_steps(task)
+    steps = default_steps(task) if steps is None else whole("steps", steps, 1)
     function = _compiled(task.plant, profile, steps)
     values = function(ca.DM(profile.checked(coefficients)), ca.DM(task.move))
     joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)

@@ -26,7 +26,7 @@ UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
 STILL = 1e-8
 """Verified residual [m] up to which 'at rest on arrival' counts as kept."""
-_ENERGY_AGREEMENT = 1e-3
+_ENERGY_AGREEMENT = _RESIDUAL_AGREEMENT = 1e-3
 _ROUNDS = 6
 _OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
@@ -143,8 +143,10 @@ def _verified(
     used = dict(limits)
     for _ in range(_ROUNDS):
         overrun = {name: motion.peak(name) / limit for name, limit in limits.items() if limit > 0}
-        disagree = abs(best.energy / motion.energy - 1) > _ENERGY_AGREEMENT or (
-            limits[RESIDUAL] == 0 and motion.residual > STILL
+        residual_gap = abs(best.peaks.get(RESIDUAL, 0.0) - motion.residual)
+        disagree = (
+            abs(best.energy / motion.energy - 1) > _ENERGY_AGREEMENT
+            or residual_gap > STILL + _RESIDUAL_AGREEMENT * limits[RESIDUAL]
         )
         if disagree and 2 * program.steps <= MOST_STEPS:
             program = TaskProgram(

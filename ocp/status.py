@@ -38,14 +38,7 @@ class SolveStatus(Enum):
         -------
         SolveStatus
             The status.
-
-        Raises
-        ------
-        KeyboardInterrupt
-            When the user stopped the solve.
         """
-        if return_status in _INTERRUPTED:
-            raise KeyboardInterrupt
         return _FROM_IPOPT.get(return_status, cls.NUMERICAL_TROUBLE)
 
 
@@ -70,7 +63,3 @@ _FROM_IPOPT = {
     "Not_Enough_Degrees_Of_Freedom": SolveStatus.INFEASIBLE,
     "Maximum_Iterations_Exceeded": SolveStatus.ITERATION_LIMIT,
 }
-
-# casadi swallows Ctrl-C during a solve; it is the only exception that its callbacks can meet here,
-# since every function of the program is casadi's own.
-_INTERRUPTED = ("User_Requested_Stop", "NonIpopt_Exception_Thrown")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from models import Plant
+from ocp.checks import finite, positive
 
 LIMITS: Mapping[str, str] = {
     "torque_limit": "N m",
@@ -15,6 +15,8 @@ LIMITS: Mapping[str, str] = {
     "deflection_limit": "m",
 }
 """The limits that a task may set, with their units."""
+MOST_ANGLE, LEAST_DURATION = 1e6, 1e-6
+"""Beyond these [rad, s] the squares of speeds and accelerations leave double precision behind."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +61,19 @@ class PointToPoint:
             raise ValueError(f"plant is {self.plant!r}; give a Plant, as SingleLinkManipulator()")
         self.plant.validate()
         for name in ("start", "target"):
-            self._keep(name, _finite(name, getattr(self, name), "rad"))
+            angle = finite(name, getattr(self, name), "rad")
+            if abs(angle) > MOST_ANGLE:
+                raise ValueError(
+                    f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
+                )
+            self._keep(name, angle)
         for name in ("duration", "residual_window"):
-            self._keep(name, _positive(name, getattr(self, name), "s"))
+            self._keep(name, positive(name.replace("_", " "), getattr(self, name), "s"))
         for name, unit in LIMITS.items():
             if getattr(self, name) is not None:
-                self._keep(name, _positive(name, getattr(self, name), unit))
+                self._keep(name, positive(name.replace("_", " "), getattr(self, name), unit))
+        if self.duration < LEAST_DURATION:
+            raise ValueError(f"duration is {self.duration:g} s; give at least {LEAST_DURATION:g} s")
         if self.target == self.start:
             raise ValueError(
                 f"target equals start ({self.target:g} rad): there is no move; change one of them"
@@ -92,23 +101,3 @@ class PointToPoint:
             for name, value in set_limits.items()
             if value is not None
         }
-
-
-def _finite(name: str, value: object, unit: str) -> float:
-    name = name.replace("_", " ")
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        try:
-            value = float(value)  # type: ignore[arg-type]  # numpy's numbers
-        except (TypeError, ValueError):
-            raise ValueError(f"{name} is {value!r}; give a number in {unit}") from None
-    if not math.isfinite(value):
-        raise ValueError(f"{name} is {value}; give a finite number in {unit}")
-    return float(value)
-
-
-def _positive(name: str, value: object, unit: str) -> float:
-    number = _finite(name, value, unit)
-    if number <= 0:
-        name = name.replace("_", " ")
-        raise ValueError(f"{name} is {number:g} {unit}; give a positive number")
-    return number

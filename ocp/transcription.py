@@ -22,6 +22,7 @@ import numpy as np
 
 from models import Plant
 from ocp.collocation import GAUSS_WEIGHTS, NODES, mesh
+from ocp.interrupts import keep_interrupts
 from ocp.profile import JointProfile
 from ocp.step_model import StepModel
 
@@ -140,7 +141,7 @@ class NonlinearProgram:
         self, x0: np.ndarray, lower: np.ndarray, upper: np.ndarray, parameters: np.ndarray
     ) -> tuple[np.ndarray, str]:
         """Run IPOPT: the unknowns and IPOPT's own status, which tells all that casadi warns of."""
-        with redirect_stderr(io.StringIO()):
+        with keep_interrupts(), redirect_stderr(io.StringIO()):
             result = self._solver(
                 x0=x0, lbx=lower, ubx=upper, lbg=self.lower, ubg=self.upper, p=parameters
             )

@@ -20,6 +20,7 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
+from ocp.plan import ticks_of_move
 from studies.options import (
     COEFFICIENTS,
     FOLDER,
@@ -39,7 +40,7 @@ BAD_INPUT, NOT_SOLVED = 2, 1
 )
 @click.version_option(__version__, prog_name="quietarm")
 def quietarm() -> None:
-    r"""Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
+    """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
 
     PLANT is single-link or arm-on-flexible-link. Angles are radians, or 30deg, pi/6, -pi/2;
     lengths are metres, or 1mm; times are seconds, or 800ms.
@@ -48,11 +49,11 @@ def quietarm() -> None:
     Examples:
       quietarm reproduce --output results
       quietarm plan single-link --target 30deg --duration 0.8 --figure move.png
-      quietarm plan arm-on-flexible-link --start=-pi/2 --target pi/4 --duration 1.0 \
+      quietarm plan arm-on-flexible-link --start=-pi/2 --target pi/4 --duration 1.0 \\
           --torque-limit 0.4 --output plan.json --csv move.csv
-      quietarm evaluate single-link --target pi/6 --duration 0.8 \
+      quietarm evaluate single-link --target pi/6 --duration 0.8 \\
           --coefficients=0.003347,-0.1697
-    """
+    """  # noqa: D301  # \b is click's: do not rewrap
 
 
 @quietarm.command(short_help="Find the still move of least energy.")
@@ -82,15 +83,15 @@ def plan(
     polish: bool,
     **rest: Any,
 ) -> None:
-    r"""Find the move of least energy whose residual vibration is within a limit.
+    """Find the move of least energy whose residual vibration is within a limit.
 
     \b
     Examples:
       quietarm plan single-link --target 30deg --duration 0.8
       quietarm plan single-link --target pi/2 --duration 1.0 --bound 0.2 --residual-limit 1mm
-      quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \
+      quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \\
           --output plan.json --csv move.csv --figure move.png
-    """
+    """  # noqa: D301  # \b is click's: do not rewrap
     from studies.show import show_plan
 
     task, outputs = _split(rest)
@@ -115,12 +116,12 @@ def plan(
 )  # fmt: skip
 @output_options
 def evaluate(coefficients: list[float], **rest: Any) -> None:
-    r"""Compute residual, energy and peaks of given coefficients.
+    """Compute residual, energy and peaks of given coefficients.
 
     \b
     Example, the paper's two terms for the single link:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
-    """
+    """  # noqa: D301  # \b is click's: do not rewrap
     from studies.show import show_plan
 
     task, outputs = _split(rest)
@@ -149,15 +150,15 @@ def evaluate(coefficients: list[float], **rest: Any) -> None:
 @click.option("--figure", type=PICTURE, help="Draw the front (.png, .pdf or .svg).")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 def front(output: Path | None, figure: Path | None, quiet: bool, **rest: Any) -> None:
-    r"""Search the trade-off of residual and energy with NSGA-II or VEPSO.
+    """Search the trade-off of residual and energy with NSGA-II or VEPSO.
 
     \b
     Examples, the paper's settings:
-      quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --method nsga2 \
+      quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --method nsga2 \\
           --output front.json --figure front.png
-      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \\
           --runs 5 --workers 2
-    """
+    """  # noqa: D301  # \b is click's: do not rewrap
     from studies.searching import run_front
 
     names = [
@@ -180,26 +181,25 @@ def front(output: Path | None, figure: Path | None, quiet: bool, **rest: Any) ->
 )
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
-    r"""Recompute the paper's Tables 2, 3, 5 and 6 beside the printed figures, and its claims.
+    """Recompute the paper's Tables 2, 3, 5 and 6 beside the printed figures, and its claims.
 
     \b
     Example:
       quietarm reproduce --output results
-    """
+    """  # noqa: D301  # \b is click's: do not rewrap
     from studies.claims import claims
     from studies.progress import progress
     from studies.reproduce import amount_of_work
     from studies.reproduce import reproduce as recompute
     from studies.reproduce_report import show, write
 
-    if output is not None:
-        output.mkdir(exist_ok=True)
     with progress(amount_of_work(seeds), Console(stderr=True), quiet=quiet) as begin:
         result = recompute(begin, seeds)
     verdicts = claims(result)
     console = Console()
     show(console, result, verdicts)
     if output is not None:
+        output.mkdir(exist_ok=True)
         for path in write(output, result, verdicts):
             console.print(f"wrote {path}", highlight=False, soft_wrap=True)
 
@@ -207,7 +207,9 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
 def _split(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
     """The task and the output options, from a command's shared options."""
     outputs = {name: rest.pop(name) for name in ("output", "csv_file", "sample_rate", "figure")}
-    return _task(rest), outputs
+    task = _task(rest)
+    ticks_of_move(task.duration, outputs["sample_rate"])  # refused now rather than after the solve
+    return task, outputs
 
 
 def _task(rest: dict[str, Any]) -> PointToPoint:

@@ -38,7 +38,8 @@ def parse_plant(name: str) -> Plant:
     plants = known_plants()
     if name in plants:
         return plants[name]()
-    near = difflib.get_close_matches(name, plants, n=1, cutoff=0.3)
+    part = [plant for plant in plants if name and name.lower() in plant]
+    near = part or difflib.get_close_matches(name.lower(), plants, n=1, cutoff=0.3)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise ValueError(f"unknown plant {name!r}; {hint}(known: {', '.join(sorted(plants))})")
 

@@ -44,7 +44,8 @@ def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[A
         def line(name: str) -> None:
             nonlocal begun
             begun += 1
-            console.print(f"[{begun}/{total}] {name}", markup=False, highlight=False)
+            text = f"[{begun}/{total}] {name}"
+            console.print(text, markup=False, highlight=False, soft_wrap=True)
 
         yield line
     else:

@@ -8,9 +8,10 @@ import re
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
 _PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ]*)")
-_LENGTHS = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6}
-_TIMES = {"": 1.0, "s": 1.0, "ms": 1e-3}
-_ANGLES = {"": 1.0, "rad": 1.0, "deg": math.pi / 180}
+_LENGTHS = {"": 1.0, "m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
+_TIMES = {"": 1.0, "s": 1.0, "ms": 1e3}
+_ANGLES = {"": 1.0, "rad": 1.0, "deg": 180 / math.pi}
+# Units a metre, second or radian: dividing by 1000 is exact where multiplying by 0.001 is not.
 
 
 def parse_angle(text: str) -> float:
@@ -69,7 +70,7 @@ def parse_coefficients(text: str) -> list[float]:
 def _with_unit(text: str, units: dict[str, float], kind: str, examples: str) -> float:
     match = _PLAIN.fullmatch(text.strip())
     if match and match.group(2) in units:
-        return float(match.group(1)) * units[match.group(2)]
+        return float(match.group(1)) / units[match.group(2)]
     try:
         return float(text)  # nan and inf, for the task to refuse with its own words
     except ValueError:

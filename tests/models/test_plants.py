@@ -285,23 +285,23 @@ def test_equations_of_more_modes_than_the_plant_says_are_refused():
     def accelerations(p, j, W, dW):
         return [-W[0] + W[1]]
 
-    with pytest.raises(ValueError, match="broken.*mode"):
+    with pytest.raises(ValueError, match=r"broken.*mode"):
         _broken(modal_accelerations=accelerations).validate()
 
 
 def test_a_plant_without_modes_is_refused():
     nothing = {"modal_accelerations": lambda p, j, W, dW: [], "tip_displacements": lambda p, W: []}
-    with pytest.raises(ValueError, match="broken.*mode"):
+    with pytest.raises(ValueError, match=r"broken.*mode"):
         _broken(modes=0, **nothing).validate()
 
 
 def test_a_plant_without_a_tip_is_refused():
-    with pytest.raises(ValueError, match="broken.*tip"):
+    with pytest.raises(ValueError, match=r"broken.*tip"):
         _broken(tip_displacements=lambda p, W: []).validate()
 
 
 def test_a_tip_that_is_not_linear_is_refused():
-    with pytest.raises(ValueError, match="'broken'.*tip displacement is not linear"):
+    with pytest.raises(ValueError, match=r"'broken'.*tip displacement is not linear"):
         _broken(tip_displacements=lambda p, W: [W[0] ** 2]).validate()
 
 

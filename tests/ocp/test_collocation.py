@@ -55,9 +55,10 @@ def test_the_weights_integrate_up_to_degree_five_exactly(power):
 
 @pytest.mark.parametrize("steps", [1, 2, 7, 140])
 def test_the_steps_cover_the_move_once(steps):
-    begins, lengths = (np.array([float(x) for x in xs]) for xs in zip(
-        *(mesh(k, steps) for k in range(steps)), strict=True
-    ))
+    begins, lengths = (
+        np.array([float(x) for x in xs])
+        for xs in zip(*(mesh(k, steps) for k in range(steps)), strict=True)
+    )
     ends = begins + lengths
     assert begins[0] == 0.0
     assert begins[1:] == pytest.approx(ends[:-1], abs=1e-15)

@@ -22,10 +22,8 @@ from ocp.program import Solution
 CASES = {
     "one term, single link": ("single link", 1, {}, {}),
     "one term, arm": ("arm", 1, {}, {}),
-    "one term, two links": ("two links", 1, {}, {}),
     "one term, small residual": ("arm", 1, {}, {"residual_limit": 1e-3}),
     "torque, arm": ("arm", 6, {"torque_limit": 0.05}, {}),
-    "torque, single link": ("single link", 6, {"torque_limit": 0.05}, {}),
     "torque, in the box": ("single link", 6, {"torque_limit": 0.05}, {"bound": 0.2}),
     "speed below the mean": ("single link", 4, {"speed_limit": 0.6}, {}),
     "acceleration": ("arm", 4, {"acceleration_limit": 2.0}, {}),
@@ -46,7 +44,9 @@ def refused(tasks):
     def of(case):
         if case not in texts:
             name, terms, limits, settings = CASES[case]
-            task = PointToPoint(tasks[name].plant, tasks[name].target, tasks[name].duration, **limits)
+            task = PointToPoint(
+                tasks[name].plant, tasks[name].target, tasks[name].duration, **limits
+            )
             with pytest.raises(InfeasibleTaskError) as error:
                 plan_move(task, CycloidPolynomial(terms), **settings)
             texts[case] = str(error.value)
@@ -105,9 +105,7 @@ def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks,
     # Every coefficient from -2 to 2 in turn; the error leaves a room of 0.1 %.
     task, profile = tasks[name], CycloidPolynomial(1)
     ((_, text),) = QUOTED.findall(refused(f"one term, {name}").split("with the rest kept")[1])
-    scan = min(
-        rollout(task, profile, [a]).motion.residual for a in np.linspace(-2.0, 2.0, 4001)
-    )
+    scan = min(rollout(task, profile, [a]).motion.residual for a in np.linspace(-2.0, 2.0, 4001))
     assert scan * 0.9999 <= float(text) <= scan * 1.002
 
 
@@ -140,9 +138,7 @@ def _solution(status, **peaks):
     return Solution(np.zeros(3), 1.0, peaks, status)
 
 
-@pytest.mark.parametrize(
-    "status", [SolveStatus.ITERATION_LIMIT, SolveStatus.NUMERICAL_TROUBLE]
-)
+@pytest.mark.parametrize("status", [SolveStatus.ITERATION_LIMIT, SolveStatus.NUMERICAL_TROUBLE])
 def test_runs_that_failed_otherwise_are_not_called_infeasible(status):
     runs = [_solution(status)] * 4
     error = explain(CycloidPolynomial(3), {"residual": 0.0}, None, runs, {})

@@ -34,7 +34,7 @@ def test_the_single_links_tip_decays_freely(W, dW):
 
 @pytest.mark.parametrize("target", [math.pi / 2, math.pi / 4, 0.3, -2.0])
 def test_the_arms_tip_decays_freely_with_the_mass_of_its_target(target):
-    # Eq (13) with the joint at rest: (1 + alpha1 cos theta_E) W'' + 2 zeta omega W' + omega^2 W = 0.
+    # Eq (13) at rest: (1 + alpha1 cos theta_E) W'' + 2 zeta omega W' + omega^2 W = 0.
     task = PointToPoint(ArmOnFlexibleLink(), target, 0.8)
     mass = 1 - 1.055e-1 * math.cos(target)
     omega, zeta = 7.320 / math.sqrt(mass), 1.500e-3 / math.sqrt(mass)

@@ -171,7 +171,12 @@ class _ThirdOpinion:
 
     def __init__(self, name, a, start, target, duration):
         self.equations, self.phi, self.modes = EQUATIONS[name], PHI[name], 1 + (name == "two links")
-        self.move, self.a, self.duration, self.target = (start, target, duration), a, duration, target
+        self.move, self.a, self.duration, self.target = (
+            (start, target, duration),
+            a,
+            duration,
+            target,
+        )
         still = np.zeros(2 * self.modes)
         self.during = self._solve(self.joint, 0.0, duration, still)
         arrival, rest = self.during.y[:, -1], lambda t: (target, 0.0, 0.0)
@@ -196,7 +201,7 @@ class _ThirdOpinion:
 
     @property
     def energy(self):
-        """Adaptive quadrature between the zeros of the power, found on a grid and then sharpened."""
+        """Adaptive quadrature between the zeros of the power: a grid's, then sharpened."""
         grid = np.linspace(0.0, self.duration, 4001)
         power = np.array([self.power(t) for t in grid])
         change = np.flatnonzero(power[:-1] * power[1:] < 0)

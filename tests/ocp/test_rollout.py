@@ -218,9 +218,7 @@ def test_a_population_is_simulated_as_each_of_its_members(tasks, name):
     population = np.random.default_rng(8).uniform(-0.3, 0.3, (candidates, terms))
     a, move = ca.MX.sym("a", candidates, terms), ca.MX.sym("move", 3)
     columns = [ca.repmat(column, 1, steps) for column in ca.horzsplit(a)]
-    together = symbolic_rollout(
-        task.plant, profile, columns, ca.vertsplit(move), steps, candidates
-    )
+    together = symbolic_rollout(task.plant, profile, columns, ca.vertsplit(move), steps, candidates)
     function = ca.Function("population", [a, move], [together.arrival, together.energy])
     arrival, energy = (value.full() for value in function(population, ca.DM(task.move)))
     assert arrival.shape == (candidates, 2 * task.plant.modes)

@@ -196,7 +196,7 @@ def test_another_process_gives_identical_coefficients():
 
 def test_the_seed_is_kept_with_the_answer():
     plan = _plan(seed=5, starts=2)
-    expected = SolveSettings(residual_limit=0.0, bound=0.5, starts=2, seed=5, steps=None)
+    expected = {"residual_limit": 0.0, "bound": 0.5, "starts": 2, "seed": 5, "steps": None}
     assert plan.provenance.settings == expected
     assert plan.provenance.method == "ipopt"
 
@@ -211,6 +211,20 @@ def test_starts_are_the_plain_cycloid_and_random_ones_in_the_box(bound, spread):
     assert np.array_equal(starts, again)
     other = start_coefficients(6, SolveSettings(bound=bound, starts=50, seed=4))
     assert not np.array_equal(starts, other)
+
+
+def test_a_guess_is_improved(tasks, solved):
+    # Table 4, N = 6, a_5 mended: 0.14915 J (physics.md) becomes 0.1315 J in the same box.
+    paper = [-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-2, -2.377e-1]
+    plan = plan_move(tasks["arm"], bound=0.5, starts=1, guess=paper)
+    assert plan.energy == pytest.approx(solved(tasks["arm"], bound=0.5).energy, rel=1e-5)
+    assert plan.residual < 1e-7
+
+
+@pytest.mark.parametrize("guess", [[], [0.1] * 5, [math.nan] * 6, "abcdef"])
+def test_a_guess_that_does_not_fit_is_refused(tasks, guess):
+    with pytest.raises(ValueError, match=r"coefficient|could not convert"):
+        plan_move(tasks["arm"], guess=guess)
 
 
 # -- limits --
@@ -239,7 +253,7 @@ def test_a_limit_is_kept_and_costs_energy(plants, tasks, solved, name, limit):
 
 def test_a_limit_that_is_not_in_the_way_changes_nothing(tasks, solved):
     free, task = solved(tasks["arm"], 4), tasks["arm"]
-    loose = {limit: 100.0 for limit in LIMITS}
+    loose = dict.fromkeys(LIMITS, 100.0)
     limited = solved(PointToPoint(task.plant, task.target, task.duration, **loose), 4)
     assert limited.energy == pytest.approx(free.energy, rel=1e-6)
 
@@ -301,7 +315,7 @@ def test_tiny_and_huge_moves_arrive_at_rest(span):
     assert plan.residual < 1e-7 * max(1.0, span)
 
 
-@pytest.mark.parametrize("limit", [0.0, 1e-6, 1e-3])
+@pytest.mark.parametrize("limit", [0.0, 1e-6])
 def test_too_few_steps_are_doubled_until_the_integrators_agree(tasks, limit):
     profile, settings = CycloidPolynomial(4), {"starts": 2, "residual_limit": limit}
     plan = plan_move(tasks["single link"], profile, steps=10, **settings)

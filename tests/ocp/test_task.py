@@ -119,5 +119,5 @@ def test_a_plant_that_is_not_a_plant_is_refused(plant):
 @pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 def test_a_plant_that_breaks_its_contract_is_refused():
     cubic = {"name": "cubic", "modal_accelerations": lambda plant, joint, W, dW: [-(W[0] ** 3)]}
-    with pytest.raises(ValueError, match="'cubic'.*not affine"):
+    with pytest.raises(ValueError, match=r"'cubic'.*not affine"):
         _task(plant=type("Cubic", (SingleLinkManipulator,), cubic)())

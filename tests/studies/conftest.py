@@ -6,19 +6,29 @@ import pytest
 
 from models import SingleLinkManipulator
 from ocp import CycloidPolynomial, PointToPoint, evaluate_coefficients, plan_move
-from studies.reproduce import reproduce
+from studies import reproduce as reproduce_module
 
 
 @pytest.fixture(scope="session")
 def begun():
-    """The names that the one reproduction reported as it began its solves."""
+    """The names that the one reproduction reported as it began its solves and searches."""
     return []
 
 
 @pytest.fixture(scope="session")
 def reproduction(begun):
-    """The paper recomputed, once for all tests: twenty seconds."""
-    return reproduce(begun.append)
+    """The paper recomputed, once for all tests: twenty seconds.
+
+    The searches are cut short: how well they find is tested where they are.
+    """
+    search, generations = reproduce_module.search, {"vepso": 60, "nsga2": 5}
+
+    def short(task, method, **settings):
+        return search(task, method, generations=generations[method], **settings)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reproduce_module, "search", short)
+        return reproduce_module.reproduce(begun.append)
 
 
 @pytest.fixture(scope="session")

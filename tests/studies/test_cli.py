@@ -18,10 +18,12 @@ import pytest
 
 import studies.cli
 import studies.reproduce
+import studies.searching
 from models import __version__
 from ocp import InfeasibleTaskError, Plan
 from studies.cli import main
 from studies.paper import ROWS
+from studies.reproduce import amount_of_work
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
 MOVE = "single-link --target 30deg --duration 0.8"
@@ -44,6 +46,11 @@ def run(line, **settings):
     )
 
 
+def contents(folder):
+    """All files of a folder with what they hold, and the folders in it."""
+    return {path: path.is_file() and path.read_bytes() for path in folder.rglob("*")}
+
+
 @pytest.fixture
 def call(capfd):
     """Run a line in this process: its status, standard output and standard error."""
@@ -63,7 +70,7 @@ def refused(call, folder):
     """Run a line that must fail in one line, and leave the folder as it was; that line."""
 
     def run_refused(line, status):
-        before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+        before = contents(folder)
         code, out, err = call(line)
         assert out == ""
         assert "Traceback" not in err
@@ -71,8 +78,7 @@ def refused(call, folder):
         assert err.count("\n") == 1
         assert err.endswith("\n")
         assert code == status
-        after = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-        assert after == before
+        assert contents(folder) == before
         return err
 
     return run_refused
@@ -87,6 +93,8 @@ def no_solve(monkeypatch):
 
     monkeypatch.setattr(studies.cli, "plan_move", solve)
     monkeypatch.setattr(studies.cli, "evaluate_coefficients", solve)
+    for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
+        monkeypatch.setattr(studies.searching, name, solve)
     monkeypatch.setattr(studies.reproduce, "reproduce", solve)
 
 
@@ -226,13 +234,20 @@ def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call)
 # Help
 
 
-@pytest.mark.parametrize("command", ["", "plan", "evaluate", "reproduce"])
+def examples(text):
+    """The commands of a help text, each on a line of its own."""
+    lines = re.sub(r" \\\n +", " ", text.split("Example", 1)[1]).splitlines()
+    return [line.strip() for line in lines if line.strip().startswith("quietarm ")]
+
+
+@pytest.mark.parametrize("command", ["", "plan", "evaluate", "front", "reproduce"])
 @pytest.mark.parametrize("flag", ["-h", "--help"])
 def test_help_shows_examples(call, command, flag):
     code, out, err = call(f"{command} {flag}")
     assert (code, err) == (0, "")
     assert "Example" in out
-    assert f"  quietarm {command}" in out.split("Example", 1)[1]
+    assert any(shown.startswith(f"quietarm {command}") for shown in examples(out))
+    assert "\\b" not in out  # click's mark for lines that it must not fill
 
 
 def test_help_names_every_option_of_the_issue(call):
@@ -258,13 +273,7 @@ def test_the_installed_command_says_its_version(launcher):
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, f"quietarm, version {__version__}\n", "")
 
 
-def examples(text):
-    """The commands of a help text."""
-    lines = re.sub(r" \\\n +", " ", text.split("Example", 1)[1]).splitlines()
-    return [line.strip() for line in lines if line.strip().startswith("quietarm ")]
-
-
-@pytest.mark.parametrize("command", ["", "plan", "evaluate"])
+@pytest.mark.parametrize("command", ["", "plan", "evaluate", "front", "reproduce"])
 def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, folder, command):
     _, out, _ = call(f"{command} --help")
     reached = []
@@ -275,6 +284,8 @@ def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, fold
 
     monkeypatch.setattr(studies.cli, "plan_move", note)
     monkeypatch.setattr(studies.cli, "evaluate_coefficients", note)
+    monkeypatch.setattr(studies.searching, "search", note)
+    monkeypatch.setattr(studies.searching, "search_many", note)
     monkeypatch.setattr(studies.reproduce, "reproduce", note)
     shown = examples(out)
     assert shown
@@ -339,6 +350,9 @@ BAD = [  # the line, the value that is named, the remedy
     (f"{PLAN} --bound nan", "bound on the coefficients is nan", "give a positive number"),
     (f"{PLAN} --starts 0", "starts is 0", "from 1 up"),
     (f"{PLAN} --seed -1", "seed is -1", "from 0 up"),
+    (f"{PLAN} --method pso", "'pso'", "'vepso'"),
+    (f"{PLAN} --method vepso --bound 0", "bound on the coefficients is 0", "give a positive"),
+    (f"{PLAN} --method vepso", "bound", "0.2"),  # issue 3: 'say which the paper used'
     (f"evaluate {MOVE} --coefficients=0.1,nan", "coefficient 2 is 'nan'", "give finite numbers"),
     (f"evaluate {MOVE} --coefficients=inf", "coefficient 1 is 'inf'", "give finite numbers"),
     (f"evaluate {MOVE} --coefficients=0.1,,2", "coefficient 2 is ''", "separated by commas"),
@@ -350,6 +364,32 @@ BAD = [  # the line, the value that is named, the remedy
 @pytest.mark.parametrize(("line", "value", "remedy"), BAD, ids=[line for line, *_ in BAD])
 def test_bad_input_is_refused_with_its_value_and_a_remedy(refused, line, value, remedy):
     message = refused(f"{line} {EVERY_FILE}", status=2)
+    assert value in message
+    assert remedy in message
+
+
+FRONT = f"front {MOVE} --method nsga2"
+
+
+@pytest.mark.parametrize(
+    ("line", "value", "remedy"),
+    [
+        (FRONT, "bound", "0.2"),  # issue 3: 'say which the paper used'
+        (f"{FRONT} --bound nan", "nan", "give a positive number"),
+        (f"{FRONT} --bound 0.2 --population 0", "population is 0", "give"),
+        (f"{FRONT} --bound 0.2 --generations 0", "generations is 0", "give"),
+        (f"{FRONT} --bound 0.2 --runs 0", "runs is 0", "give 1 or more"),
+        (f"{FRONT} --bound 0.2 --runs 2 --workers 0", "workers is 0", "give 1 or more"),
+        (f"{FRONT} --bound 0.2 --seed -1", "seed is -1", "give"),
+        (f"{FRONT} --bound 0.2 --terms 0", "0 terms", "give 1 term or more"),
+        (f"{FRONT} --bound 0.2 --resume nowhere", "nowhere", "cannot be read"),
+        (f"front {MOVE} --method annealing --bound 0.2", "annealing", "'nsga2', 'vepso'"),
+        ("reproduce --seeds 0", "seeds is 0", "give 1 or more"),
+        ("reproduce --seeds 0 --output results", "seeds is 0", "give 1 or more"),
+    ],
+)
+def test_a_bad_search_is_refused_with_its_value_and_a_remedy(refused, line, value, remedy):
+    message = refused(line, status=2)
     assert value in message
     assert remedy in message
 
@@ -422,6 +462,9 @@ def read_only(folder, monkeypatch):
         f"{PLAN} --figure locked/move.png",
         "reproduce --output locked",
         "reproduce --output locked/results",
+        f"front {MOVE} --method vepso --bound 0.2 --output locked/front.json",
+        f"front {MOVE} --method vepso --bound 0.2 --checkpoint locked/state",
+        f"front {MOVE} --method vepso --bound 0.2 --figure locked/front.png",
     ],
 )
 def test_a_folder_that_cannot_be_written_to_is_found_before_the_solve(
@@ -581,10 +624,10 @@ def test_ctrl_c_ends_a_reproduction_soon_and_writes_nothing(folder):
         text=True,
     )
     for number in (1, 2, 3):  # the third solve has begun
-        assert process.stderr.readline().startswith(f"[{number}/28] ")
+        assert process.stderr.readline().startswith(f"[{number}/")
     out, err = interrupt(process, 0.05)
     assert (process.returncode, out) == (1, "")
-    said = [line for line in err.splitlines() if not re.match(r"\[\d+/28\] ", line)]
+    said = [line for line in err.splitlines() if not re.match(r"\[\d+/\d+\] ", line)]
     assert said[-1] == INTERRUPTED
     assert "".join(said[:-1]) == ""
     assert list(folder.iterdir()) == []
@@ -597,7 +640,7 @@ def test_ctrl_c_ends_a_reproduction_soon_and_writes_nothing(folder):
 def reproduced(reproduction, monkeypatch):
     """Let the command find the paper recomputed already."""
 
-    def at_once(begin):
+    def at_once(begin, *rest):
         begin("the only solve")
         return reproduction
 
@@ -606,7 +649,7 @@ def reproduced(reproduction, monkeypatch):
 
 def test_reproduce_prints_every_printed_and_recomputed_energy(call, reproduced, reproduction):
     code, out, err = call("reproduce")
-    assert (code, err) == (0, "[1/28] the only solve\n")
+    assert (code, err) == (0, f"[1/{amount_of_work(seeds=1)}] the only solve\n")
     for number in (2, 3, 5, 6):
         assert f"Table {number}: " in out
     for row in ROWS:

@@ -81,7 +81,26 @@ def test_a_column_may_write_its_numbers_its_own_way_and_leaves_counts_alone():
     assert (column.text(2.0), column.text(2)) == ("2.0", "2")
 
 
+def test_csv_may_have_shorter_names():
+    table = Table("t", [Column("move", key="move"), Column("F2 [J]", key="energy_J")], [["a", 1.0]])
+    assert table.csv() == "move,energy_J\na,1.0\n"
+    assert "| F2 [J] | 1 |" in table.markdown()
+
+
+def test_a_quantity_that_no_row_has_is_left_out_for_people_and_kept_in_csv():
+    table = Table("t", [Column("move"), Column("F2 [J]"), Column("x")], [["a", None, 1], ["b"] * 3])
+    assert "F2 [J]" in table.markdown()
+    table = Table("t", table.columns, [["a", None, 1], ["b", None, 2]])
+    assert "F2 [J]" not in table.markdown()
+    assert "F2 [J]" not in on_screen(table)
+    assert table.csv() == "move,F2 [J],x\na,,1\nb,,2\n"
+
+
+def test_a_unit_in_brackets_is_no_markup():
+    table = Table("t", [Column("move"), Column("power [bold]")], [["a [red]", 2]])
+    assert "power [bold]" in on_screen(table)
+    assert "a [red]" in on_screen(table)
+
+
 def test_a_table_without_rows_still_names_its_columns():
-    empty = Table("none", TABLE.columns, [])
-    assert empty.csv() == "move,terms N,F2 [J],time [s]\n"
-    assert "| terms N |" in empty.markdown()
+    assert Table("none", TABLE.columns, []).csv() == "move,terms N,F2 [J],time [s]\n"

@@ -1,0 +1,55 @@
+"""Numbers that people give: checked once, refused with the value and the remedy."""
+
+from __future__ import annotations
+
+import math
+from numbers import Integral, Real
+
+
+def finite(name: str, value: object, unit: str = "") -> float:
+    """A finite number as a float.
+
+    Parameters
+    ----------
+    name : str
+        What the number is, for the message.
+    value : object
+        What was given; numpy's numbers count, booleans and text do not.
+    unit : str
+        Its unit, for the message.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    ValueError
+        When it is no number, or not finite.
+    """
+    wanted = f"number in {unit}" if unit else "number"
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise ValueError(f"{name} is {value!r}; give a {wanted}")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError(f"{name} is {value}; give a finite {wanted}")
+    return number
+
+
+def positive(name: str, value: object, unit: str = "") -> float:
+    """A positive finite number as a float; arguments and errors as for `finite`."""
+    number = finite(name, value, unit)
+    if number <= 0:
+        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
+    return number
+
+
+def whole(name: str, value: object, least: int) -> int:
+    """A whole number of at least `least` as an int; ValueError otherwise."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+        raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
+    return int(value)

@@ -1,0 +1,217 @@
+"""The README does what it says: its commands, its examples, its files, its figures."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from ocp import Plan
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text()
+BIN = Path(sys.executable).parent
+
+
+def blocks(language):
+    """The code blocks of one language, in order."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+
+
+TWO_COMMANDS = [block.strip() for block in blocks("console")[:2]]
+PYTHON = blocks("python")
+
+
+# The two commands
+
+
+def test_exactly_two_commands_of_one_line_stand_first():
+    section = README.split("## Two commands\n", 1)[1].split("\n## ", 1)[0]
+    found = re.findall(r"^```(\w*)\n(.*?)^```$", section, re.DOTALL | re.MULTILINE)
+    assert [language for language, _ in found] == ["console", "console"]
+    assert [body.strip() for _, body in found] == TWO_COMMANDS
+    assert [body.count("\n") for _, body in found] == [1, 1]
+    assert README.index("## Two commands") < README.index("```")
+
+
+def test_the_first_sets_up_a_virtual_environment_and_recomputes_the_paper():
+    steps = TWO_COMMANDS[0].split(" && ")
+    assert steps[0] == "python3 -m venv .venv"
+    assert steps[1].startswith(".venv/bin/python -m pip install")
+    assert steps[-1].startswith(".venv/bin/quietarm reproduce")
+
+
+def test_the_second_runs_the_tests():
+    steps = TWO_COMMANDS[1].split(" && ")
+    assert steps[0].startswith(".venv/bin/python -m pip install")
+    assert steps[-1].startswith(".venv/bin/pytest")
+
+
+@pytest.mark.parametrize("command", TWO_COMMANDS)
+def test_the_commands_install_with_the_constraints_that_are_here(command):
+    (install,) = [step for step in command.split(" && ") if "pip install" in step]
+    words = shlex.split(install)
+    assert (ROOT / words[words.index("-c") + 1]).is_file()
+    extras = re.fullmatch(r"\.(?:\[(.*)\])?", words[-1]).group(1)
+    known = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    assert set(extras.split(",") if extras else []) <= set(known)
+
+
+def test_the_gate_runs_the_two_commands_as_they_stand_here(tmp_path):
+    # Run the gate's own script in a copy, with a shell that notes what it is asked to run and runs
+    # nothing. The gate then stops for want of an environment to lint in.
+    (tmp_path / ".ci").mkdir()
+    shutil.copy(ROOT / ".ci" / "run", tmp_path / ".ci")
+    shutil.copy(ROOT / "README.md", tmp_path)
+    stub = tmp_path / "stub" / "bash"
+    stub.parent.mkdir()
+    stub.write_text('#!/bin/sh\nfor last in "$@"; do :; done\nprintf "%s\\n" "$last" >> noted\n')
+    stub.chmod(0o755)
+    environment = {**os.environ, "PATH": f"{stub.parent}{os.pathsep}{os.environ['PATH']}"}
+    gate = subprocess.run(
+        [shutil.which("bash"), ".ci/run"],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=30,
+    )
+    assert (tmp_path / "noted").read_text().splitlines() == TWO_COMMANDS
+    assert gate.returncode != 0
+    assert ".venv/bin/python" in gate.stderr
+
+
+def test_the_gate_refuses_a_readme_without_them(tmp_path):
+    (tmp_path / ".ci").mkdir()
+    shutil.copy(ROOT / ".ci" / "run", tmp_path / ".ci")
+    (tmp_path / "README.md").write_text("# quietarm\n\n```console\ntrue\n```\n")
+    gate = subprocess.run(
+        [shutil.which("bash"), ".ci/run"], cwd=tmp_path, capture_output=True, text=True, timeout=30
+    )
+    assert gate.returncode == 1
+    assert "exactly two commands" in gate.stdout
+
+
+def test_the_gate_lints_types_and_holds_the_imports():
+    gate = (ROOT / ".ci" / "run").read_text()
+    for step in ("ruff check .", "ruff format --check .", "pyright", "lint-imports"):
+        assert f".venv/bin/{step}\n" in gate
+    assert os.access(ROOT / ".ci" / "run", os.X_OK)
+
+
+# The examples
+
+
+def run_python(code, folder):
+    (folder / "example.py").write_text(code)
+    ran = subprocess.run(
+        [sys.executable, "-W", "error", "example.py"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    return ran.stdout
+
+
+def test_the_example_in_python_plans_saves_and_exports(tmp_path):
+    printed = run_python(PYTHON[0], tmp_path)
+    plan = Plan.load(tmp_path / "plan.json")
+    assert printed == f"{plan.energy} {plan.residual} {plan.coefficients}\n"
+    assert plan.residual < 1e-8  # 'How exact'
+    assert plan.motion.peak_torque <= 0.2 * 1.001  # 'How exact'
+    assert len((tmp_path / "move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
+
+
+def test_the_plant_of_your_own_is_one_file_that_everything_works_with(tmp_path):
+    crane = PYTHON[1]
+    use = """
+from ocp import PointToPoint, plan_move
+
+plan = plan_move(PointToPoint(Crane(), target=1.0, duration=3.0))
+plan.save("crane.json")
+assert type(plan).load("crane.json") == plan
+print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
+"""
+    assert run_python(crane + use, tmp_path) == "optimal True crane\n"
+
+
+def test_no_example_is_left_untested():
+    assert len(PYTHON) == 2
+    languages = re.findall(r"^```(\w+)$", README, re.MULTILINE)
+    assert set(languages) == {"console", "python"}
+
+
+COMMANDS = [line for block in blocks("console")[2:] for line in block.splitlines()]
+
+
+@pytest.mark.parametrize("line", COMMANDS)
+def test_the_commands_for_a_move_of_your_own_run(tmp_path, line):
+    command, *words = shlex.split(line)
+    assert command == ".venv/bin/quietarm"
+    if words[0] == "front":  # a search as long as the paper's is for the tests of searches
+        words += ["--population", "20", "--generations", "5"]
+    ran = subprocess.run(
+        [BIN / "quietarm", *words], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    options = ("--output", "--csv", "--figure")
+    asked = {words[i + 1] for i, word in enumerate(words) if word in options}
+    assert {path.name for path in tmp_path.iterdir()} == asked
+
+
+def test_there_are_commands_for_a_move_of_your_own():
+    assert {shlex.split(line)[1] for line in COMMANDS} >= {"plan", "evaluate"}
+
+
+# What it says
+
+
+def test_files_that_it_names_are_there():
+    linked = re.findall(r"!?\[[^]]*\]\(([^)#]+)\)", README)
+    quoted = re.findall(r"`([\w.-]+/[\w./-]+)`", README)
+    names = [name for name in [*linked, *quoted] if "://" not in name]
+    assert "notebooks/move.png" in names
+    assert "notebooks/01_plan_a_move.ipynb" in names
+    assert [name for name in names if not (ROOT / name).exists()] == []
+
+
+def test_the_order_of_the_packages_is_that_of_the_contract():
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
+    (layers,) = [c["layers"] for c in contracts["contracts"] if c["type"] == "layers"]
+    assert "  <-  ".join(reversed(layers)) in README
+
+
+def test_the_picture_says_what_is_computed(tmp_path):
+    # The picture's text: the plain cycloid leaves so much, the plan needs such a share.
+    (alt,) = re.findall(r"!\[([^]]*)\]\(notebooks/move\.png\)", README)
+    printed = run_python(
+        """
+from math import pi
+
+from models import SingleLinkManipulator
+from ocp import PointToPoint, evaluate_coefficients, plan_move
+
+task = PointToPoint(SingleLinkManipulator(), target=pi / 6, duration=0.8)
+cycloid, plan = evaluate_coefficients(task, []), plan_move(task)
+print(cycloid.residual * 1e3, plan.energy / cycloid.energy, plan.residual)
+""",
+        tmp_path,
+    )
+    ringing, share, residual = map(float, printed.split())
+    assert re.search(r"ringing by (\d+) mm", alt).group(1) == f"{ringing:.0f}"
+    assert "a quarter of the energy" in alt
+    assert share == pytest.approx(0.25, abs=0.02)
+    assert residual < 1e-8
+
+
+def test_the_python_that_it_asks_for_is_the_packages():
+    (named,) = re.findall(r"Python (3\.\d+) or newer", README)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert project["requires-python"] == f">={named}"
