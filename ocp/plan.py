@@ -33,7 +33,7 @@ from ocp.status import SolveStatus
 from ocp.task import PointToPoint
 
 FORMAT, VERSION = "quietarm-plan", 1
-_MOST_SAMPLES = 10_000_000
+_LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
 
 
 @dataclass(frozen=True)
@@ -324,6 +324,10 @@ def ticks_of_move(duration: float, sample_rate: float) -> int:
         When the rate is not positive and finite, or asks for more rows than a table should have.
     """
     ticks = duration * positive("sample rate", sample_rate, "Hz")
+    if ticks < _LEAST_TICKS:
+        raise ValueError(
+            f"sample rate {sample_rate:g} Hz ticks long after the arrival; give a higher rate"
+        )
     if ticks > _MOST_SAMPLES:
         raise ValueError(
             f"sample rate {sample_rate:g} Hz asks for {ticks:.3g} rows; give a lower rate"

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import Plant
+from ocp.interrupts import keep_interrupts
 from ocp.profile import JointProfile
 from ocp.residual import residual_matrix
 from ocp.status import SolveStatus
@@ -82,6 +83,7 @@ class TaskProgram:
         is at rest on arrival.
     """
 
+    @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(
         self, task: PointToPoint, profile: JointProfile, steps: int, with_residual: bool
     ) -> None:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from models import Expression, JointMotion
 from ocp.errors import SolverFailedError
+from ocp.interrupts import keep_interrupts
 from ocp.objective import Motion
 from ocp.profile import JointProfile
 from ocp.residual import fastest_mode
@@ -173,6 +174,7 @@ def sample_trajectory(
     )
 
 
+@keep_interrupts()
 def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Motion:
     """Residual, energy and diagnostics of a motion by CVODES.
 

@@ -87,7 +87,7 @@ def plan_move(
     program = TaskProgram(
         task,
         profile,
-        steps or default_steps(task, least=LEAST_STEPS),
+        settings.steps or default_steps(task, least=LEAST_STEPS),
         with_residual=residual_limit > 0,
     )
     guesses = start_coefficients(profile.size, settings)

@@ -15,8 +15,8 @@ LIMITS: Mapping[str, str] = {
     "deflection_limit": "m",
 }
 """The limits that a task may set, with their units."""
-MOST_ANGLE, LEAST_DURATION = 1e6, 1e-6
-"""Beyond these [rad, s] the squares of speeds and accelerations leave double precision behind."""
+MOST_ANGLE, LEAST_DURATION, MOST_DURATION = 1e6, 1e-6, 1e6
+"""Beyond these [rad, s, s] no joint moves, and double precision does not follow."""
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,10 @@ class PointToPoint:
         for name, unit in LIMITS.items():
             if getattr(self, name) is not None:
                 self._keep(name, positive(name.replace("_", " "), getattr(self, name), unit))
-        if self.duration < LEAST_DURATION:
-            raise ValueError(f"duration is {self.duration:g} s; give at least {LEAST_DURATION:g} s")
+        if not LEAST_DURATION <= self.duration <= MOST_DURATION:
+            raise ValueError(
+                f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
+            )
         if self.target == self.start:
             raise ValueError(
                 f"target equals start ({self.target:g} rad): there is no move; change one of them"

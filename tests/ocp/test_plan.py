@@ -266,7 +266,7 @@ def test_a_table_has_a_row_for_every_tick_up_to_arrival(plan, tmp_path, rate, ro
     assert table[-2, 0] < 0.8
 
 
-@pytest.mark.parametrize("rate", [1000.0, 333.3, 1.0, 1e-3, 1e-10])
+@pytest.mark.parametrize("rate", [1000.0, 333.3, 1.0, 1e-3])
 def test_the_last_row_rests_at_the_target(plan, tmp_path, rate):
     _, table = _table(plan, tmp_path / "move.csv", rate)
     assert table[0, 1:5] == pytest.approx(np.zeros(4), abs=1e-12)
@@ -303,7 +303,7 @@ def test_the_power_of_a_table_adds_up_to_the_energy(any_plan, tmp_path):
     )
 
 
-@pytest.mark.parametrize("rate", [0, 0.0, -100.0, math.nan, math.inf, -math.inf, "fast", None])
+@pytest.mark.parametrize("rate", [0, 0.0, -100.0, 1e-10, math.nan, math.inf, -math.inf, "fast", None])
 def test_a_sample_rate_that_is_not_positive_is_named(plan, tmp_path, rate):
     with pytest.raises(ValueError, match="sample rate is") as error:
         plan.save_csv(tmp_path / "move.csv", rate)
