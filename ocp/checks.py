@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from numbers import Integral, Real
 
+import numpy as np
+
 
 def finite(name: str, value: object, unit: str = "") -> float:
     """A finite number as a float.
@@ -28,6 +30,8 @@ def finite(name: str, value: object, unit: str = "") -> float:
     ValueError
         When it is no number, or not finite.
     """
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
     wanted = f"number in {unit}" if unit else "number"
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"{name} is {value!r}; give a {wanted}")

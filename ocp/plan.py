@@ -326,11 +326,11 @@ def ticks_of_move(duration: float, sample_rate: float) -> int:
     ticks = duration * positive("sample rate", sample_rate, "Hz")
     if ticks < _LEAST_TICKS:
         raise ValueError(
-            f"sample rate {sample_rate:g} Hz ticks long after the arrival; give a higher rate"
+            f"sample rate is {sample_rate:g} Hz, a tick long after the arrival; give a higher rate"
         )
     if ticks > _MOST_SAMPLES:
         raise ValueError(
-            f"sample rate {sample_rate:g} Hz asks for {ticks:.3g} rows; give a lower rate"
+            f"sample rate {sample_rate:g} Hz asks for {ticks:.0f} rows; give a lower rate"
         )
     return max(1, math.ceil(ticks - 1e-9))
 

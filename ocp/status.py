@@ -38,7 +38,14 @@ class SolveStatus(Enum):
         -------
         SolveStatus
             The status.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            When the user stopped the solve.
         """
+        if return_status == "User_Requested_Stop":
+            raise KeyboardInterrupt
         return _FROM_IPOPT.get(return_status, cls.NUMERICAL_TROUBLE)
 
 

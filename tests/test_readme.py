@@ -175,7 +175,7 @@ def test_there_are_commands_for_a_move_of_your_own():
 
 def test_files_that_it_names_are_there():
     linked = re.findall(r"!?\[[^]]*\]\(([^)#]+)\)", README)
-    quoted = re.findall(r"`([\w.-]+/[\w./-]+)`", README)
+    quoted = re.findall(r"`([\w.-]+/[\w./-]+\.\w+)`", README)
     names = [name for name in [*linked, *quoted] if "://" not in name]
     assert "notebooks/move.png" in names
     assert "notebooks/01_plan_a_move.ipynb" in names

@@ -303,7 +303,9 @@ def test_the_power_of_a_table_adds_up_to_the_energy(any_plan, tmp_path):
     )
 
 
-@pytest.mark.parametrize("rate", [0, 0.0, -100.0, 1e-10, math.nan, math.inf, -math.inf, "fast", None])
+@pytest.mark.parametrize(
+    "rate", [0, 0.0, -100.0, 1e-10, math.nan, math.inf, -math.inf, "fast", None]
+)
 def test_a_sample_rate_that_is_not_positive_is_named(plan, tmp_path, rate):
     with pytest.raises(ValueError, match="sample rate is") as error:
         plan.save_csv(tmp_path / "move.csv", rate)

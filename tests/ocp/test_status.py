@@ -24,11 +24,6 @@ def test_ipopts_status_is_translated(ipopt, status):
     assert SolveStatus.from_ipopt(ipopt) is status
 
 
-def test_a_user_who_stops_a_solve_stops_it():
-    with pytest.raises(KeyboardInterrupt):
-        SolveStatus.from_ipopt("User_Requested_Stop")
-
-
 def test_only_an_optimum_is_solved():
     solved = {status for status in SolveStatus if status.solved}
     assert solved == {SolveStatus.OPTIMAL, SolveStatus.ACCEPTABLE}

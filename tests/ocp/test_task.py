@@ -53,7 +53,7 @@ def test_all_limits_together():
     assert _task(**limits).limits == expected
 
 
-@pytest.mark.parametrize("kind", [int, np.float64, np.float32, np.int64, np.array])
+@pytest.mark.parametrize("kind", [int, np.float64, np.float32, np.int64])
 def test_every_kind_of_number_becomes_a_float(kind):
     task = _task(start=kind(1), target=kind(2), duration=kind(3), torque_limit=kind(4))
     numbers = (task.start, task.target, task.duration, task.torque_limit)

@@ -1,0 +1,93 @@
+"""Ctrl-C during casadi's own loops is not lost."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from ocp.interrupts import keep_interrupts
+
+ROOT = Path(__file__).parents[2]
+
+
+def _swallow_ctrl_c():
+    """What casadi does: Ctrl-C comes, and is lost."""
+    with contextlib.suppress(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(1.0)  # Python runs the handler at the next opportunity, at once
+
+
+def test_a_swallowed_ctrl_c_comes_after_the_block():
+    reached = []
+    with pytest.raises(KeyboardInterrupt), keep_interrupts():
+        _swallow_ctrl_c()
+        reached.append("the end of the block")
+    assert reached
+
+
+def test_the_users_handler_is_back_after_the_block():
+    before = signal.getsignal(signal.SIGINT)
+    with contextlib.suppress(KeyboardInterrupt), keep_interrupts():
+        assert signal.getsignal(signal.SIGINT) is not before
+        _swallow_ctrl_c()
+    assert signal.getsignal(signal.SIGINT) is before
+    with contextlib.suppress(RuntimeError), keep_interrupts():
+        raise RuntimeError
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_without_ctrl_c_nothing_happens():
+    with keep_interrupts():
+        value = 1
+    assert value == 1
+
+
+def test_errors_of_the_block_pass():
+    with pytest.raises(ZeroDivisionError), keep_interrupts():
+        _ = 1 / 0
+
+
+def test_other_threads_leave_signals_alone():
+    seen = []
+
+    def work():
+        with keep_interrupts():
+            seen.append(signal.getsignal(signal.SIGINT))
+
+    before = signal.getsignal(signal.SIGINT)
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert seen == [before]
+
+
+def test_ctrl_c_ends_a_solve():
+    # Many starts of a large program; it takes far longer than the test waits for it to begin.
+    script = (
+        "import math, ocp, models\n"
+        "task = ocp.PointToPoint(models.SingleLinkManipulator(), math.pi / 6, 0.8)\n"
+        "print('begun', flush=True)\n"
+        "try:\n"
+        "    ocp.plan_move(task, ocp.CycloidPolynomial(12), starts=1000)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('stopped', flush=True)\n"
+    )
+    run = subprocess.Popen(
+        [sys.executable, "-c", script], cwd=ROOT, stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert run.stdout.readline() == "begun\n"
+        time.sleep(0.7)
+        run.send_signal(signal.SIGINT)
+        out, _ = run.communicate(timeout=60)
+    finally:
+        run.kill()
+        run.stdout.close()
+    assert out == "stopped\n"
+    assert run.returncode == 0
