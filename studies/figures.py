@@ -45,10 +45,17 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
     matplotlib.figure.Figure
         The four panels, in the order of the paper's Figs 2 and 5; time goes on through the
         residual window after arrival.
+
+    Raises
+    ------
+    ValueError
+        When there is no motion, or their durations differ.
     """
     if isinstance(lines, Plan):
         cycloid = evaluate_coefficients(lines.task, [])
         lines = [Line(cycloid, "plain cycloid", "0.55"), Line(lines, "this plan", "tab:blue")]
+    if len({line.plan.task.duration for line in lines}) != 1:
+        raise ValueError("give one motion or more, all of one duration")
     figure = Figure(figsize=(10, 6.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes: list[Axes] = list(figure.subplots(2, 2, sharex=True).flat)

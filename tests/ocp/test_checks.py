@@ -10,7 +10,7 @@ import pytest
 from ocp.checks import finite, positive, whole
 
 NUMBERS = [1, 1.5, np.float32(1.5), np.float64(1.5), np.int16(2), Fraction(3, 2)]
-NOT_NUMBERS = [True, np.bool_(True), "1.5", None, [1.5], 1j, Decimal("1.5"), np.array(1.5)]
+NOT_NUMBERS = [True, np.bool_(True), "1.5", None, [1.5], 1j, Decimal("1.5"), np.array([1.5])]
 
 
 @pytest.mark.parametrize("check", [finite, positive])
@@ -37,7 +37,7 @@ def test_what_is_not_positive_is_named(value):
 
 
 def test_a_number_without_a_unit():
-    with pytest.raises(ValueError, match="^share is -1; give a positive number$"):
+    with pytest.raises(ValueError, match=r"^share is -1; give a positive number$"):
         positive("share", -1)
 
 
@@ -49,6 +49,6 @@ def test_a_whole_number_becomes_an_int(value):
 
 @pytest.mark.parametrize("value", [0, -7, 1.0, 1.5, True, "1", None, math.nan], ids=repr)
 def test_what_is_no_whole_number_from_the_least_up_is_named(value):
-    with pytest.raises(ValueError, match="^count is .*; give a whole number from 1 up$") as error:
+    with pytest.raises(ValueError, match=r"^count is .*; give a whole number from 1 up$") as error:
         whole("count", value, 1)
     assert repr(value) in str(error.value)

@@ -25,9 +25,14 @@ def _swallow_ctrl_c():
 
 def test_a_swallowed_ctrl_c_comes_after_the_block():
     reached = []
-    with pytest.raises(KeyboardInterrupt), keep_interrupts():
-        _swallow_ctrl_c()
-        reached.append("the end of the block")
+
+    def work():
+        with keep_interrupts():
+            _swallow_ctrl_c()
+            reached.append("the end of the block")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
     assert reached
 
 

@@ -187,7 +187,7 @@ def test_any_plan_saves_and_loads_equal(tmp_path_factory, plan):
         {"bound": np.float32(0.5)},
         {"bound": 1},
         {"residual_limit": np.float32(1e-3)},
-        {"residual_limit": 1},
+        {"residual_limit": 0},
     ],
 )
 def test_a_plan_of_numpys_numbers_saves_and_loads_equal(tasks, tmp_path, settings):

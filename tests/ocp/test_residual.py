@@ -89,6 +89,12 @@ def test_a_longer_window_never_shows_less():
     assert peaks[0] < peaks[-1] / 2  # a quarter period is 0.21 s: the first windows end before it
 
 
+def test_a_window_of_too_many_swings_is_named():
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0, residual_window=1e6)
+    with pytest.raises(ValueError, match=r"residual window 1e\+06 s .*give a shorter one"):
+        residual_matrix(task)
+
+
 def test_the_matrix_cannot_be_written_to():
     # It is shared by everyone who asks for the same task.
     with pytest.raises(ValueError, match="read-only"):

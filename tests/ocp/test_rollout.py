@@ -135,6 +135,12 @@ def test_default_steps_resolve_the_profile_and_the_fastest_mode():
     assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
 
 
+def test_a_move_of_too_many_swings_is_named():
+    # 1e5 s are 1e6 radians of the plant's 10.43 rad/s.
+    with pytest.raises(ValueError, match=r"duration 100000 s is 1\.04e\+06 radians"):
+        default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 1e5))
+
+
 def test_a_rollout_says_how_many_steps_it_took():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
     assert rollout(task, PLAIN, []).steps == LEAST_STEPS

@@ -24,7 +24,7 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.solver import start_coefficients
+from ocp.solver import LEAST_STEPS, start_coefficients
 from ocp.task import LIMITS
 
 pi = math.pi
@@ -291,6 +291,16 @@ def test_a_tiny_residual_limit_is_kept(tasks, solved, name, limit):
     plan = solved(tasks[name], residual_limit=limit)
     assert plan.residual <= limit * (1 + 1e-6)
     assert plan.energy == pytest.approx(solved(tasks[name]).energy, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["single link", "arm"])
+def test_a_residual_limit_that_is_not_in_the_way_is_verified_as_any_other(tasks, solved, name):
+    # The cheapest motion of two terms rings by some centimetres, less than 0.2 m.
+    plan = solved(tasks[name], 2, residual_limit=0.2, starts=1)
+    assert 0.01 < plan.residual < 0.1
+    check = plan.verification
+    assert check.fixed_step_residual == pytest.approx(plan.residual, rel=1e-3)
+    assert check.steps <= 2 * LEAST_STEPS
 
 
 def test_the_box_is_kept_however_narrow(tasks, solved):

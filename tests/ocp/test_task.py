@@ -95,6 +95,14 @@ def test_an_angle_that_is_not_finite_is_named(name, value):
     _refused(f"{name} is", value, **{name: value})
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("duration", 1e-7), ("duration", 1e-300), ("duration", 1e7), ("target", 1e7), ("start", -1e9)],
+)
+def test_a_number_beyond_all_scale_is_named(name, value):
+    _refused(f"{name} is", value, **{name: value})
+
+
 @pytest.mark.parametrize("angle", [0.0, math.pi / 6, -1])
 def test_a_target_equal_to_the_start_is_named(angle):
     _refused("target equals start", float(angle), start=angle, target=float(angle))

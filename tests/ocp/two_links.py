@@ -1,7 +1,7 @@
 """A user's plant in one file: two flexible links of different frequency on one hub.
 
 Not in the package. Equations and identified coefficients (theoretical value times an identified
-factor) from /work/shared/physics.md, 'A third plant', the kind of the paper's ref. [25].
+factor) from physics.md, 'A third plant', the kind of the paper's ref. [25].
 """
 
 from collections.abc import Sequence
