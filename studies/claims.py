@@ -128,7 +128,8 @@ def _beats_the_earlier_studies(result: Reproduction) -> Claim:
     rows = _against_earlier(result)
     evidence = tuple(
         f"{_name(row.condition)}: printed {row.energy:.3g} J against {earlier:.3g} J of "
-        f"ref. [{23 if row.table == 3 else 24}]; the gradient needs {gradient:.4g} J in the same box"
+        f"ref. [{23 if row.table == 3 else 24}]; the gradient needs {gradient:.4g} J in the same "
+        "box"
         for row, earlier, gradient in rows
     )
     holds = all(row.energy < earlier for row, earlier, _ in rows)
