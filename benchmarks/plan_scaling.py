@@ -8,7 +8,7 @@ cycloid. Terms 2 to 20 at 100 steps, with the paper's box on the coefficients an
 then 100 to 1600 steps at six terms. Every repetition begins cold, with nothing built. Columns:
 
 - build: making the solver (the step's functions and derivatives, their mapping, IPOPT's set-up);
-- solve: one run of IPOPT; its iterations; and the time of one of them;
+- solve: one run of IPOPT, how many iterations it took, and the time of one of them;
 - plan: the whole of `plan_move`, cold: build, solve, verification by CVODES, and where that asks
   for them more steps and another solve. `steps used` tells how far it went;
 - / first: plan time over that of the table's first row, the median of the ratios within a
@@ -83,7 +83,7 @@ def measure(case: Case) -> Timing:
 def show(title: str, cases: Sequence[Case], runs: Sequence[Sequence[Timing]]) -> Table:
     """The table of some cases: `runs` has a row a repetition, a column a case."""
     table = Table(title=title)
-    for name in ("terms", "steps", "build", "solve", "iterations", "an iteration", "plan",
+    for name in ("terms", "steps", "build", "solve", "iterations", "per iteration", "plan",
                  "/ first", "steps used", "energy"):  # fmt: skip
         table.add_column(name, justify="right")
     for column, case in enumerate(cases):

@@ -1,7 +1,7 @@
-"""Time per candidate of the population objective against what one would write by hand.
+"""Time per candidate of the population objective, against what one would write by hand.
 
     pip install ".[benchmark]"
-    python benchmarks/population.py [--rounds 15] [--seed 0]
+    python benchmarks/population.py [--rounds 40] [--seed 0]
 
 The arm on a flexible link, 0 to pi/2 in 0.8 s, six terms, 200 candidates with random coefficients
 in the paper's box (|a_n| <= 0.5), one core; F1 over 1 s after arrival, F2 = integral |tau theta'|:
@@ -10,34 +10,35 @@ in the paper's box (|a_n| <= 0.5), one core; F1 over 1 s after arrival, F2 = int
 - numba: a scalar loop over candidates and steps of RK4, compiled, without fastmath;
 - NumPy: RK4 with the whole population in every operation, the joint's motion computed time by time,
   or for all times at once before the march;
-- solve_ivp: DOP853 with rtol 1e-8, one candidate at a time, scalar right-hand side in Python, the
-  energy by the trapezoid rule over samples.
+- solve_ivp: DOP853 with rtol 1e-8 (atol 1e-10), one candidate at a time, with the equations in
+  NumPy as one usually writes them, or in the standard library's floats.
 
-All compute the same: eqs (1)-(7), (13), (14). The hand-written ones get the best that is known of
-them: the joint's motion once for each distinct time, the plant reduced to W'' = g - D W' - K W
-there, the peak after arrival in closed form, even steps or quietarm's graded ones, whichever need
-fewer. F2 is the integral of the absolute value of the quadratic through the power at a step's
-start, middle and end, split at its zeros; "trapezoid" is the plain rule over the same three.
+All compute the same: eqs (1)-(7), (13), (14). The hand-written marches get the best that is known
+of them: the joint's motion once for each distinct time, the plant reduced to W'' = g - K W - D W'
+there, the peak after arrival in closed form, quietarm's graded steps beside even ones. Their F2 is
+the integral of the absolute value of the quadratic through the power at a step's start, middle and
+end, split at its zeros; "trapezoid" is the plain rule over the same three. solve_ivp's F2 is the
+trapezoid rule over samples.
 
-Equal error: each takes the fewest steps of a list with which nine in ten candidates are within 1e-4
-of F2 (relative) and 1e-6 m of W at arrival; the reference is quietarm's rollout with 1500 steps.
-solve_ivp takes the fewest samples, likewise. quietarm's own steps are its default.
+Equal error: each takes the fewest steps (solve_ivp: samples) of a list with which nine in ten
+candidates are within 1e-4 of F2 (relative) and 1e-6 m of W at arrival. quietarm's steps are its
+default. The reference is quietarm's rollout with 1500 steps; solve_ivp is independent of it.
 
-Methods take turns in every round. Printed are the least and the median time per candidate, and the
-median of the ratios to quietarm within a round. Then: what 10,000 candidates add to the memory, two
-threads, and what a second task (another start, target and duration) costs.
+Methods take turns in every round. Printed are the least and the median CPU time per candidate (CPU
+time, for the machine may be shared), and the median of the ratios to quietarm within a round. Then,
+by the clock: two threads, what a second task costs, what 10,000 candidates add to the memory.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
-import resource
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import pi
 from statistics import median
 from typing import Any, NamedTuple
@@ -46,12 +47,11 @@ import numba
 import numpy as np
 from common import console, forget_compiled, machine, timed
 from numpy.typing import NDArray
-from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
 
-from metaheuristics import population as quietarm
-from metaheuristics.population import PopulationObjective
+from metaheuristics import PopulationObjective
+from metaheuristics.population import _compiled
 from models import ArmOnFlexibleLink, JointMotion
 from ocp import CycloidPolynomial, PointToPoint, rollout
 from ocp.collocation import mesh, modal_system
@@ -59,11 +59,15 @@ from ocp.collocation import mesh, modal_system
 PLANT, PROFILE = ArmOnFlexibleLink(), CycloidPolynomial(6)
 TASK = PointToPoint(PLANT, target=pi / 2, duration=0.8)
 SECOND_TASK = PointToPoint(PLANT, start=-pi / 2, target=pi / 4, duration=1.0)
-BOX, CANDIDATES, MANY, FEW = 0.5, 200, 10_000, 5
+BOX, CANDIDATES, MANY = 0.5, 200, 10_000
+FEW, TUNING = 5, 40  # candidates of solve_ivp: to time, to choose its samples
 ENERGY_ERROR, ARRIVAL_ERROR, SHARE, REFERENCE_STEPS = 1e-4, 1e-6, 0.9, 1500
 STEPS = (20, 24, 28, 32, 36, 40, 44, 48, 52, 56, 60, 64, 70, 76, 82, 90, 100, 110, 120, 135, 150,
          170, 190, 210, 240, 270, 300, 350, 400)  # fmt: skip
-SAMPLES = (200, 400, 600, 800, 1000, 1500, 2000, 4000)
+SAMPLES = (200, 300, 400, 600, 800, 1000, 1500, 2000, 4000)
+
+Values = NDArray[np.float64]
+"""A row a candidate: F1 [m], F2 [J], W at arrival [m]."""
 
 
 class Numbers(NamedTuple):
@@ -188,9 +192,9 @@ def absolute_integral_arrays(start: Any, middle: Any, end: Any) -> Any:
 
 @numba.njit
 def march_compiled(
-    x: Numbers, population: NDArray[np.float64], grid: NDArray[np.float64], trapezoid: bool
-) -> NDArray[np.float64]:
-    """F1, F2 and W at arrival of every candidate (columns)."""
+    x: Numbers, grid: NDArray[np.float64], trapezoid: bool, population: NDArray[np.float64]
+) -> Values:
+    """RK4 in scalars, the way one writes it for numba."""
     table = np.empty((len(population), 3))
     for candidate in range(len(population)):
         a = population[candidate]
@@ -230,9 +234,9 @@ def march_compiled(
 
 
 def march_arrays(
-    x: Numbers, population: NDArray[np.float64], grid: NDArray[np.float64], at_once: bool
-) -> NDArray[np.float64]:
-    """As `march_compiled`, in NumPy."""
+    x: Numbers, grid: NDArray[np.float64], at_once: bool, population: NDArray[np.float64]
+) -> Values:
+    """RK4 of the whole population."""
     times = np.empty(2 * len(grid) - 1)
     times[::2], times[1::2] = grid, (grid[:-1] + grid[1:]) / 2
     a = np.ascontiguousarray(population.T)
@@ -266,19 +270,48 @@ def march_arrays(
     return np.column_stack([peak_after(x, W, dW), energy, W])
 
 
-def integrate(x: Numbers, population: NDArray[np.float64], samples: int) -> NDArray[np.float64]:
-    """As `march_compiled`, by solve_ivp, with so many samples of the power."""
+def rates_in_floats(x: Numbers, a: Sequence[float]) -> Callable[..., Any]:
+    def rates(t: float, y: NDArray[np.float64]) -> tuple[float, float]:
+        g, K, D, *_ = plant_at_scalars(x, a, t / x.duration)
+        return y[1], g - K * y[0] - D * y[1]
+
+    return rates
+
+
+def rates_in_numpy(x: Numbers, a: Sequence[float]) -> Callable[..., Any]:
+    U = np.polyadd([0.5, 0.5], np.polymul([-1.0, 0.0, 1.0], a[::-1]))  # of T
+    dU = np.polyder(U) * 2 / x.duration
+    ddU = np.polyder(dU) * 2 / x.duration
+
+    def rates(t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
+        T = 2 * t / x.duration - 1
+        u, du, ddu = np.polyval(U, T), np.polyval(dU, T), np.polyval(ddU, T)
+        sine, cosine = np.sin(pi * u), np.cos(pi * u)
+        angle = x.start + x.span * (u - np.sin(2 * pi * u) / (2 * pi))
+        speed = 2 * x.span * sine**2 * du
+        acceleration = 2 * x.span * sine * (2 * pi * cosine * du**2 + sine * ddu)
+        W, dW = y
+        force = (
+            2 * x.zeta * x.omega * dW
+            + x.omega**2 * W
+            + (x.alpha2 + x.alpha3 * np.cos(angle)) * acceleration
+            + (x.alpha4 * dW * speed - x.alpha3 * speed**2) * np.sin(angle)
+        )
+        return np.array([dW, -force / (1 + x.alpha1 * np.cos(angle))])
+
+    return rates
+
+
+def integrate(
+    x: Numbers, samples: int, equations: Callable[..., Any], population: NDArray[np.float64]
+) -> Values:
+    """solve_ivp, one candidate after the other; energy from so many samples of the power."""
     table = np.empty((len(population), 3))
     times = np.linspace(0.0, x.duration, samples + 1)
     for candidate, row in enumerate(population):
         a = row.tolist()
-
-        def rates(t: float, y: NDArray[np.float64], a: list[float] = a) -> tuple[float, float]:
-            g, K, D, *_ = plant_at_scalars(x, a, t / x.duration)
-            return y[1], g - K * y[0] - D * y[1]
-
         solution = solve_ivp(
-            rates, (0.0, x.duration), [0.0, 0.0], "DOP853", times, rtol=1e-8, atol=1e-10
+            equations(x, a), (0.0, x.duration), [0.0, 0.0], "DOP853", times, rtol=1e-8, atol=1e-10
         )
         W, dW = solution.y
         g, K, D, drive, coupling, speed = plant_at_arrays(x, a, times / x.duration)
@@ -298,40 +331,36 @@ def graded(steps: int) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True)
-class Errors:
-    """Of every candidate: relative in F1 and F2, and of W at arrival [m]."""
-
-    residual: NDArray[np.float64]
-    energy: NDArray[np.float64]
-    arrival: NDArray[np.float64]
-
-    @classmethod
-    def between(cls, table: NDArray[np.float64], reference: NDArray[np.float64]) -> Errors:
-        difference = np.abs(table - reference)
-        relative = difference / np.abs(reference)
-        return cls(relative[:, 0], relative[:, 1], difference[:, 2])
-
-    @property
-    def within(self) -> bool:
-        return (
-            np.quantile(self.energy, SHARE) <= ENERGY_ERROR
-            and np.quantile(self.arrival, SHARE) <= ARRIVAL_ERROR
-        )
-
-
-@dataclass(frozen=True)
 class Method:
-    """A row: how it is called, its steps, its errors, and what to time for how many candidates."""
+    """A row of the tables.
+
+    `errors` are of every candidate: of F2 (relative), W at arrival [m], F1 (relative). `target` is
+    what the ratio to quietarm shall be at least, where something is asked for.
+    """
 
     title: str
     steps: str
-    errors: Errors
+    errors: tuple[NDArray[np.float64], ...]
     call: Callable[[], object]
     candidates: int = CANDIDATES
+    target: float | None = None
 
 
-def by_rollout(population: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
-    """F1 in closed form, F2 and W at arrival by quietarm's rollout."""
+def errors_of(values: Values, reference: Values) -> tuple[NDArray[np.float64], ...]:
+    difference = np.abs(values - reference)
+    relative = difference / np.abs(reference)
+    return relative[:, 1], difference[:, 2], relative[:, 0]
+
+
+def accurate(errors: tuple[NDArray[np.float64], ...]) -> bool:
+    energy, arrival, _ = errors
+    return bool(
+        np.quantile(energy, SHARE) <= ENERGY_ERROR and np.quantile(arrival, SHARE) <= ARRIVAL_ERROR
+    )
+
+
+def by_rollout(population: NDArray[np.float64], steps: int) -> Values:
+    """The rollout, with the peak after arrival in closed form."""
     x, rows = numbers(TASK), []
     for a in population:
         result = rollout(TASK, PROFILE, a, steps)
@@ -341,69 +370,186 @@ def by_rollout(population: NDArray[np.float64], steps: int) -> NDArray[np.float6
 
 def tuned(
     title: str,
-    march: Callable[..., NDArray[np.float64]],
-    option: bool,
+    choices: Sequence[tuple[str, Callable[[NDArray[np.float64]], Values]]],
     population: NDArray[np.float64],
-    reference: NDArray[np.float64],
+    reference: Values,
+    timed_on: int = CANDIDATES,
+    target: float | None = None,
 ) -> Method:
-    """A march with the fewest steps that are accurate enough; even ones where both serve."""
-    x = numbers(TASK)
-    for steps in STEPS:
-        for spacing in (even, graded):
-            grid = spacing(steps)
-            errors = Errors.between(march(x, population, grid, option), reference)
-            if errors.within:
-                call = lambda grid=grid: march(x, population, grid, option)  # noqa: E731
-                return Method(title, f"{steps} {spacing.__name__}", errors, call)
-    raise RuntimeError(f"{title}: {STEPS[-1]} steps are not accurate enough")
-
-
-def one_at_a_time(
-    population: NDArray[np.float64], reference: NDArray[np.float64]
-) -> tuple[Method, int]:
-    """solve_ivp with the fewest samples that are accurate enough for a few candidates."""
-    x, few = numbers(TASK), population[:: len(population) // 40]
-    for samples in SAMPLES:
-        errors = Errors.between(
-            integrate(x, few, samples), reference[:: len(population) // 40]
-        )
-        if errors.within:
-            call = lambda: integrate(x, population[:FEW], samples)  # noqa: E731
-            return Method("solve_ivp, DOP853", f"{samples} samples", errors, call, FEW), samples
-    raise RuntimeError(f"solve_ivp: {SAMPLES[-1]} samples are not accurate enough")
+    """The first of the choices that is accurate enough."""
+    for name, march in choices:
+        errors = errors_of(march(population), reference)
+        if accurate(errors):
+            call = partial(march, population[:timed_on])
+            return Method(title, name, errors, call, timed_on, target)
+    raise RuntimeError(f"{title}: {choices[-1][0]} are not accurate enough")
 
 
 def methods(population: NDArray[np.float64]) -> list[Method]:
-    reference = by_rollout(population, REFERENCE_STEPS)
+    """First quietarm, then the others with steps that make them as accurate as asked."""
+    x, reference = numbers(TASK), by_rollout(population, REFERENCE_STEPS)
     objective = PopulationObjective(TASK, PROFILE)
-    table = by_rollout(population, objective.steps)
     values = objective(population)
-    table[:, :2] = np.column_stack([values.residual, values.energy])
-    ours = Method(
-        "quietarm, PopulationObjective",
-        f"{objective.steps} graded",
-        Errors.between(table, reference),
-        lambda: objective(population),
-    )
-    solver, _ = one_at_a_time(population, reference)
-    return [
-        ours,
-        tuned("numba loop, RK4", march_compiled, False, population, reference),
-        tuned("numba loop, RK4, trapezoid", march_compiled, True, population, reference),
-        tuned("NumPy, RK4, time by time", march_arrays, False, population, reference),
-        tuned("NumPy, RK4, all times at once", march_arrays, True, population, reference),
-        solver,
+    arrival = by_rollout(population, objective.steps)[:, 2]
+    ours = np.column_stack([values.residual, values.energy, arrival])
+    rows = [
+        Method(
+            "quietarm, PopulationObjective",
+            f"{objective.steps} graded",
+            errors_of(ours, reference),
+            partial(objective, population),
+        )
     ]
+    for title, march, option, spacing, target in (
+        ("numba loop", march_compiled, False, even, 1.0),
+        ("numba loop, graded steps", march_compiled, False, graded, 1.0),
+        ("numba loop, trapezoid", march_compiled, True, even, None),
+        ("NumPy, time by time", march_arrays, False, even, 5.0),
+        ("NumPy, time by time, graded steps", march_arrays, False, graded, 5.0),
+        ("NumPy, all at once, graded steps", march_arrays, True, graded, None),
+    ):
+        choices = [
+            (f"{steps} {spacing.__name__}", partial(march, x, spacing(steps), option))
+            for steps in STEPS
+        ]
+        rows.append(tuned(title, choices, population, reference, target=target))
+    for title, equations, target in (
+        ("solve_ivp, equations in NumPy", rates_in_numpy, 3000.0),
+        ("solve_ivp, equations in floats", rates_in_floats, None),
+    ):
+        choices = [
+            (f"{samples} samples", partial(integrate, x, samples, equations)) for samples in SAMPLES
+        ]
+        rows.append(tuned(title, choices, population[:TUNING], reference[:TUNING], FEW, target))
+    return rows
+
+
+def times_of(rows: Sequence[Method], rounds: int) -> NDArray[np.float64]:
+    """CPU time per candidate [us]: a row a round, a column a method."""
+    for method in rows:
+        method.call()
+    times = np.empty((rounds, len(rows)))
+    for turn in range(rounds):
+        for column, method in enumerate(rows):
+            began = time.process_time()
+            method.call()
+            times[turn, column] = 1e6 * (time.process_time() - began) / method.candidates
+    return times
+
+
+def time_table(rows: Sequence[Method], times: NDArray[np.float64]) -> Table:
+    table = Table(title=f"CPU time per candidate, {CANDIDATES} candidates")
+    table.add_column("method")
+    for name in ("steps", "least", "median", "/ quietarm", "target"):
+        table.add_column(name, justify="right")
+    for column, method in enumerate(rows):
+        ratio = float(np.median(times[:, column] / times[:, 0]))
+        verdict = ""
+        if method.target is not None:
+            verdict = f"{method.target:g} {'met' if ratio >= method.target else 'missed'}"
+        least, middle = times[:, column].min(), np.median(times[:, column])
+        table.add_row(
+            method.title,
+            method.steps,
+            f"{least:,.2f} us",
+            f"{middle:,.2f} us",
+            f"{ratio:,.2f}",
+            verdict,
+        )
+    return table
+
+
+def error_table(rows: Sequence[Method]) -> Table:
+    table = Table(title=f"errors: {SHARE:.0%} quantile, root mean square, largest")
+    table.add_column("method")
+    for quantity in ("F2, relative", "W at arrival, m", "F1, relative"):
+        table.add_column(quantity, justify="right")
+    for method in rows:
+        cells = [
+            f"{np.quantile(e, SHARE):.0e} {np.sqrt(np.mean(e**2)):.0e} {e.max():.0e}"
+            for e in method.errors
+        ]
+        table.add_row(method.title, *cells)
+    return table
+
+
+def threads_table(rng: np.random.Generator, rounds: int) -> Table:
+    table = Table(title="two threads, by the clock, median")
+    for name in ("candidates", "one thread", "two threads", "one / two"):
+        table.add_column(name, justify="right")
+    objectives = [PopulationObjective(TASK, PROFILE, threads=threads) for threads in (1, 2)]
+    for count in (CANDIDATES, 10 * CANDIDATES, MANY):
+        population = rng.uniform(-BOX, BOX, (count, PROFILE.size))
+        times = [
+            [timed(partial(objective, population))[0] for objective in objectives]
+            for _ in range(rounds)
+        ]
+        one, two = (1e6 * median(column) / count for column in zip(*times, strict=True))
+        ratio = median(a / b for a, b in times)
+        table.add_row(f"{count:,}", f"{one:.2f} us", f"{two:.2f} us", f"{ratio:.2f}")
+    return table
+
+
+def tasks_table(population: NDArray[np.float64]) -> Table:
+    """Objective and first population of a task, when nothing is built and when a like one is."""
+
+    def values(task: PointToPoint) -> float:
+        return timed(lambda: PopulationObjective(task, PROFILE)(population))[0]
+
+    forget_compiled()
+    _compiled.cache_clear()
+    first, second = values(TASK), values(SECOND_TASK)
+    table = Table(title=f"objective and {CANDIDATES} candidates, by the clock")
+    for name in ("first task", "second task", "first / second", "functions built"):
+        table.add_column(name, justify="right")
+    built = str(_compiled.cache_info().misses)
+    table.add_row(f"{1e3 * first:.0f} ms", f"{1e3 * second:.1f} ms", f"{first / second:.0f}", built)
+    return table
+
+
+MEMORY = f"""
+import math, numpy as np
+from metaheuristics import PopulationObjective
+from models import ArmOnFlexibleLink
+from ocp import CycloidPolynomial, PointToPoint
+
+def peak():  # ru_maxrss would start from the parent's peak
+    return next(int(line.split()[1]) for line in open("/proc/self/status") if "VmHWM" in line)
+
+population = np.random.default_rng(0).uniform(-{BOX}, {BOX}, ({MANY}, {PROFILE.size}))
+before = peak()
+PopulationObjective(
+    PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), CycloidPolynomial({PROFILE.size})
+)(population)
+print((peak() - before) / 1024)
+"""
+
+
+def memory_growth() -> float:
+    """Growth of the peak memory by objective and population [MiB], in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-c", MEMORY], check=True, capture_output=True, text=True
+    )
+    return float(done.stdout)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="The population objective against other ways.")
+    parser.add_argument("--rounds", type=int, default=40, help="40 by default")
+    parser.add_argument("--seed", type=int, default=0, help="of the candidates; 0 by default")
+    arguments = parser.parse_args()
+    rng = np.random.default_rng(arguments.seed)
+    population = rng.uniform(-BOX, BOX, (CANDIDATES, PROFILE.size))
+    screen = console()
+    screen.print(machine("numpy", "numba", "scipy"))
+    rows = methods(population)
+    screen.print(time_table(rows, times_of(rows, arguments.rounds)))
+    screen.print(error_table(rows))
+    screen.print(threads_table(rng, min(arguments.rounds, 15)))
+    screen.print(tasks_table(population))
+    growth = memory_growth()
+    screen.print(f"{MANY:,} candidates: peak memory grows by {growth:.0f} MiB, build included")
 
 
 if __name__ == "__main__":
-    rng = np.random.default_rng(0)
-    A = rng.uniform(-BOX, BOX, (CANDIDATES, 6))
-    ms = methods(A)
-    T = [[] for _ in ms]
-    for _ in range(12):
-        for i, m in enumerate(ms):
-            t = time.perf_counter(); m.call(); T[i].append((time.perf_counter() - t) / m.candidates * 1e6)
-    for m, t in zip(ms, T):
-        e = m.errors
-        print(m.title, m.steps, min(t), median(t), *(f"{np.quantile(v,.9):.1e} {v.max():.1e} {np.sqrt(np.mean(v*v)):.1e}" for v in (e.energy, e.arrival, e.residual)), median(a/b for a,b in zip(t,T[0])))
+    main()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,12 @@ from ocp import FileFormatError
 from ocp.files import write_whole
 
 FORMAT, VERSION = "quietarm-checkpoint", 1
-_HEADER = "header"
+_HEADER, _STATE = "header", "state."
+_DAMAGE = (
+    OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, RecursionError, MemoryError,
+    NotImplementedError, zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
+"""What numpy, zipfile and json raise over a file that is damaged or of another kind."""
 
 
 def save_checkpoint(path: str | Path, header: Mapping[str, Any], state: Mapping[str, Any]) -> None:
@@ -36,8 +42,9 @@ def save_checkpoint(path: str | Path, header: Mapping[str, Any], state: Mapping[
         When the file cannot be written.
     """
     arrays: dict[str, np.ndarray] = {}
-    rest = _split(state, "", arrays)
+    rest = _split(state, _STATE, arrays)
     document = {"format": FORMAT, "version": VERSION, **header, "state": rest}
+    document["arrays"] = sorted(arrays)
     content = io.BytesIO()
     text = np.frombuffer(json.dumps(document).encode(), dtype=np.uint8)
     np.savez(content, allow_pickle=False, **{_HEADER: text}, **arrays)
@@ -63,26 +70,35 @@ def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
         When the file is not a checkpoint, truncated, or of a newer version.
     """
     try:
-        with np.load(path, allow_pickle=False) as content:
-            arrays = {name: content[name] for name in content.files}
+        content = Path(path).read_bytes()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise FileFormatError(f"{path} cannot be read: {reason}") from None
+    broken = FileFormatError(f"{path} is not a checkpoint, or not a whole one")
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
         document = json.loads(bytes(arrays.pop(_HEADER)))
         kind, version = document.pop("format"), document.pop("version")
-        rest = document.pop("state")
-    except OSError as error:
-        if error.strerror:
-            reason = error.strerror.lower()
-            raise FileFormatError(f"{path} cannot be read: {reason}") from None
-        raise FileFormatError(f"{path} is not a checkpoint, or not a whole one") from None
-    except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile):
-        raise FileFormatError(f"{path} is not a checkpoint, or not a whole one") from None
+    except _DAMAGE:
+        raise broken from None
     if kind != FORMAT:
         raise FileFormatError(f"{path} is not a checkpoint: its format is {kind!r}")
+    if not isinstance(version, int) or version < 1:
+        raise broken
     if version > VERSION:
         raise FileFormatError(
             f"{path} has version {version} of the checkpoint format and this quietarm reads up to "
             f"{VERSION}; install a newer quietarm"
         )
-    return document, _join(rest, "", arrays)
+    try:
+        rest, names = document.pop("state"), document.pop("arrays")
+        state = _join(rest, _STATE, arrays)
+    except _DAMAGE:
+        raise broken from None
+    if names != sorted(arrays):
+        raise broken
+    return document, state
 
 
 def _split(state: Mapping[str, Any], prefix: str, arrays: dict[str, np.ndarray]) -> dict[str, Any]:

@@ -51,7 +51,8 @@ class PaperNSGA2(NSGA2):
         return {
             "iteration": int(self.n_iter or 1) - 1,
             "evaluations": self.evaluator.n_eval,
-            "population": {name: individuals.get(name) for name in _COLUMNS},
+            # an infeasible individual has no rank and no crowding: NaN stands for None
+            "population": {name: individuals.get(name).astype(float) for name in _COLUMNS},
             "random_state": random.bit_generator.state,
         }
 
@@ -65,6 +66,10 @@ class PaperNSGA2(NSGA2):
         """
         columns = {name: np.asarray(values) for name, values in state["population"].items()}
         self.pop = Population.new(**columns)
+        for individual in self.pop:
+            for name in ("rank", "crowding"):
+                if np.isnan(individual.get(name)):
+                    individual.set(name, None)
         self.pop.apply(lambda individual: individual.evaluated.update({"F", "G", "H"}))
         random: Any = self.random_state
         random.bit_generator.state = state["random_state"]

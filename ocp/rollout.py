@@ -134,14 +134,14 @@ def _march(
 
 
 def default_steps(task: PointToPoint, least: int = LEAST_STEPS) -> int:
-    """Steps that resolve the profile (`least`) and the plant's fastest mode (4 a radian)."""
+    """Steps that resolve the profile (`least`) and the plant's fastest mode (2 a radian)."""
     radians = fastest_mode(task) * task.duration
-    if 4 * radians > MOST_STEPS:
+    if 2 * radians > MOST_STEPS:
         raise ValueError(
             f"duration {task.duration:g} s is {radians:.3g} radians of the plant's fastest mode; "
-            f"quietarm resolves up to {MOST_STEPS // 4}: give a shorter duration"
+            f"quietarm resolves up to {MOST_STEPS // 2}: give a shorter duration"
         )
-    return max(least, math.ceil(4 * radians))
+    return max(least, math.ceil(2 * radians))
 
 
 @lru_cache(maxsize=32)

@@ -348,7 +348,7 @@ def test_another_format_is_named(path):
     refused(path, "somebody's-own")
 
 
-@pytest.mark.parametrize("lost", ["history.npy", "algorithm.population.X.npy"])
+@pytest.mark.parametrize("lost", ["state.history.npy", "state.algorithm.population.X.npy"])
 def test_a_file_that_lost_an_array_is_refused(path, good, lost):
     with zipfile.ZipFile(io.BytesIO(good)) as old, zipfile.ZipFile(path, "w") as new:
         assert lost in old.namelist()

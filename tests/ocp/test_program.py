@@ -1,6 +1,7 @@
 """The nonlinear program for one task: what it minimises and keeps, in SI units."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -105,6 +106,22 @@ def test_numbers_of_any_size_are_scaled(tasks):
     expected, found = (program.solve(START, {}, None) for program in (light, same))
     assert found.energy == pytest.approx(1e6 * expected.energy, rel=1e-6)
     assert found.coefficients == pytest.approx(expected.coefficients, abs=1e-5)
+
+
+def test_the_unit_of_the_modes_does_not_matter(plants):
+    # W in micrometres: beta1 a million times as large, alpha2 and phi as small.
+    metres = plants["single link"]
+    microns = replace(
+        metres, beta1=1e6 * metres.beta1, alpha2=1e-6 * metres.alpha2, phi=1e-6 * metres.phi
+    )
+    found = []
+    for plant in (metres, microns):
+        task = PointToPoint(plant, math.pi / 6, 0.8)
+        program = TaskProgram(task, PROFILE, STEPS, with_residual=True)
+        found.append(program.solve(START, {RESIDUAL: 1e-3}, 0.2))
+    assert found[1].status is SolveStatus.OPTIMAL
+    assert found[1].energy == pytest.approx(found[0].energy, rel=1e-6)
+    assert found[1].coefficients == pytest.approx(found[0].coefficients, abs=1e-5)
 
 
 def test_programs_of_like_tasks_are_compiled_once(plants):
