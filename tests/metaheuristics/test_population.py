@@ -3,8 +3,11 @@
 import dataclasses
 import json
 import math
+import signal
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -403,10 +406,47 @@ def test_the_shared_function_mixes_no_tasks_up():
 
 
 def test_a_faster_mode_gets_more_steps():
-    fast = SingleLinkManipulator(omega=15.0)
+    fast = SingleLinkManipulator(omega=30.0)
     assert PopulationObjective(PointToPoint(SINGLE_LINK, pi / 6, 0.8), PROFILE).steps == LEAST_STEPS
-    # four steps a radian of the fastest mode (ocp.rollout.default_steps)
-    assert PopulationObjective(PointToPoint(fast, pi / 6, 0.8), PROFILE).steps == 4 * 15 * 0.8
+    # two steps a radian of the fastest mode (ocp.rollout.default_steps)
+    assert PopulationObjective(PointToPoint(fast, pi / 6, 0.8), PROFILE).steps == 2 * 30 * 0.8
+
+
+# -- Ctrl-C --
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="Ctrl-C is sent as a signal")
+def test_ctrl_c_at_any_moment_of_an_evaluation_is_raised(tasks):
+    # casadi's conversions swallow it, or turn it into another error; with few steps they are most of
+    # the time, so that many of the signals fall into them
+    objective, X = PopulationObjective(tasks["arm"][0], PROFILE, steps=2), candidates(200, 0.5)
+    objective(X)
+    rng, main, lost = np.random.default_rng(), threading.main_thread().ident, []
+
+    def send(delay, sent):
+        time.sleep(delay)
+        signal.pthread_kill(main, signal.SIGINT)
+        sent.set()
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        for trial in range(300):
+            sent = threading.Event()
+            sender = threading.Thread(target=send, args=(rng.uniform(2e-4, 2e-3), sent))
+            try:
+                sender.start()
+                while not sent.is_set():
+                    objective(X)
+                time.sleep(0.01)  # for the handler, should the signal still be under way
+                lost.append((trial, "nothing"))
+            except KeyboardInterrupt:
+                pass
+            except Exception as error:
+                lost.append((trial, type(error).__name__))
+            sender.join()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert lost == []
 
 
 # -- memory --

@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from functools import cache
 
@@ -594,22 +595,25 @@ def test_ctrl_c_before_anything_was_found_gives_an_empty_front(monkeypatch, meth
 
 @METHODS
 @pytest.mark.parametrize("moment", range(4))
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="Ctrl-C is sent as a signal")
 def test_ctrl_c_at_any_moment(method, moment):
-    def handler(number, frame):
-        raise KeyboardInterrupt
-
     delay = np.random.default_rng(moment).uniform(0.001, 0.1)
+    main = threading.main_thread().ident
+    timer = threading.Timer(delay, lambda: signal.pthread_kill(main, signal.SIGINT))
 
-    def arm(progress):
+    def begin(progress):
         if progress.generation == 1:
-            signal.setitimer(signal.ITIMER_REAL, delay)
+            timer.start()
+        if progress.seconds > 20:
+            raise RuntimeError("the search went on after Ctrl-C")
 
-    before = signal.signal(signal.SIGALRM, handler)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        front = run(method, generations=100_000, report=arm)
+        front = run(method, generations=100_000, report=begin)
+        timer.join()
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        timer.cancel()
+        signal.signal(signal.SIGINT, before)
     assert not front.complete
     assert 1 <= len(front.history) < 100_000
     assert len(front.points) > 0

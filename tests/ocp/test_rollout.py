@@ -128,10 +128,10 @@ def test_the_error_falls_with_the_sixth_power_of_the_step():
 
 
 def test_default_steps_resolve_the_profile_and_the_fastest_mode():
-    # LEAST_STEPS at least; four a radian of the fastest mode.
+    # LEAST_STEPS at least; two a radian of the fastest mode.
     assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8)) == LEAST_STEPS
-    assert default_steps(PointToPoint(SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 800
-    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 10.0)) == 418  # 4 * 104.3
+    assert default_steps(PointToPoint(SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 400
+    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 10.0)) == 209  # 2 * 104.3
     assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
 
 
