@@ -24,10 +24,11 @@ Equal error: each takes the fewest steps (solve_ivp: samples) of a list with whi
 candidates are within 1e-4 of F2 (relative) and 1e-6 m of W at arrival. quietarm's steps are its
 default. The reference is quietarm's rollout with 1500 steps; solve_ivp is independent of it.
 
-Methods take turns in every round; each is called twice and timed the second time, so that none
-pays for the caches that another left. Printed are the least and the median CPU time per candidate
-(CPU time, for the machine may be shared), and the median of the ratios to quietarm within a round.
-Then, by the clock: two threads, what a second task costs, what 10,000 candidates add to the memory.
+Methods take turns in every round and are called twice in a row: the first call pays for the caches
+that the others left ("cold", its median), the second is what the other columns are of. Printed are
+the least and the median CPU time per candidate (CPU time, for the machine may be shared), and the
+median of the ratios to quietarm within a round. Then, by the clock: two threads, what a second task
+costs, what 10,000 candidates add to the memory.
 """
 
 from __future__ import annotations
@@ -425,33 +426,33 @@ def methods(population: NDArray[np.float64]) -> list[Method]:
 
 
 def times_of(rows: Sequence[Method], rounds: int) -> NDArray[np.float64]:
-    """CPU time per candidate [us]: a row a round, a column a method."""
-    times = np.empty((rounds, len(rows)))
+    """CPU time per candidate [us]: rounds, methods, first and second call."""
+    times = np.empty((rounds, len(rows), 2))
     for turn in range(rounds):
         for column, method in enumerate(rows):
-            method.call()
-            began = time.process_time()
-            method.call()
-            times[turn, column] = 1e6 * (time.process_time() - began) / method.candidates
+            for call in range(2):
+                began = time.process_time()
+                method.call()
+                seconds = time.process_time() - began
+                times[turn, column, call] = 1e6 * seconds / method.candidates
     return times
 
 
 def time_table(rows: Sequence[Method], times: NDArray[np.float64]) -> Table:
-    table = Table(title=f"CPU time per candidate, {CANDIDATES} candidates")
+    table = Table(title=f"CPU time per candidate in us, {CANDIDATES} candidates")
     table.add_column("method")
-    for name in ("steps", "least", "median", "/ quietarm", "target"):
+    for name in ("steps", "cold", "least", "median", "/ quietarm", "target"):
         table.add_column(name, justify="right")
     for column, method in enumerate(rows):
-        ratio = float(np.median(times[:, column] / times[:, 0]))
+        cold, warm = times[:, column].T
+        ratio = float(np.median(warm / times[:, 0, 1]))
         verdict = ""
         if method.target is not None:
             verdict = f"{method.target:g} {'met' if ratio >= method.target else 'missed'}"
-        least, middle = times[:, column].min(), np.median(times[:, column])
         table.add_row(
             method.title,
             method.steps,
-            f"{least:,.2f} us",
-            f"{middle:,.2f} us",
+            *(f"{value:,.2f}" for value in (np.median(cold), warm.min(), np.median(warm))),
             f"{ratio:,.2f}",
             verdict,
         )

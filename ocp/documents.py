@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
@@ -111,7 +111,7 @@ def reading(path: str | Path, name: str) -> Iterator[None]:
         raise
     except KeyError as error:
         raise FileFormatError(f"{path} is not a whole {name}: {error} is missing") from None
-    except (TypeError, ValueError, AttributeError) as error:
+    except (TypeError, ValueError, AttributeError, OverflowError) as error:
         raise FileFormatError(f"{path} is not a valid {name}: {error}") from None
 
 
@@ -164,6 +164,11 @@ def profile_from_document(document: Document) -> JointProfile:
     if profile is None:
         raise ValueError(f"its profile {name!r} is not known here")
     return profile(**arguments)
+
+
+def numbers_of(document: Document, names: Iterable[str]) -> dict[str, float]:
+    """The entries of these names, each a finite number; KeyError or ValueError otherwise."""
+    return {name: finite(name, document[name]) for name in names}
 
 
 def _finite(text: str) -> float:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ocp.checks import finite, positive, whole
 from ocp.documents import (
     Document,
+    numbers_of,
     profile_from_document,
     profile_to_document,
     read_document,
@@ -217,10 +218,10 @@ class Plan:
             task=task_from_document(document),
             profile=profile,
             coefficients=profile.checked(document["coefficients"]),
-            motion=Motion(**{entry.name: _number(figures, entry.name) for entry in fields(Motion)}),
+            motion=Motion(**numbers_of(figures, [entry.name for entry in fields(Motion)])),
             status=SolveStatus(document["status"]),
-            verification=Verification(**document["verification"]),
-            provenance=Provenance(**document["provenance"]),
+            verification=_verification(document["verification"]),
+            provenance=_provenance(document["provenance"]),
         )
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
@@ -335,8 +336,14 @@ def ticks_of_move(duration: float, sample_rate: float) -> int:
     return max(1, math.ceil(ticks - 1e-9))
 
 
-def _number(figures: Document, name: str) -> float:
-    value = figures[name]
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{name} is {value!r}, not a number")
-    return float(value)
+def _verification(document: Document) -> Verification:
+    names = [entry.name for entry in fields(Verification) if entry.name != "steps"]
+    return Verification(whole("steps", document["steps"], 1), **numbers_of(document, names))
+
+
+def _provenance(document: Document) -> Provenance:
+    for name in ("settings", "versions"):
+        if not isinstance(document[name], dict):
+            raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
+    seconds = finite("seconds", document["seconds"], "s")
+    return Provenance(**{**document, "seconds": seconds})

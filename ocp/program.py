@@ -139,14 +139,15 @@ class TaskProgram:
         lower, upper = self._bounds(limits, bound)
         x, return_status = self.program.solve(self._start(guess), lower, upper, parameters)
         mean_power = self.program.node_weights @ x[layout.first_slack :]
-        peaks = x[layout.coefficients : layout.first_state]
+        peaks = dict(zip(layout.peaks, x[layout.coefficients : layout.first_state], strict=True))
+        if RESIDUAL in peaks:
+            # the variable may lie anywhere between the residual and a limit that is not in the way
+            at_arrival = x[layout.first_slack - layout.state : layout.first_slack]
+            peaks[RESIDUAL] = np.abs(self.matrix @ at_arrival).max()
         return Solution(
             coefficients=x[: layout.coefficients],
             energy=float(mean_power * self.reference["power"] * self.task.duration),
-            peaks={
-                name: float(peak * self.reference[name])
-                for name, peak in zip(layout.peaks, peaks, strict=True)
-            },
+            peaks={name: float(peak * self.reference[name]) for name, peak in peaks.items()},
             status=SolveStatus.from_ipopt(return_status),
         )
 
