@@ -19,6 +19,9 @@ rockit starts the modes and slacks at zero, its default, where quietarm starts t
 plain cycloid. `--same-start` gives these to rockit, too, which takes it longer. rockit runs with
 `expand`, as in its own examples: without it, it takes several times as long.
 
+Times are the processor's, not the wall clock's: everything here runs on one thread, where the two
+are the same on an idle machine, and other work on a shared one disturbs the processor's less.
+
 Printed are medians over interleaved repetitions, and the median of the ratios within a repetition:
 
 - build and solve: everything from the task to the coefficients, nothing built before. quietarm's
@@ -36,6 +39,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
 from statistics import median
+from time import process_time
 
 import casadi as ca
 import numpy as np
@@ -184,12 +188,14 @@ def measure(move: Move, steps: int, same_start: bool) -> Repetition:
     program = TaskProgram(move.task, PROFILE, steps, with_residual=False)
     start = Samples.of(program) if same_start else None
     forget_compiled()
-    ours_cold, answer = timed(plan)
-    theirs_cold, (posed, solution) = timed(pose_and_solve)
-    ours_again, _ = timed(plan)
-    theirs_again, again = timed(posed.solve)
+    ours_cold, answer = timed(plan, process_time)
+    theirs_cold, (posed, solution) = timed(pose_and_solve, process_time)
+    ours_again, _ = timed(plan, process_time)
+    theirs_again, again = timed(posed.solve, process_time)
     program = TaskProgram(move.task, PROFILE, steps, with_residual=False)
-    ours_alone, _ = timed(lambda: program.solve(np.zeros(PROFILE.size), AT_REST, move.bound))
+    ours_alone, _ = timed(
+        lambda: program.solve(np.zeros(PROFILE.size), AT_REST, move.bound), process_time
+    )
     return Repetition(
         build_and_solve=(ours_cold, theirs_cold),
         second_call=(ours_again, theirs_again),

@@ -403,11 +403,11 @@ def methods(population: NDArray[np.float64]) -> list[Method]:
     ]
     for title, march, option, spacing, target in (
         ("numba loop", march_compiled, False, even, 1.0),
-        ("numba loop, graded steps", march_compiled, False, graded, 1.0),
+        ("numba loop, graded", march_compiled, False, graded, 1.0),
         ("numba loop, trapezoid", march_compiled, True, even, None),
         ("NumPy, time by time", march_arrays, False, even, 5.0),
-        ("NumPy, time by time, graded steps", march_arrays, False, graded, 5.0),
-        ("NumPy, all at once, graded steps", march_arrays, True, graded, None),
+        ("NumPy, time by time, graded", march_arrays, False, graded, 5.0),
+        ("NumPy, all at once, graded", march_arrays, True, graded, None),
     ):
         choices = [
             (f"{steps} {spacing.__name__}", partial(march, x, spacing(steps), option))
@@ -415,8 +415,8 @@ def methods(population: NDArray[np.float64]) -> list[Method]:
         ]
         rows.append(tuned(title, choices, population, reference, target=target))
     for title, equations, target in (
-        ("solve_ivp, equations in NumPy", rates_in_numpy, 3000.0),
-        ("solve_ivp, equations in floats", rates_in_floats, None),
+        ("solve_ivp, in NumPy", rates_in_numpy, 3000.0),
+        ("solve_ivp, in floats", rates_in_floats, None),
     ):
         choices = [
             (f"{samples} samples", partial(integrate, x, samples, equations)) for samples in SAMPLES

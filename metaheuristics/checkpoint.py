@@ -18,8 +18,8 @@ from ocp.files import write_whole
 FORMAT, VERSION = "quietarm-checkpoint", 1
 _HEADER, _STATE = "header", "state."
 _DAMAGE = (
-    OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, RecursionError, MemoryError,
-    NotImplementedError, zipfile.BadZipFile, zlib.error,
+    OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, RuntimeError, MemoryError,
+    zipfile.BadZipFile, zlib.error,
 )  # fmt: skip
 """What numpy, zipfile and json raise over a file that is damaged or of another kind."""
 

@@ -44,6 +44,11 @@ class PaperNSGA2(NSGA2):
             mutation=PM(prob=1.0, prob_var=MUTATION, eta=20),
         )
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What a state is of: the population."""
+        return {"population": self.pop_size}
+
     def state(self) -> dict[str, Any]:
         """All that the run needs to go on after a complete generation: a nested plain dict."""
         individuals: Any = self.pop

@@ -18,6 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from models import Expression, Plant
 from ocp import JointProfile, PointToPoint, residual_matrix, symbolic_rollout
+from ocp.checks import whole
+from ocp.interrupts import keep_interrupts
 from ocp.residual import residual_samples
 from ocp.rollout import SymbolicRollout, default_steps
 
@@ -77,15 +79,15 @@ class PopulationObjective:
         steps: int | None = None,
         threads: int = 1,
     ) -> None:
-        if threads < 1:
-            raise ValueError(f"threads is {threads}; give 1 or more")
-        self.task, self.profile, self.threads = task, profile, threads
-        self.steps = steps or default_steps(task, least=LEAST_STEPS)
+        self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
+        default = default_steps(task, least=LEAST_STEPS)
+        self.steps = default if steps is None else whole("steps", steps, 1)
         samples = 1 << (residual_samples(task) - 1).bit_length()
         self._tip_of_state = ca.DM(residual_matrix(task, samples).T)
         self._limits = ca.DM(list(task.limits.values()))
         self._function = _compiled(task.plant, profile, self.steps, tuple(task.limits), samples)
 
+    @keep_interrupts()  # casadi loses a Ctrl-C
     def __call__(self, coefficients: ArrayLike) -> PopulationValues:
         """Evaluate a population.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -10,6 +11,7 @@ from typing import Any
 
 import moocore
 import numpy as np
+import pymoo
 from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.problem import Problem
@@ -21,7 +23,9 @@ from metaheuristics.population import PopulationObjective
 from metaheuristics.presets import PAPER_BOX, PRESETS
 from metaheuristics.vepso import VEPSO
 from ocp import CycloidPolynomial, JointProfile, PointToPoint, rollout
-from ocp.documents import profile_to_document, task_to_document
+from ocp.checks import positive, whole
+from ocp.documents import profile_to_document, task_to_document, versions
+from ocp.files import check_writable
 from ocp.front import Front, FrontPoint, Generation, non_dominated
 from ocp.rollout import default_steps
 
@@ -148,6 +152,8 @@ def search(
     run = _Run.prepare(task, algorithm, profile, bound, population, generations, seed, threads)
     if (checkpoint or resume) and not run.resumable:
         raise ValueError(f"checkpoints are for nsga2 and vepso, not for {run.method}")
+    if checkpoint is not None:
+        check_writable(checkpoint)
     if resume is not None:
         run.resume(resume)
     complete = True
@@ -182,10 +188,11 @@ class _Run:
         self.began = time.perf_counter()
         cycloid = rollout(task, CycloidPolynomial(0), []).motion
         self.reference = (cycloid.residual, 2 * cycloid.energy)
-        algorithm.setup(
-            self.problem, termination=MaximumGenerationTermination(settings["generations"]),
-            seed=seed,
-        )  # fmt: skip
+        termination = MaximumGenerationTermination(settings["generations"])
+        try:
+            algorithm.setup(self.problem, termination=termination, seed=seed)
+        except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
+            raise ValueError(f"{method} cannot search this task: {error}") from None
 
     @classmethod
     def prepare(
@@ -200,6 +207,11 @@ class _Run:
         threads: int,
     ) -> _Run:
         named = isinstance(algorithm, str)
+        if not (named or isinstance(algorithm, Algorithm)):
+            raise ValueError(
+                f"algorithm is {algorithm!r}; give {', '.join(PRESETS)} or an instance of one of "
+                "pymoo's algorithms"
+            )
         method = algorithm if isinstance(algorithm, str) else type(algorithm).__name__
         if named and method not in PRESETS:
             raise ValueError(f"unknown method {method!r}; give one of {', '.join(PRESETS)}")
@@ -209,8 +221,7 @@ class _Run:
                 f"{method} searches a box: give a bound on the coefficients (the paper used "
                 f"{papers})"
             )
-        if not (np.isfinite(bound) and bound > 0):
-            raise ValueError(f"bound on the coefficients is {bound:g}; give a positive number")
+        bound = positive("bound on the coefficients", bound)
         if named:
             population = PRESETS[method].population if population is None else population
             generations = PRESETS[method].generations if generations is None else generations
@@ -218,16 +229,13 @@ class _Run:
             raise ValueError("population is set in the algorithm that you give, not beside it")
         elif generations is None:
             raise ValueError(f"give the number of generations for {method}")
-        for name, value in (("population", population), ("generations", generations)):
-            if value is not None and value < 1:
-                raise ValueError(f"{name} is {value}; give 1 or more")
-        if seed < 0:
-            raise ValueError(f"seed is {seed}; give 0 or more")
+        population = None if population is None else whole("population", population, 1)
+        generations, seed = whole("generations", generations, 1), whole("seed", seed, 0)
         if profile.size == 0:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
         settings = {"bound": bound, "population": population, "generations": generations}
         if isinstance(algorithm, Algorithm):
-            chosen = algorithm
+            chosen = copy.deepcopy(algorithm)  # as it was given, to be given again
         elif method == "vepso":
             chosen = VEPSO(particles=population or 0)
         else:
@@ -246,6 +254,8 @@ class _Run:
         saved = time.perf_counter()
         while self.algorithm.has_next():
             self.algorithm.next()
+            if self.algorithm.n_iter - 1 == len(self.history):
+                continue  # some algorithms, as MOEA/D, take many steps a generation
             report(self._record())
             if checkpoint and time.perf_counter() - saved > CHECKPOINT_SECONDS:
                 self.save(checkpoint)
@@ -302,6 +312,7 @@ class _Run:
             evaluations=int(self.algorithm.evaluator.n_eval),
             failed=self.problem.failed,
             history=tuple(self.history),
+            versions={**versions(), "pymoo": pymoo.__version__},
             seconds=self.seconds,
         )
 
@@ -312,6 +323,7 @@ class _Run:
             "method": self.method,
             "seed": self.seed,
             "settings": self.settings,
+            "algorithm": self.algorithm.settings,
             "profile": profile_to_document(self.profile),
             **task_to_document(self.task),
         }
@@ -338,3 +350,16 @@ class _Run:
         self.history = [Generation(evaluations, share) for evaluations, share in pairs]
         self.problem.failed = state["failed"]
         self.before = state["seconds"]
+
+
+def _difference(theirs: Mapping[str, Any], mine: Mapping[str, Any]) -> str:
+    """The first entry in which two nested tables differ, in words; empty where none does."""
+    for name, value in mine.items():
+        other = theirs.get(name)
+        if isinstance(value, Mapping) and isinstance(other, Mapping):
+            inner = _difference(other, value) or _difference(value, other)
+            if inner:
+                return f"{name} {inner}"
+        elif other != value:
+            return f"{name} is {other!r}, not {value!r}"
+    return ""

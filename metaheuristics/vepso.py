@@ -243,6 +243,12 @@ class VEPSO(Algorithm):
         least_infeasible = self.pop[[np.argmin(self.pop.get("CV"))]]
         self.opt = self.external_archive if len(self.external_archive) else least_infeasible
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What a state is of, in plain numbers and words."""
+        names = ("particles", "boundary", "velocity_limit", "archive_size", "iterations")
+        return {**{name: getattr(self, name) for name in names}, "rule": asdict(self.rule)}
+
     def state(self) -> dict[str, Any]:
         """All that the run needs to go on, as of its last complete iteration: a nested plain dict.
 

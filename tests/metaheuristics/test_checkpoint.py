@@ -290,6 +290,13 @@ def _bad_deflate():
     return bytes(data)
 
 
+def _locked():
+    """A checkpoint in a zip with a password: the flag in the directory at the end says so."""
+    data = bytearray(_with_header(_whole()))
+    data[data.index(b"PK\x01\x02") + 8] |= 1
+    return bytes(data)
+
+
 def _huge():
     """An array that claims a petabyte."""
     text = "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000000,), }"
@@ -327,6 +334,7 @@ FOREIGN = {
     "version zero": _with_header(_whole(version=0)),
     "another format": _with_header(_whole(format="quietarm-plan")),
     "damaged compression": _bad_deflate(),
+    "a zip with a password": _locked(),
     "an array of a petabyte": _zip(header_npy=_huge()),
 }
 

@@ -180,6 +180,28 @@ def test_the_amplitude_at_arrival_is_within_a_micrometre(plant, start, target, d
 
 
 @pytest.mark.parametrize(
+    ("plant", "duration", "bound"),
+    [
+        (SingleLinkManipulator(omega=30.0), 0.8, 0.2),
+        (ArmOnFlexibleLink(omega=40.0), 0.8, 0.5),
+        (SINGLE_LINK, 3.0, 0.2),
+        (None, 0.9, 0.2),
+    ],
+    ids=["fast link", "fast arm", "long move", "two links"],
+)
+def test_other_plants_and_durations_are_as_accurate(two_links, plant, duration, bound):
+    task = PointToPoint(plant or two_links, pi / 2, duration)
+    X = candidates(10, bound, seed=8)
+    values = PopulationObjective(task, PROFILE)(X)
+    motions = [resimulate(task, PROFILE, x) for x in X]
+    error = np.abs(values.energy / [motion.energy for motion in motions] - 1)
+    assert np.sum(error <= 1e-4) >= 9, error  # as above
+    residuals = np.array([motion.residual for motion in motions])
+    allowed = 5.2e-5 * residuals + task.plant.phi * math.sqrt(2) * 1e-6
+    assert np.all(np.abs(values.residual - residuals) <= allowed)
+
+
+@pytest.mark.parametrize(
     ("plant", "target", "coefficients", "energy", "deflection"),
     [
         # physics.md, 'What the printed coefficients give' (DOP853): F2 [J], residual max |W| [m];
@@ -330,6 +352,12 @@ def test_a_wrong_shape_is_named(tasks, shape):
 def test_threads_below_one_are_refused(tasks, threads):
     with pytest.raises(ValueError, match=f"threads is {threads}; give 1 or more"):
         PopulationObjective(tasks["arm"][0], PROFILE, threads=threads)
+
+
+@pytest.mark.parametrize("steps", [0, -1, 2.5])
+def test_odd_numbers_of_steps_are_refused(tasks, steps):
+    with pytest.raises(ValueError, match=f"steps is {steps}; give a whole number"):
+        PopulationObjective(tasks["arm"][0], PROFILE, steps=steps)
 
 
 @PLANTS

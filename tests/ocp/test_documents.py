@@ -200,8 +200,8 @@ def test_a_number_beyond_double_precision_is_refused(whole, refused, keys, numbe
         (("status",), "splendid", "'splendid'"),
         (("plant_parameters", "omega"), "fast", "omega is .*fast"),
         (("plant_parameters",), {"mass": 1.0}, "mass"),
-        (("provenance",), {"speed": 0}, "speed"),
-        (("verification", "speed"), 0, "speed"),
+        (("provenance",), {"speed": 0}, "'(method|settings)' is missing"),
+        (("verification", "steps"), 1.5, "steps is 1.5"),
         (("energy",), "much", "energy is 'much'"),
     ],
 )
