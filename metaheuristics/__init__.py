@@ -1,5 +1,8 @@
 """The derivative-free answer: the paper's VEPSO and NSGA-II, and any other of pymoo's."""
 
+# ruff: noqa: I001  # ocp first: it finds a user's file that shadows models
+import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]
+
 from metaheuristics.nsga2 import PaperNSGA2
 from metaheuristics.population import PopulationObjective, PopulationValues
 from metaheuristics.presets import PAPER_BOX, PRESETS, Preset

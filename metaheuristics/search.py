@@ -27,6 +27,7 @@ from ocp.checks import positive, whole
 from ocp.documents import profile_to_document, task_to_document, versions
 from ocp.files import check_writable
 from ocp.front import Front, FrontPoint, Generation, non_dominated
+from ocp.interrupts import defer_interrupts
 from ocp.rollout import default_steps
 
 CHECKPOINT_SECONDS = 2.0
@@ -251,17 +252,25 @@ class _Run:
         return self.before + time.perf_counter() - self.began
 
     def go(self, checkpoint: str | Path | None, report: Callable[[SearchProgress], None]) -> None:
+        try:
+            self._generations(checkpoint, report)
+        finally:
+            if checkpoint and self.history:
+                self.save(checkpoint)
+
+    def _generations(
+        self, checkpoint: str | Path | None, report: Callable[[SearchProgress], None]
+    ) -> None:
         saved = time.perf_counter()
         while self.algorithm.has_next():
-            self.algorithm.next()
+            with defer_interrupts():  # so that what is kept is a whole generation
+                self.algorithm.next()
             if self.algorithm.n_iter - 1 == len(self.history):
                 continue  # some algorithms, as MOEA/D, take many steps a generation
             report(self._record())
             if checkpoint and time.perf_counter() - saved > CHECKPOINT_SECONDS:
                 self.save(checkpoint)
                 saved = time.perf_counter()
-        if checkpoint:
-            self.save(checkpoint)
 
     def _record(self) -> SearchProgress:
         _, F = self._found()
@@ -340,11 +349,9 @@ class _Run:
 
     def resume(self, path: str | Path) -> None:
         header, state = load_checkpoint(path)
-        for name, mine in self._header().items():
-            if header.get(name) != mine:
-                raise ValueError(
-                    f"{path} is of another search: its {name} is {header.get(name)!r}, not {mine!r}"
-                )
+        difference = _difference(header, self._header())
+        if difference:
+            raise ValueError(f"{path} is of another search: its {difference}")
         self.algorithm.restore(state["algorithm"])
         pairs = zip(state["evaluations"].tolist(), state["hypervolume"].tolist(), strict=True)
         self.history = [Generation(evaluations, share) for evaluations, share in pairs]

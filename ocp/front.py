@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ocp.checks import finite, whole
 from ocp.documents import (
     Document,
+    numbers_of,
     profile_from_document,
     profile_to_document,
     read_document,
@@ -188,11 +190,16 @@ class Front:
         points = tuple(
             FrontPoint(
                 profile.checked(point["coefficients"]),
-                float(point["residual"]),
-                float(point["energy"]),
+                **numbers_of(point, ("residual", "energy")),
             )
             for point in document["points"]
         )
+        if points != non_dominated(points):
+            raise ValueError("its points are out of order, or one is better than another")
+        for name, kind in (("method", str), ("complete", bool), ("settings", dict),
+                           ("versions", dict)):  # fmt: skip
+            if not isinstance(document[name], kind):
+                raise ValueError(f"{name} is {document[name]!r}, not of the kind it should be")
         residual, energy = document["reference"]
         return cls(
             task=task_from_document(document),
@@ -201,13 +208,13 @@ class Front:
             method=document["method"],
             settings=document["settings"],
             seed=document["seed"],
-            reference=(float(residual), float(energy)),
-            evaluations=document["evaluations"],
-            failed=document["failed"],
+            reference=(finite("reference", residual), finite("reference", energy)),
+            evaluations=whole("evaluations", document["evaluations"], 0),
+            failed=whole("failed", document["failed"], 0),
             history=tuple(Generation(**entry) for entry in document["history"]),
             complete=document["complete"],
             versions=document["versions"],
-            seconds=document["seconds"],
+            seconds=finite("seconds", document["seconds"], "s"),
         )
 
     def _nonempty(self) -> Sequence[FrontPoint]:

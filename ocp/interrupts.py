@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+_deferring = False
+
 
 @contextmanager
 def keep_interrupts() -> Iterator[None]:
@@ -15,21 +17,43 @@ def keep_interrupts() -> Iterator[None]:
 
     casadi's solver stops at Ctrl-C, but returns as if the solve had merely failed.
     """
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
+    with _noting(at_once=True) as came:
         yield
+    if came:
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def defer_interrupts() -> Iterator[None]:
+    """Let the block run to its end when Ctrl-C comes during it; raise KeyboardInterrupt then."""
+    global _deferring
+    outer, _deferring = _deferring, True
+    try:
+        with _noting(at_once=False) as came:
+            yield
+    finally:
+        _deferring = outer
+    if came:
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def _noting(at_once: bool) -> Iterator[list[int]]:
+    """Note the interrupts that come during the block; `at_once` they act as before, too."""
+    came: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+    in_main = threading.current_thread() is threading.main_thread()
+    if not in_main or not callable(before) or (at_once and _deferring):
+        yield came
         return
-    came = False
 
     def note(number: int, frame: FrameType | None) -> None:
-        nonlocal came
-        came = True
-        before(number, frame)
+        came.append(number)
+        if at_once:
+            before(number, frame)
 
     signal.signal(signal.SIGINT, note)
     try:
-        yield
+        yield came
     finally:
         signal.signal(signal.SIGINT, before)
-    if came:
-        raise KeyboardInterrupt

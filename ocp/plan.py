@@ -345,5 +345,5 @@ def _provenance(document: Document) -> Provenance:
     for name in ("settings", "versions"):
         if not isinstance(document[name], dict):
             raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
-    seconds = finite("seconds", document["seconds"], "s")
-    return Provenance(**{**document, "seconds": seconds})
+    finite("seconds", document["seconds"], "s")
+    return Provenance(**document)

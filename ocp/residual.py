@@ -13,7 +13,7 @@ from models import JointMotion, Plant
 from ocp.collocation import NODES, modal_system, step
 from ocp.task import PointToPoint
 
-MOST_SAMPLES = 1_000_000
+MOST_SAMPLES = 200_000
 RADIANS_A_SAMPLE = 0.02
 """Phase of the fastest mode between samples: a peak between two is missed by 5e-5 of it at most."""
 

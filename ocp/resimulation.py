@@ -19,7 +19,7 @@ from ocp.errors import SolverFailedError
 from ocp.interrupts import keep_interrupts
 from ocp.objective import Motion
 from ocp.profile import JointProfile
-from ocp.residual import fastest_mode
+from ocp.residual import fastest_mode, residual_samples
 from ocp.task import PointToPoint
 
 RELATIVE_TOLERANCE = 1e-11
@@ -202,6 +202,7 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     SolverFailedError
         When CVODES cannot follow the motion.
     """
+    residual_samples(task)  # refuses a window beyond reason
     flow = _Resimulation(task, profile, profile.checked(coefficients))
     samples = max(_SAMPLES, math.ceil(20 * fastest_mode(task) * task.duration))
     times = np.linspace(0.0, task.duration, samples + 1)

@@ -90,9 +90,10 @@ def plan_move(
         settings.steps or default_steps(task, least=LEAST_STEPS),
         with_residual=residual_limit > 0,
     )
-    guesses = start_coefficients(profile.size, settings)
+    guesses, asked = start_coefficients(profile.size, settings), asdict(settings)
     if guess is not None:
         guesses[0] = np.array(profile.checked(guess))
+        asked["guess"] = ", ".join(repr(value) for value in profile.checked(guess))
     limits = {RESIDUAL: residual_limit, **task.limits}
     solutions = [program.solve(guess, limits, bound) for guess in guesses]
     solved = [solution for solution in solutions if solution.status.solved]
@@ -115,7 +116,7 @@ def plan_move(
         verification=Verification.between(
             steps_used, best.energy, best.peaks.get(RESIDUAL, 0.0), motion
         ),
-        provenance=Provenance("ipopt", asdict(settings), seconds=time.perf_counter() - began),
+        provenance=Provenance("ipopt", asked, seconds=time.perf_counter() - began),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ from ocp import (
     Front,
     Plan,
     PointToPoint,
+    SolverFailedError,
+    SolveSettings,
     evaluate_coefficients,
     plan_move,
 )
@@ -58,13 +61,18 @@ def plan_by_search(
     Plan
         The plan, verified by CVODES.
     """
+    SolveSettings(residual_limit=residual_limit, seed=seed)  # refused before the search, not after
     with search_display(Console(stderr=True)) as report:
         front = search(task, method, profile=profile, bound=bound, seed=seed, report=report)
     if not front.complete:
         raise KeyboardInterrupt
-    point = front.cheapest(residual_limit or STILL)
+    try:
+        point = front.cheapest(residual_limit or STILL)
+    except ValueError as error:
+        raise SolverFailedError(f"{method} found no such plan: {error}") from None
+    settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or STILL}
     if polish:
-        return plan_move(
+        polished = plan_move(
             task,
             profile,
             residual_limit=residual_limit,
@@ -73,8 +81,15 @@ def plan_by_search(
             seed=seed,
             guess=point.coefficients,
         )
-    settings = {**front.settings, "seed": seed}
-    return evaluate_coefficients(task, point.coefficients, method=method, settings=settings)
+        provenance = replace(
+            polished.provenance,
+            method=f"{method}, polished by ipopt",
+            settings={**settings, **polished.provenance.settings},
+            seconds=front.seconds + polished.provenance.seconds,
+        )
+        return replace(polished, provenance=provenance)
+    found = evaluate_coefficients(task, point.coefficients, method=method, settings=settings)
+    return replace(found, provenance=replace(found.provenance, seconds=front.seconds))
 
 
 def run_front(
@@ -108,6 +123,15 @@ def run_front(
             task, method, runs, workers=workers, profile=profile,
             done=lambda front: None if quiet else _show_run(error_console, front), **options,
         )  # fmt: skip
+    if not any(front.points for front in fronts):
+        if not all(front.complete for front in fronts) or len(fronts) < runs:
+            raise KeyboardInterrupt
+        raise SolverFailedError(
+            f"{method} found no candidate that meets the task; widen its limits or the bound, or "
+            "search longer"
+        )
+    if len(fronts) < runs:
+        error_console.print(f"interrupted: {len(fronts)} of {runs} seeds are done")
     _show(console, fronts)
     written: list[Path] = []
     for front in fronts:
@@ -131,9 +155,9 @@ def _targets(output: Path | None, seed: int, runs: int) -> dict[int, Path]:
 
 
 def _show_run(console: Console, front: Front) -> None:
+    share = front.history[-1].hypervolume if front.history else 0.0
     console.print(
-        f"seed {front.seed}: hypervolume {front.history[-1].hypervolume:.4f} "
-        f"in {front.seconds:.1f} s",
+        f"seed {front.seed}: hypervolume {share:.4f} in {front.seconds:.1f} s",
         highlight=False,
     )
 

@@ -28,7 +28,10 @@ def show_plan(console: Console, plan: Plan) -> None:
         "move",
         f"{task.plant.name}, {_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s",
     )
-    limits = ", ".join(f"{name} {value:g}" for name, value in task.limits.items())
+    limits = ", ".join(
+        f"{name} {value:g}{'' if motion.peak(name) <= value * 1.001 else ' (broken)'}"
+        for name, value in task.limits.items()
+    )
     if limits:
         table.add_row("limits", limits)
     coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
