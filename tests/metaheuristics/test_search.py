@@ -681,12 +681,13 @@ def test_an_error_leaves_a_checkpoint_to_go_on_from(tmp_path, monkeypatch, alway
             raise CrashError
         return evaluate(*arguments) if where == "evaluation" else None
 
-    path = tmp_path / "checkpoint"
-    with monkeypatch.context() as patch, pytest.raises(CrashError):
+    path, seen = tmp_path / "checkpoint", []
+    options = {"report": crash} if where == "report" else {}
+    with monkeypatch.context() as patch:
         if where == "evaluation":
             patch.setattr(PopulationObjective, "__call__", crash)
-        run(method, checkpoint=path, **({"report": crash} if where == "report" else {}))
-    seen = []
+        with pytest.raises(CrashError):
+            run(method, checkpoint=path, **options)
     front = run(method, resume=path, report=seen.append)
     assert seen[0].generation in (5, 6)
     assert exactly(front) == exactly(found(method))
