@@ -254,9 +254,12 @@ class _Run:
     def go(self, checkpoint: str | Path | None, report: Callable[[SearchProgress], None]) -> None:
         try:
             self._generations(checkpoint, report)
-        finally:
+        except KeyboardInterrupt:
             if checkpoint and self.history:
                 self.save(checkpoint)
+            raise
+        if checkpoint:
+            self.save(checkpoint)
 
     def _generations(
         self, checkpoint: str | Path | None, report: Callable[[SearchProgress], None]
@@ -264,13 +267,17 @@ class _Run:
         saved = time.perf_counter()
         while self.algorithm.has_next():
             with defer_interrupts():  # so that what is kept is a whole generation
-                self.algorithm.next()
-            if self.algorithm.n_iter - 1 == len(self.history):
-                continue  # some algorithms, as MOEA/D, take many steps a generation
-            report(self._record())
+                progress = self._next()
+            if progress is not None:
+                report(progress)
             if checkpoint and time.perf_counter() - saved > CHECKPOINT_SECONDS:
                 self.save(checkpoint)
                 saved = time.perf_counter()
+
+    def _next(self) -> SearchProgress | None:
+        self.algorithm.next()
+        # some algorithms, as MOEA/D, take many steps a generation
+        return self._record() if self.algorithm.n_iter - 1 > len(self.history) else None
 
     def _record(self) -> SearchProgress:
         _, F = self._found()

@@ -29,6 +29,9 @@ _OPTIONS: dict[str, str | int | float] = {
     # the restoration phase's system, and IPOPT turns to that phase late. Feasible ones take the
     # same iterations either way.
     "mumps_permuting_scaling": 0,
+    # Approximate minimum fill copes best with the dense columns of the coefficients: at 400 steps
+    # and 20 terms a fifth of the default ordering's time.
+    "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
 _SLACK_ROOM = 1e-2

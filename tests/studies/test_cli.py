@@ -375,7 +375,7 @@ FRONT = f"front {MOVE} --method nsga2"
     ("line", "value", "remedy"),
     [
         (FRONT, "bound", "0.2"),  # issue 3: 'say which the paper used'
-        (f"{FRONT} --bound nan", "nan", "give a positive number"),
+        (f"{FRONT} --bound nan", "nan", "give a finite number"),
         (f"{FRONT} --bound 0.2 --population 0", "population is 0", "give"),
         (f"{FRONT} --bound 0.2 --generations 0", "generations is 0", "give"),
         (f"{FRONT} --bound 0.2 --runs 0", "runs is 0", "give 1 or more"),
