@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Integral
 from typing import Any, ClassVar
 
 import casadi as ca
@@ -250,7 +251,7 @@ class JointPath:
         ValueError
             When `order` is not 0, 1, 2 or 3, or a time is not finite.
         """
-        if order not in (0, 1, 2, 3):
+        if isinstance(order, bool) or not isinstance(order, Integral) or not 0 <= order <= 3:
             raise ValueError(f"derivative order is {order!r}; give 0, 1, 2 or 3")
         t = np.asarray(time, dtype=float)
         if not np.all(np.isfinite(t)):

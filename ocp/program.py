@@ -148,7 +148,7 @@ class TaskProgram:
             at_arrival = x[layout.first_slack - layout.state : layout.first_slack]
             peaks[RESIDUAL] = np.abs(self.matrix @ at_arrival).max()
         return Solution(
-            coefficients=x[: layout.coefficients],
+            coefficients=np.clip(x, lower, upper)[: layout.coefficients],  # IPOPT passes by 1e-10
             energy=float(mean_power * self.reference["power"] * self.task.duration),
             peaks={name: float(peak * self.reference[name]) for name, peak in peaks.items()},
             status=SolveStatus.from_ipopt(return_status),

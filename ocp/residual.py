@@ -43,7 +43,7 @@ def residual_samples(task: PointToPoint) -> int:
             f"residual window {task.residual_window:g} s is {samples * RADIANS_A_SAMPLE:.3g} "
             "radians of the plant's fastest mode; give a shorter one"
         )
-    return math.ceil(samples) + 1
+    return max(2, math.ceil(samples) + 1)  # both ends of the window at least
 
 
 def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[np.float64]:

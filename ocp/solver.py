@@ -146,7 +146,7 @@ def _verified(
         overrun = {name: motion.peak(name) / limit for name, limit in limits.items() if limit > 0}
         residual_gap = abs(best.peaks.get(RESIDUAL, 0.0) - motion.residual)
         disagree = (
-            abs(best.energy / motion.energy - 1) > _ENERGY_AGREEMENT
+            abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
             or residual_gap > STILL + _RESIDUAL_AGREEMENT * limits[RESIDUAL]
         )
         if disagree and 2 * program.steps <= MOST_STEPS:
