@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from models import Expression, JointMotion, Plant
 from ocp.checks import whole
 from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NodeState, Step, mesh, step
-from ocp.objective import Motion, resolved_energy
+from ocp.objective import Motion, beyond_quadratic, resolved_energy
 from ocp.profile import JointProfile
 from ocp.residual import fastest_mode, residual_matrix
 from ocp.task import PointToPoint
@@ -58,7 +58,10 @@ class SymbolicRollout:
     @property
     def energy(self) -> Expression:
         """F2 of eq (11) [J], one row a candidate."""
-        return resolved_energy(self.power, self.h)
+        power = self.power
+        at_nodes = ca.horzcat(*power)
+        cubic, quartic = (at_nodes @ weights for weights in beyond_quadratic(power[0].shape[1]))
+        return resolved_energy(power, self.h, cubic, quartic)
 
 
 def symbolic_rollout(
