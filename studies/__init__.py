@@ -1,5 +1,3 @@
 """What a person runs: the paper recomputed, pictures, the command line."""
 
-from studies.figures import Line, four_panels, save_figure
-
-__all__ = ["Line", "four_panels", "save_figure"]
+import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]  # refuses a file that shadows models

@@ -13,9 +13,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ocp import Plan, evaluate_coefficients
-from ocp.files import check_writable, write_whole
+from ocp.files import write_whole
+from studies.picture_names import check_figure
 
-SUFFIXES = (".png", ".pdf", ".svg")
 _SAMPLES = 1500
 
 
@@ -95,14 +95,6 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
     if title:
         figure.suptitle(title, fontsize=12)
     return figure
-
-
-def check_figure(path: str | Path) -> Path:
-    """Make sure that a picture can be written under this name; ValueError otherwise."""
-    target = check_writable(path)
-    if target.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"{target} is no picture; end its name in {', '.join(SUFFIXES)}")
-    return target
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:

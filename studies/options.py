@@ -11,7 +11,7 @@ import click
 
 from models import Plant, known_plants
 from ocp.files import check_writable
-from studies.figures import check_figure
+from studies.picture_names import check_figure
 from studies.quantities import parse_angle, parse_coefficients, parse_length, parse_time
 
 F = TypeVar("F", bound=Callable[..., Any])

@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import studies.cli
+import studies.commands.evaluate
+import studies.commands.plan
 import studies.reproduce
 import studies.searching
 from models import __version__
@@ -91,8 +92,8 @@ def no_solve(monkeypatch):
     def solve(*arguments, **settings):
         pytest.fail("a solve was begun")
 
-    monkeypatch.setattr(studies.cli, "plan_move", solve)
-    monkeypatch.setattr(studies.cli, "evaluate_coefficients", solve)
+    monkeypatch.setattr(studies.commands.plan, "plan_move", solve)
+    monkeypatch.setattr(studies.commands.evaluate, "evaluate_coefficients", solve)
     for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
         monkeypatch.setattr(studies.searching, name, solve)
     monkeypatch.setattr(studies.reproduce, "reproduce", solve)
@@ -201,7 +202,7 @@ def test_every_limit_reaches_the_solver(monkeypatch, call):
         asked.update(task=task, profile=profile, settings=settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(studies.cli, "plan_move", note)
+    monkeypatch.setattr(studies.commands.plan, "plan_move", note)
     call(
         f"plan {MOVE} --torque-limit 0.2 --speed-limit 1.5 --acceleration-limit 9 "
         "--deflection-limit 80mm --residual-window 500ms --residual-limit 1mm --bound 0.3 "
@@ -222,7 +223,7 @@ def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call)
         asked.update(task=task, profile=profile, settings=settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(studies.cli, "plan_move", note)
+    monkeypatch.setattr(studies.commands.plan, "plan_move", note)
     call(f"plan {MOVE}")
     assert (asked["task"].start, asked["task"].limits) == (0.0, {})
     assert asked["task"].residual_window == 1.0
@@ -232,6 +233,22 @@ def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call)
 
 
 # Help
+
+
+def test_help_does_not_wait_for_what_it_does_not_need():
+    ran = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import sys, studies.cli\nprint(*{name.partition('.')[0] for name in sys.modules})",
+        ],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    loaded = set(ran.stdout.split())
+    assert {"click", "casadi", "studies"} <= loaded
+    assert loaded.isdisjoint({"matplotlib", "pymoo", "moocore", "scipy"})
 
 
 def examples(text):
@@ -282,8 +299,8 @@ def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, fold
         reached.append(settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(studies.cli, "plan_move", note)
-    monkeypatch.setattr(studies.cli, "evaluate_coefficients", note)
+    monkeypatch.setattr(studies.commands.plan, "plan_move", note)
+    monkeypatch.setattr(studies.commands.evaluate, "evaluate_coefficients", note)
     monkeypatch.setattr(studies.searching, "search", note)
     monkeypatch.setattr(studies.searching, "search_many", note)
     monkeypatch.setattr(studies.reproduce, "reproduce", note)
@@ -549,7 +566,7 @@ def test_a_reason_of_several_lines_is_put_on_one(refused, monkeypatch):
     def end(*arguments, **settings):
         raise InfeasibleTaskError("no way\n  at all")
 
-    monkeypatch.setattr(studies.cli, "plan_move", end)
+    monkeypatch.setattr(studies.commands.plan, "plan_move", end)
     assert refused(f"{PLAN} {EVERY_FILE}", status=1) == "quietarm: no way at all\n"
 
 
@@ -573,14 +590,15 @@ INTERRUPTED = "quietarm: interrupted; nothing was written"
 # The command, which says when it begins to solve, so that the signal comes then and not before.
 ANNOUNCED = """
 import studies.cli
+import studies.commands.plan
 
-solve = studies.cli.plan_move
+solve = studies.commands.plan.plan_move
 
 def announced(*arguments, **settings):
     print("begun", flush=True)
     return solve(*arguments, **settings)
 
-studies.cli.plan_move = announced
+studies.commands.plan.plan_move = announced
 studies.cli.main()
 """
 

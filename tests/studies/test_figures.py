@@ -10,7 +10,8 @@ import pytest
 from matplotlib.colors import to_rgba
 
 from ocp import PointToPoint, evaluate_coefficients
-from studies.figures import SUFFIXES, Line, check_figure, four_panels, save_figure
+from studies.figures import Line, four_panels, save_figure
+from studies.picture_names import SUFFIXES, check_figure
 
 TITLES = [  # the order of the paper's Figs 2 and 5
     "(a) joint angle [rad]",

@@ -1,0 +1,44 @@
+"""What several commands do: the task from its options, a plan to its files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from models import Plant
+from ocp import Plan, PointToPoint
+from ocp.plan import ticks_of_move
+
+
+def split_options(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
+    """The task and the output options, from a command's shared options."""
+    outputs = {name: rest.pop(name) for name in ("output", "csv_file", "sample_rate", "figure")}
+    task = task_of(rest)
+    ticks_of_move(task.duration, outputs["sample_rate"])  # refused now rather than after the solve
+    return task, outputs
+
+
+def task_of(rest: dict[str, Any]) -> PointToPoint:
+    """The task of the options that `task_options` adds; ValueError where it is none."""
+    plant: Plant = rest.pop("plant")
+    return PointToPoint(plant, **rest)
+
+
+def write_plan(
+    found: Plan, output: Path | None, csv_file: Path | None, sample_rate: float, figure: Path | None
+) -> None:
+    """Write a plan to the files that were asked for, and say so."""
+    console = Console()
+    if output is not None:
+        found.save(output)
+    if csv_file is not None:
+        found.save_csv(csv_file, sample_rate)
+    if figure is not None:
+        from studies.figures import four_panels, save_figure
+
+        save_figure(four_panels(found), figure)
+    for path in (output, csv_file, figure):
+        if path is not None:
+            console.print(f"wrote {path}", highlight=False, soft_wrap=True)
