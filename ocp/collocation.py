@@ -230,7 +230,7 @@ def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
             )
             by_rate = [-D[mode] - GAUSS_NODES[j] * h * K[mode] for mode in modes]
             right.append([system.g[i], *(-K[mode] for mode in modes), *by_rate])
-    return Step(h, _eliminate(matrix, right), plant.modes)
+    return Step(h, eliminate(matrix, right), plant.modes)
 
 
 def _combine(
@@ -239,13 +239,23 @@ def _combine(
     return sum(weight * at_node[mode] for weight, at_node in zip(weights, ddW, strict=True))
 
 
-def _eliminate(
+def eliminate(
     matrix: list[list[Expression]], right: list[list[Expression]]
 ) -> list[list[Expression]]:
     """Solve `matrix` x = `right` by Gaussian elimination, element by element.
 
     Without pivoting, which elements of different candidates could not share; the matrix is the
     identity plus terms of the order of a step over the shortest period, small by `default_steps`.
+
+    Parameters
+    ----------
+    matrix, right : list of list of Expression
+        Rows of a square matrix and as many rows to its right; both are overwritten.
+
+    Returns
+    -------
+    list of list of Expression
+        x, row by row.
     """
     size = len(matrix)
     for i in range(size):

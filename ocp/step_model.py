@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from models import Plant
-from ocp.collocation import GAUSS_NODES, NODES, mesh, step
+from models import JointMotion, Plant
+from ocp.collocation import GAUSS_NODES, NODES, eliminate, mesh, step
 from ocp.profile import JointProfile
+
+_JOINT = len(JointMotion._fields)
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,11 @@ class StepModel:
     Inputs are the scaled state before the step, the step's index, the coefficients, the move and
     the scales; outputs are the scaled state after it, the power and each limited quantity at the
     Gauss nodes.
+
+    The joint's motion q and the modes' accelerations W'' at the nodes are symbols of their own
+    here, with the collocation equations between them: second derivatives are taken in these
+    symbols, where the graph is short, and carried over to coefficients and state by the chain
+    rule. That takes less than half the time of differentiating through the linear solve for W''.
     """
 
     def __init__(
@@ -50,14 +57,21 @@ class StepModel:
         state, index = ca.SX.sym("z", self.size), ca.SX.sym("k")
         coefficients, move = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
         scale = ca.SX.sym("scale", self.scales)
-        outputs = self._outputs(plant, profile, steps, state, index, coefficients, move, scale)
+        begin, length = mesh(index, steps)
+        start, target, duration = ca.vertsplit(move)
+        entries = ca.vertsplit(coefficients)
+        joint = ca.vertcat(
+            *(
+                ca.vertcat(*profile.motion(entries, begin + c * length, start, target, duration))
+                for c in GAUSS_NODES
+            )
+        )
+        lifted = _Lifted(plant, self.groups, state, duration * length, scale)
         inputs = [state, index, coefficients, move, scale]
-        unknowns = ca.vertcat(coefficients, state)
-        multipliers = ca.SX.sym("lam", outputs.numel())
-        first = ca.densify(ca.jacobian(outputs, unknowns))
-        second = ca.densify(ca.hessian(ca.dot(multipliers, outputs), unknowns)[0])
+        multipliers = ca.SX.sym("lam", lifted.outputs.numel())
+        first, second = lifted.derivatives(joint, coefficients, state, multipliers)
         n, options = profile.size, {"cse": True}
-        self.value = ca.Function("step", inputs, [outputs], options)
+        self.value = ca.Function("step", inputs, [lifted.of(joint, lifted.outputs)], options)
         self.first = ca.Function("step_first", inputs, [first[:, :n], first[:, n:]], options)
         self.second = ca.Function(
             "step_second",
@@ -66,31 +80,28 @@ class StepModel:
             options,
         )
 
-    def _outputs(
-        self,
-        plant: Plant,
-        profile: JointProfile,
-        steps: int,
-        state: ca.SX,
-        index: ca.SX,
-        coefficients: ca.SX,
-        move: ca.SX,
-        scale: ca.SX,
-    ) -> ca.SX:
-        start, target, duration = ca.vertsplit(move)
-        physical = ca.vertsplit(state * scale[: self.size])
-        W, dW = physical[: plant.modes], physical[plant.modes :]
-        begin, length = mesh(index, steps)
-        joints = [
-            profile.motion(
-                ca.vertsplit(coefficients), begin + node * length, start, target, duration
-            )
-            for node in GAUSS_NODES
-        ]
-        one = step(plant, joints, duration * length)
-        ddW = one.accelerations(W, dW)
+
+class _Lifted:
+    """A step's outputs and collocation equations in its joint q, state and accelerations W''."""
+
+    def __init__(
+        self, plant: Plant, groups: Sequence[Group], state: ca.SX, h: ca.SX, scale: ca.SX
+    ) -> None:
+        modes, size = plant.modes, 2 * plant.modes
+        self.joint = ca.SX.sym("q", NODES * _JOINT)
+        self.accelerations = ca.SX.sym("ddW", NODES * modes)
+        joints = [JointMotion(*ca.vertsplit(q)) for q in ca.vertsplit(self.joint, _JOINT)]
+        ddW = [ca.vertsplit(at_node) for at_node in ca.vertsplit(self.accelerations, modes)]
+        physical = ca.vertsplit(state * scale[:size])
+        W, dW = physical[:modes], physical[modes:]
+        one = step(plant, joints, h)
+        self._solution = ca.vertcat(*(x for at_node in one.accelerations(W, dW) for x in at_node))
         nodes = one.nodes(W, dW, ddW)
-        W_after, dW_after = one.end(W, dW, ddW)
+        equations = [
+            plant.modal_accelerations(joint, node.W, node.dW)
+            for joint, node in zip(joints, nodes, strict=True)
+        ]
+        self.residual = self.accelerations - ca.vertcat(*(x for row in equations for x in row))
         torque = [
             plant.torque(joint, node.W, node.dW, node.ddW)
             for joint, node in zip(joints, nodes, strict=True)
@@ -102,7 +113,54 @@ class StepModel:
             "acceleration": [joint.acceleration for joint in joints],
             "deflection": [tip for node in nodes for tip in plant.tip_displacements(node.W)],
         }
-        rows = [ca.vertcat(*W_after, *dW_after) / scale[: self.size]]
-        for i, group in enumerate(self.groups[1:]):
-            rows.append(ca.vertcat(*values[group.name]) / scale[self.size + i])
-        return ca.vertcat(*rows)
+        W_after, dW_after = one.end(W, dW, ddW)
+        rows = [ca.vertcat(*W_after, *dW_after) / scale[:size]]
+        for i, group in enumerate(groups[1:]):
+            rows.append(ca.vertcat(*values[group.name]) / scale[size + i])
+        self.outputs = ca.vertcat(*rows)
+
+    def of(self, joint: ca.SX, expression: ca.SX) -> ca.SX:
+        """The expression with W'' of the collocation and the joint's motion put in."""
+        inner = ca.substitute(expression, self.accelerations, self._solution)
+        return ca.densify(ca.substitute(inner, self.joint, joint))
+
+    def derivatives(
+        self, joint: ca.SX, coefficients: ca.SX, state: ca.SX, multipliers: ca.SX
+    ) -> tuple[ca.SX, ca.SX]:
+        """Jacobian of the outputs and Hessian of multipliers . outputs, by coefficients and state.
+
+        With r(q, z, W'') = 0 the collocation equations: dW'' = -(dr/dW'')^-1 dr; multipliers mu of
+        r that make the Lagrangian stationary in W'' leave its Hessian, between the directions in
+        which q, z and W'' move together, as the only second-order term beside that of q itself.
+        """
+        explicit = ca.vertcat(self.joint, state)
+        by_acceleration = ca.jacobian(self.residual, self.accelerations)
+        moves = -_solve(by_acceleration, ca.jacobian(self.residual, explicit))
+        lagrangian = ca.dot(multipliers, self.outputs)
+        adjoint = ca.SX.sym("mu", self.residual.numel())
+        stationary = -_solve(by_acceleration.T, ca.gradient(lagrangian, self.accelerations))
+        hessian, gradient = ca.hessian(
+            lagrangian + ca.dot(adjoint, self.residual), ca.vertcat(explicit, self.accelerations)
+        )
+        n, size = coefficients.numel(), state.numel()
+        to_explicit = ca.diagcat(ca.jacobian(joint, coefficients), ca.SX.eye(size))
+        directions = ca.vertcat(to_explicit, moves @ to_explicit)
+        weights = ca.SX.sym("weights", joint.numel())
+        bending = ca.hessian(ca.dot(weights, joint), coefficients)[0]
+        second = directions.T @ hessian @ directions
+        second[:n, :n] += ca.substitute(bending, weights, gradient[: joint.numel()])
+        second = ca.triu2symm(ca.triu(ca.substitute(second, adjoint, stationary)))
+        first = (
+            ca.jacobian(self.outputs, explicit)
+            + ca.jacobian(self.outputs, self.accelerations) @ moves
+        ) @ to_explicit
+        return self.of(joint, first), self.of(joint, second)
+
+
+def _solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
+    rows = eliminate(_nested(matrix), _nested(right))
+    return ca.vertcat(*(ca.horzcat(*row) for row in rows))
+
+
+def _nested(matrix: ca.SX) -> list[list[ca.SX]]:
+    return [ca.horzsplit(row) for row in ca.vertsplit(ca.densify(matrix))]
