@@ -201,7 +201,7 @@ def measure(move: Move, steps: int, same_start: bool) -> Repetition:
         second_call=(ours_again, theirs_again),
         solver_alone=(ours_alone, theirs_again),
         iterations=(
-            program.program._solver.stats()["iter_count"],
+            program.program._cold.stats()["iter_count"],
             again.stats["iter_count"],
         ),
         energies=(answer.verification.fixed_step_energy, posed.energy(solution)),

@@ -76,7 +76,7 @@ def measure(case: Case) -> Timing:
     solve, solution = timed(
         lambda: program.solve(guess, {"residual": 0.0}, case.bound), process_time
     )
-    iterations = program.program._solver.stats()["iter_count"]
+    iterations = program.program._cold.stats()["iter_count"]
     forget_compiled()
     try:
         plan, answer = timed(

@@ -51,7 +51,7 @@ def least_peaks(
         with_residual = name == RESIDUAL or limits[RESIDUAL] > 0
         relaxed = TaskProgram(program.task, profile, program.steps, with_residual=with_residual)
         others = {key: value for key, value in limits.items() if key != name}
-        found = [relaxed.solve(guess, others, bound, minimise=name) for guess in guesses]
+        found = [relaxed.solve(guess, others, bound, minimise={name: 1.0}) for guess in guesses]
         solved = [solution for solution in found if solution.status.solved]
         if solved:
             best[name] = min(solved, key=lambda solution: solution.peaks[name])

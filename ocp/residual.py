@@ -85,6 +85,53 @@ def _residual_matrix(
     return matrix
 
 
+def extreme_rows(matrix: NDArray[np.float64], tips: int) -> NDArray[np.float64]:
+    """The rows of a residual matrix that hold the largest displacement of some state.
+
+    The tip turns in a plane when one mode moves it: of its rows and their negatives those on the
+    convex hull suffice, about half a period of them.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (samples * tips, 2 * modes)
+        As by `residual_matrix`.
+    tips : int
+        Number of tips, whose rows alternate.
+
+    Returns
+    -------
+    ndarray, shape (rows, 2 * modes)
+        max |rows @ z| = max |matrix @ z| for every z.
+    """
+    kept: list[NDArray[np.float64]] = []
+    for tip in range(tips):
+        rows = matrix[tip::tips]
+        _, spread, axes = np.linalg.svd(rows, full_matrices=False)
+        if spread[2:].max(initial=0.0) <= 1e-12 * spread[0]:
+            rows = rows[_hull(rows @ axes[:2].T)]
+        kept.append(rows)
+    return np.vstack(kept)
+
+
+def _hull(points: NDArray[np.float64]) -> list[int]:
+    """Indices of points in the plane that lie, or whose negatives lie, on their common hull."""
+    both = np.vstack([points, -points])
+    order = np.lexsort(both.T[::-1])
+    corners: set[int] = set()
+    for direction in (order, order[::-1]):  # Andrew's monotone chain: lower hull, then upper
+        chain: list[int] = []
+        for i in direction.tolist():
+            while len(chain) > 1 and _left_turn(both[chain[-2]], both[chain[-1]], both[i]) <= 0:
+                chain.pop()
+            chain.append(i)
+        corners.update(index % len(points) for index in chain)
+    return sorted(corners)
+
+
+def _left_turn(a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]) -> float:
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+
+
 def _numbers(entries: list[list[float]]) -> NDArray[np.float64]:
     """Nested casadi or Python numbers as an array."""
     return np.array([[float(ca.DM(entry)) for entry in row] for row in entries])

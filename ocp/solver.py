@@ -149,7 +149,9 @@ def _verified(
             abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
             or residual_gap > STILL + _RESIDUAL_AGREEMENT * limits[RESIDUAL]
         )
+        guess: NDArray[np.float64] | Solution = best
         if disagree and 2 * program.steps <= MOST_STEPS:
+            guess = best.coefficients
             program = TaskProgram(
                 program.task, profile, 2 * program.steps, with_residual=limits[RESIDUAL] > 0
             )
@@ -157,7 +159,7 @@ def _verified(
             used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
         else:
             break
-        again = program.solve(best.coefficients, used, bound)
+        again = program.solve(guess, used, bound)
         if not again.status.solved:
             break
         best, motion = again, resimulate(program.task, profile, again.coefficients)

@@ -15,10 +15,12 @@ from __future__ import annotations
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import redirect_stderr
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from models import Plant
 from ocp.collocation import GAUSS_WEIGHTS, NODES, mesh
@@ -68,6 +70,23 @@ class Layout:
         return self.first_slack + self.slacks
 
 
+@dataclass(frozen=True)
+class Point:
+    """Where the solver starts or stops: the unknowns, and the multipliers where they are known.
+
+    Attributes
+    ----------
+    unknowns : ndarray
+        Coefficients, peaks, states, slacks, scaled.
+    bound_multipliers, multipliers : ndarray, empty where unknown
+        Of the bounds on the unknowns (positive at an upper one), and of the constraints.
+    """
+
+    unknowns: NDArray[np.float64]
+    bound_multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+
+
 class NonlinearProgram:
     """A compiled program for a plant, a profile, a number of steps and the limited quantities.
 
@@ -83,6 +102,7 @@ class NonlinearProgram:
         quantities: tuple[str, ...],
         residual_rows: int,
         options: Mapping[str, str | int | float],
+        warm_options: Mapping[str, str | int | float] = MappingProxyType({}),
     ) -> None:
         self.model = model = StepModel(plant, profile, steps, quantities)
         peaks = ((RESIDUAL,) if residual_rows else ()) + quantities
@@ -111,22 +131,17 @@ class NonlinearProgram:
         objective = weights[0] * energy + (ca.dot(weights[1:], peak) if peaks else 0)
         constraints = self._constraints(outputs, states, slack, peak, residual)
         self.lower, self.upper = self._constraint_bounds(constraints.numel())
-        self._solver = ca.nlpsol(
-            "quietarm",
-            "ipopt",
-            {"x": x, "p": p, "f": objective, "g": constraints},
-            {
-                "jac_g": ca.Function(
-                    "nlp_jac_g",
-                    [x, p],
-                    [constraints, self._jacobian(arguments, residual)],
-                    ["x", "p"],
-                    ["g", "jac_g_x"],
-                ),
-                "hess_lag": self._hessian(x, p, arguments, constraints.numel()),
-                "print_time": False,
-                "ipopt": dict(options),
-            },
+        problem = {"x": x, "p": p, "f": objective, "g": constraints}
+        jacobian = self._jacobian(arguments, residual)
+        derivatives = {
+            "jac_g": ca.Function(
+                "nlp_jac_g", [x, p], [constraints, jacobian], ["x", "p"], ["g", "jac_g_x"]
+            ),
+            "hess_lag": self._hessian(x, p, arguments, constraints.numel()),
+        }
+        self._cold, self._warm = (
+            ca.nlpsol(name, "ipopt", problem, {**derivatives, "print_time": False, "ipopt": chosen})
+            for name, chosen in (("cold", dict(options)), ("warm", {**options, **warm_options}))
         )
         self._simulate = self._simulation()
 
@@ -138,14 +153,22 @@ class NonlinearProgram:
         return states.full(), outputs.full()
 
     def solve(
-        self, x0: np.ndarray, lower: np.ndarray, upper: np.ndarray, parameters: np.ndarray
-    ) -> tuple[np.ndarray, str]:
-        """Run IPOPT: the unknowns and IPOPT's own status, which tells all that casadi warns of."""
-        with keep_interrupts(), redirect_stderr(io.StringIO()):
-            result = self._solver(
-                x0=x0, lbx=lower, ubx=upper, lbg=self.lower, ubg=self.upper, p=parameters
+        self, start: Point, lower: np.ndarray, upper: np.ndarray, parameters: np.ndarray
+    ) -> tuple[Point, str]:
+        """Run IPOPT: where it stopped and its own status, which tells all that casadi warns of."""
+        solver, known = self._cold, {}
+        if start.multipliers.size:
+            solver, known = (
+                self._warm,
+                {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers},
             )
-        return result["x"].full().ravel(), str(self._solver.stats()["return_status"])
+        with keep_interrupts(), redirect_stderr(io.StringIO()):
+            result = solver(
+                x0=start.unknowns, lbx=lower, ubx=upper, lbg=self.lower, ubg=self.upper,
+                p=parameters, **known,
+            )  # fmt: skip
+        stopped = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
+        return stopped, str(solver.stats()["return_status"])
 
     def _simulation(self) -> ca.Function:
         steps, coefficients = self.layout.steps, self.layout.coefficients

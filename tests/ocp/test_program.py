@@ -57,7 +57,7 @@ def test_a_peak_can_be_minimised(task, name):
     limited = _limited(task, **{f"{name}_limit": 1.0})
     program = TaskProgram(limited, PROFILE, STEPS, with_residual=False)
     cheapest = program.solve(START, {}, None)
-    least = program.solve(START, {}, None, minimise=name)
+    least = program.solve(START, {}, None, minimise={name: 1.0})
     assert least.status.solved
     assert least.peaks[name] == pytest.approx(_simulated(task, least).peak(name), rel=1e-6)
     assert least.peaks[name] < 0.99 * _simulated(task, cheapest).peak(name)
@@ -69,7 +69,7 @@ def test_the_least_residual_of_one_term_is_that_of_a_scan(tasks):
     # One coefficient: every value of it in turn.
     task, profile = tasks["arm"], CycloidPolynomial(1)
     program = TaskProgram(task, profile, STEPS, with_residual=True)
-    found = program.solve(np.zeros(1), {}, None, minimise=RESIDUAL)
+    found = program.solve(np.zeros(1), {}, None, minimise={RESIDUAL: 1.0})
     scan = [rollout(task, profile, [a], steps=STEPS).motion.residual for a in found.coefficients +
             np.linspace(-0.3, 0.3, 201)]  # fmt: skip
     assert found.peaks[RESIDUAL] == pytest.approx(min(scan), rel=1e-6)
@@ -129,3 +129,32 @@ def test_programs_of_like_tasks_are_compiled_once(plants):
     one = TaskProgram(PointToPoint(plants["arm"], 1.0, 0.8), PROFILE, STEPS, with_residual=False)
     other = TaskProgram(PointToPoint(plants["arm"], 2.0, 1.3), PROFILE, STEPS, with_residual=False)
     assert one.program is other.program
+
+
+def test_a_warm_start_finds_what_a_cold_one_finds(tasks):
+    program = TaskProgram(tasks["arm"], PROFILE, STEPS, with_residual=True)
+    beside = program.solve(START, {RESIDUAL: 5.2e-3}, 0.5)
+    cold = program.solve(START, {RESIDUAL: 5e-3}, 0.5)
+    warm = program.solve(beside, {RESIDUAL: 5e-3}, 0.5)
+    assert warm.status.solved
+    assert warm.energy == pytest.approx(cold.energy, rel=1e-6)
+    assert warm.coefficients == pytest.approx(cold.coefficients, abs=1e-3)
+
+
+def test_the_slope_is_the_change_of_the_energy_with_the_limit(tasks):
+    # The multiplier of the limit against a central difference of the least energy.
+    program = TaskProgram(tasks["arm"], PROFILE, STEPS, with_residual=True)
+    below, at, above = (
+        program.solve(START, {RESIDUAL: 5e-3 + change}, 0.5) for change in (-2e-5, 0.0, 2e-5)
+    )
+    assert at.slope == pytest.approx((above.energy - below.energy) / 4e-5, rel=1e-3)
+    assert program.solve(START, {}, 0.5).slope == 0.0
+
+
+def test_a_weighted_sum_is_least_where_the_limits_multiplier_is_its_weight(tasks):
+    # Karush-Kuhn-Tucker: minimising energy + weight * residual meets the limit of that slope.
+    program = TaskProgram(tasks["arm"], PROFILE, STEPS, with_residual=True)
+    limited = program.solve(START, {RESIDUAL: 5e-3}, 0.5)
+    weighted = program.solve(START, {}, 0.5, minimise={"energy": 1.0, RESIDUAL: -limited.slope})
+    assert weighted.energy == pytest.approx(limited.energy, rel=1e-5)
+    assert weighted.peaks[RESIDUAL] == pytest.approx(5e-3, rel=1e-3)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint, residual_matrix
-from ocp.residual import RADIANS_A_SAMPLE, fastest_mode
+from ocp.residual import RADIANS_A_SAMPLE, extreme_rows, fastest_mode
 
 
 def _decay(W, dW, omega, zeta, t):
@@ -119,3 +119,21 @@ def test_the_arms_fastest_mode_is_at_the_angle_of_least_mass(start, target):
 
 def test_the_fastest_of_two_modes_counts(two_links):
     assert fastest_mode(PointToPoint(two_links, 1.0, 1.0)) == pytest.approx(12.68 * 0.993)
+
+
+@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+@pytest.mark.parametrize("target", [math.pi / 2, math.pi / 6, -1.0])
+def test_extreme_rows_hold_the_largest_displacement_of_any_state(plants, name, target):
+    # by definition: the maximum over the kept rows against that over all rows
+    plant = plants[name]
+    matrix = residual_matrix(PointToPoint(plant, target, 0.8))
+    rows = extreme_rows(matrix, plant.tips)
+    states = np.random.default_rng(0).standard_normal((matrix.shape[1], 500))
+    assert len(rows) < len(matrix) / 2
+    peaks, kept = np.abs(matrix @ states).max(axis=0), np.abs(rows @ states).max(axis=0)
+    np.testing.assert_allclose(kept, peaks, rtol=1e-13)
+
+
+def test_rows_of_a_tip_that_several_modes_move_are_all_kept():
+    matrix = np.random.default_rng(1).standard_normal((40, 4))
+    np.testing.assert_array_equal(extreme_rows(matrix, 1), matrix)

@@ -43,7 +43,7 @@ def _weights(steps):
 
 def _functions(program):
     """The functions that IPOPT calls, by name."""
-    return {name: program._solver.get_function(name) for name in program._solver.get_function()}
+    return {name: program._cold.get_function(name) for name in program._cold.get_function()}
 
 
 def _random_point(program, seed):
