@@ -17,6 +17,7 @@ COMMANDS = (
     "plan",
     "evaluate",
     "front",
+    "compare",
     "reproduce",
 )
 """Each is of this name in the file of this name in `studies.commands`."""

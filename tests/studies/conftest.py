@@ -2,10 +2,19 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, evaluate_coefficients, plan_move
+from ocp import (
+    CycloidPolynomial,
+    Front,
+    FrontPoint,
+    PointToPoint,
+    evaluate_coefficients,
+    non_dominated,
+    plan_move,
+)
 from studies import reproduce as reproduce_module
 
 
@@ -47,3 +56,38 @@ def plan(task):
 def cycloid(task):
     """The plain cycloid of the same task."""
     return evaluate_coefficients(task, [])
+
+
+@pytest.fixture(scope="session")
+def front_of(task):
+    """Make a front of points (residual [mm], energy [J]), to work out indicators of by hand."""
+    move = task
+
+    def make(points, method="nsga2", seed=0, task=move, bound=0.2, terms=2, **rest):
+        found = [FrontPoint(tuple(np.full(terms, 0.1)), 1e-3 * r, energy) for r, energy in points]
+        return Front(
+            task=task,
+            profile=CycloidPolynomial(terms),
+            points=non_dominated(found),
+            method=method,
+            settings={"bound": bound},
+            seed=seed,
+            reference=rest.pop("reference", (10e-3, 1.0)),
+            evaluations=rest.pop("evaluations", 100),
+            seconds=rest.pop("seconds", 1.0),
+            **rest,
+        )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def good(front_of):
+    """A front from (0, 0.8) to (8 mm, 0.4 J): its extent is 8 mm or 0.4 J."""
+    return front_of([(0, 0.8), (4, 0.5), (8, 0.4)], "epsilon", seed=None)
+
+
+@pytest.fixture(scope="session")
+def poor(front_of):
+    """A front that `good` dominates."""
+    return front_of([(2, 0.9), (6, 0.6)], "nsga2")

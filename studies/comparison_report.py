@@ -1,0 +1,64 @@
+"""What `quietarm compare` shows and writes: tables, their meaning, a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+
+from ocp import Front, PointToPoint
+from ocp.files import check_writable, write_whole
+from studies.comparison import Comparison
+from studies.comparison_figure import comparison_figure
+from studies.comparison_paper import condition_of, paper_points
+from studies.comparison_tables import how_to_read, runs_table, tables
+from studies.figures import save_figure
+
+FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
+"""What `write` writes to a folder."""
+
+
+def load_fronts(paths: list[Path]) -> tuple[list[Front], list[str]]:
+    """The fronts of files and what to call them; FileFormatError where one is no front."""
+    fronts = [Front.load(path) for path in paths]
+    return fronts, [str(path) for path in paths]
+
+
+def title_of(task: PointToPoint) -> str:
+    """A task in a line: its plant, move and duration; its limits where it has any."""
+    condition = condition_of(task)
+    if condition is not None:
+        return f"{task.plant.name}, {condition.label}"
+    limits = "".join(f", {name} within {value:g}" for name, value in task.limits.items())
+    move = f"{task.start:.4g} to {task.target:.4g} rad, {task.duration:g} s"
+    return f"{task.plant.name}, {move}{limits}"
+
+
+def terms_of(comparison: Comparison) -> set[int]:
+    """Numbers of coefficients that the fronts have."""
+    return {run.front.profile.size for run in comparison.runs}
+
+
+def show(console: Console, comparison: Comparison) -> None:
+    """Print the tables and how to read them."""
+    console.print(title_of(comparison.task), style="bold", highlight=False)
+    for table in tables(comparison).values():
+        console.print(table.for_screen())
+    for line in how_to_read(comparison):
+        console.print(f"- {line}", highlight=False, style="dim")
+
+
+def write(folder: Path, comparison: Comparison) -> list[Path]:
+    """Write `FILES` to a folder, each whole or not at all; return what was written."""
+    paths = [check_writable(folder / name) for name in FILES]
+    report, runs, coverage, picture = paths
+    shown = tables(comparison)
+    title = title_of(comparison.task)
+    paper = paper_points(comparison.task, terms_of(comparison))
+    parts = [f"# Fronts compared: {title}\n", *(table.markdown() for table in shown.values())]
+    parts += ["**How to read it**\n", *(f"- {line}" for line in how_to_read(comparison))]
+    save_figure(comparison_figure(comparison, paper, title), picture)
+    write_whole(runs, runs_table(comparison).csv())
+    write_whole(coverage, shown["coverage"].csv())
+    write_whole(report, "\n".join([*parts, f"\n![Fronts]({picture.name})\n"]))
+    return paths
