@@ -7,7 +7,6 @@ middle is thin, because the swarms gather at the minima of the single objectives
 References
 ----------
 .. [1] Parsopoulos and Vrahatis, ACM Symposium on Applied Computing, 2002, pp. 603-607.
-.. [2] Clerc and Kennedy, IEEE Transactions on Evolutionary Computation 6(1), 2002, pp. 58-73.
 .. [3] Eberhart and Shi, Congress on Evolutionary Computation, 2000, pp. 84-88.
 """
 
@@ -17,7 +16,7 @@ import inspect
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import moocore
@@ -29,54 +28,18 @@ from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.util.display.multi import MultiObjectiveOutput
 
-Array = np.ndarray
-POPULATION_ARRAYS = ("X", "F", "G", "H")
+from metaheuristics.states import (
+    POPULATION_ARRAYS,
+    array_of,
+    count_of,
+    part_of,
+    population_of,
+    restore_generator,
+)
+from metaheuristics.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
+
 STATE_ARRAYS = ("velocities", "best_X", "best_merit", "swarm_best")
 UNUSABLE = 1e300  # CV without finite objectives; not infinite, for pymoo subtracts and averages
-
-
-@dataclass(frozen=True)
-class VelocityRule:
-    """Constants of the velocity, v <- chi*(w*v + c1*r1*(own best - x) + c2*r2*(next best - x)).
-
-    Parameters
-    ----------
-    inertia_start, inertia_end : float
-        w of the first and of the last move, linear in between.
-    constriction, cognitive, social : float
-        chi, c1 and c2. ValueError when one is negative or not finite, or chi is zero.
-    """
-
-    inertia_start: float
-    inertia_end: float
-    constriction: float
-    cognitive: float
-    social: float
-
-    def __post_init__(self) -> None:
-        for name, value in asdict(self).items():
-            if not 0 <= value < math.inf or (value == 0 and name == "constriction"):
-                raise ValueError(f"{name} is {value}; give a finite number above zero")
-
-
-INERTIA_2002 = VelocityRule(1.0, 0.4, 1.0, 0.5, 0.5)  # [1]; needs the number of iterations
-CONSTRICTION = VelocityRule(1.0, 1.0, 0.729, 2.05, 2.05)  # [2]
-PAPER_GROUP = VelocityRule(1.0, 1.0, 0.73, 2.05, 2.05)  # stated elsewhere by the paper's group
-
-
-def clip(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
-    """Stop at the bound what leaves the box: position on it, velocity zero, per coordinate."""
-    inside = np.clip(x, lower, upper)
-    return inside, np.where(inside == x, v, 0.0)
-
-
-def reflect(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
-    """Mirror at the bound what leaves the box, velocity reversed; at most to the other bound."""
-    mirrored = np.where(x < lower, 2 * lower - x, np.where(x > upper, 2 * upper - x, x))
-    return np.clip(mirrored, lower, upper), np.where(mirrored == x, v, -v)
-
-
-BOUNDARIES = {"clip": clip, "reflect": reflect}
 
 
 def least_crowded(F: Array, size: int) -> Array:
@@ -271,20 +234,27 @@ class VEPSO(Algorithm):
         """Go on from a `state`, bit for bit; call it after `setup` with the settings of that run.
 
         Terminations by generations and evaluations count on, others and pymoo's history begin anew.
-        ValueError when the state has other numbers of particles, variables or objectives.
+        KeyError where an entry is missing, TypeError or ValueError where it has not the kind, the
+        shape or the range that it has in a state of such a run.
         """
-        for name in STATE_ARRAYS:
-            now, then = getattr(self, name), np.array(state[name])
-            if then.shape != now.shape:
-                raise ValueError(f"{name} has shape {then.shape}; give a state with {now.shape}")
-            setattr(self, name, then.astype(now.dtype))
-        self.pop, self.external_archive = map(_population, (state["particles"], state["archive"]))
+        swarms, particles, _ = self.shape
+        self.velocities = array_of(state, "velocities", self.shape)
+        self.best_X = array_of(state, "best_X", self.shape)
+        self.best_merit = array_of(state, "best_merit", self.best_merit.shape, least=-np.inf)
+        best = array_of(state, "swarm_best", (swarms,), 0, particles - 1)
+        self.swarm_best = best.astype(int)
+        if np.any(self.swarm_best != best):
+            raise ValueError("swarm_best has entries that are not whole")
+        if not ((self.lower <= self.best_X) & (self.best_X <= self.upper)).all():
+            raise ValueError("best_X has entries outside the box")
+        self.pop = population_of(part_of(state, "particles"), self.problem, swarms * particles)
+        self.external_archive = population_of(part_of(state, "archive"), self.problem)
         _violations(self.pop)
-        self.archive_F = self.external_archive.get("F").reshape(-1, self.shape[0])
-        self.random_state.bit_generator.state = state["random_state"]
+        self.archive_F = self.external_archive.get("F").reshape(-1, swarms)
+        restore_generator(self.random_state, state)
         self.start_time, self.is_initialized, self.random_before = time.time(), True, None
-        self.iteration = self.n_iter = state["iteration"]
-        self.evaluator.n_eval = state["evaluations"]
+        self.iteration = self.n_iter = count_of(state, "iteration", 1)
+        self.evaluator.n_eval = count_of(state, "evaluations")
         self._set_optimum()
         self.termination.update(self)
         self.n_iter += 1
@@ -297,9 +267,3 @@ def _violations(candidates: Any) -> Array:
     for candidate in candidates[np.isinf(violation)]:
         candidate.CV = np.array([UNUSABLE])
     return np.maximum(violation, 0.0)
-
-
-def _population(columns: Mapping[str, Any]) -> Any:
-    population = Population.new(**{key: np.array(value) for key, value in columns.items()})
-    population.apply(lambda candidate: candidate.evaluated.update(columns))
-    return population

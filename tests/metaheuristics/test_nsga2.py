@@ -5,6 +5,9 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from pymoo.algorithms.moo.nsga2 import NSGA2, RankAndCrowding, binary_tournament
 from pymoo.core.population import Population
 from pymoo.core.problem import Problem
@@ -17,6 +20,7 @@ from pymoo.termination.max_gen import MaximumGenerationTermination
 
 from metaheuristics import PRESETS, MoveProblem, PaperNSGA2, PopulationObjective
 from metaheuristics.checkpoint import load_checkpoint, save_checkpoint
+from metaheuristics.nsga2 import ExactDuplicates
 from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, PointToPoint
 
@@ -91,15 +95,52 @@ def test_four_pairs_in_five_are_offered_for_crossover_gene_by_gene():
     assert np.mean(changed) == pytest.approx(0.4, abs=4 * 0.0045)
 
 
+VALUES = st.sampled_from([0.0, -0.0, 1.0, 0.1 + 0.2, 0.3, -1e-9])
+
+
+@given(
+    X=arrays(float, st.tuples(st.integers(1, 12), st.just(2)), elements=VALUES),
+    others=st.lists(arrays(float, st.tuples(st.integers(0, 6), st.just(2)), elements=VALUES)),
+)
+def test_duplicates_are_those_with_equal_coefficients(X, others):
+    # pymoo's own elimination, by distances, may miss equal ones for rounding
+    individuals = Population.new(X=X)
+    kept = ExactDuplicates().do(individuals, *(Population.new(X=other) for other in others))
+    known = [tuple(row) for other in others for row in other.tolist()]
+    expected = []
+    for individual in individuals:
+        row = tuple(individual.X.tolist())
+        if row not in known:
+            expected.append(individual)
+        known.append(row)
+    assert list(kept) == expected
+
+
+def test_settings_state_every_operator_as_it_is():
+    algorithm = PaperNSGA2(30)
+    stated, mating = algorithm.settings, algorithm.mating
+    assert stated["population"] == algorithm.pop_size == 30
+    for name, operator in (("crossover", mating.crossover), ("mutation", mating.mutation)):
+        values = {key: getattr(operator, key).value for key in ("prob", "prob_var", "eta")}
+        words = ", ".join(f"{key}={value:g}" for key, value in values.items())
+        assert stated[name] == f"{type(operator).__name__}({words})"
+    assert algorithm.tournament_type == "comp_by_dom_and_crowding"
+    assert mating.selection.pressure == 2
+    for part in (mating, algorithm.initialization):
+        assert isinstance(part.eliminate_duplicates, ExactDuplicates)
+
+
 def test_no_two_share_an_operator_that_one_could_change():
     one, other = PaperNSGA2(), PaperNSGA2()
     assert one.mating.crossover is not other.mating.crossover
     assert one.mating.mutation is not other.mating.mutation
+    assert one.mating.selection is not other.mating.selection
+    assert one.survival is not other.survival
 
 
 @pytest.mark.parametrize("population", [1, 0, -3])
 def test_a_population_that_cannot_cross_is_refused(population):
-    with pytest.raises(ValueError, match=f"population is {population}; NSGA-II needs 2 or more"):
+    with pytest.raises(ValueError, match=f"population is {population}; give a whole"):
         PaperNSGA2(population)
 
 

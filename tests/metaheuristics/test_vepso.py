@@ -16,16 +16,15 @@ from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
 
-from metaheuristics.vepso import (
+from metaheuristics.velocity import (
     CONSTRICTION,
     INERTIA_2002,
     PAPER_GROUP,
-    VEPSO,
     VelocityRule,
     clip,
-    least_crowded,
     reflect,
 )
+from metaheuristics.vepso import VEPSO, least_crowded
 
 
 class Targets(Problem):
