@@ -6,8 +6,11 @@ import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]
 from metaheuristics.nsga2 import PaperNSGA2
 from metaheuristics.population import PopulationObjective, PopulationValues
 from metaheuristics.presets import PAPER_BOX, PRESETS, Preset
-from metaheuristics.search import MoveProblem, SearchProgress, search
-from metaheuristics.vepso import CONSTRICTION, INERTIA_2002, PAPER_GROUP, VEPSO, VelocityRule
+from metaheuristics.problem import MoveProblem
+from metaheuristics.run import SearchProgress
+from metaheuristics.search import search
+from metaheuristics.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP, VelocityRule
+from metaheuristics.vepso import VEPSO
 
 __all__ = [
     "CONSTRICTION",

@@ -26,15 +26,28 @@ def keep_interrupts() -> Iterator[None]:
 @contextmanager
 def defer_interrupts() -> Iterator[None]:
     """Let the block run to its end when Ctrl-C comes during it; raise KeyboardInterrupt then."""
+    with note_interrupts() as came:
+        yield
+    if came:
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def note_interrupts() -> Iterator[list[int]]:
+    """Let the block run to its end when Ctrl-C comes during it, and tell it.
+
+    Yields
+    ------
+    list of int
+        The interrupts until now. To end at them, early or not, is left to the caller.
+    """
     global _deferring
     outer, _deferring = _deferring, True
     try:
         with _noting(at_once=False) as came:
-            yield
+            yield came
     finally:
         _deferring = outer
-    if came:
-        raise KeyboardInterrupt
 
 
 @contextmanager
