@@ -2,36 +2,64 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from multiprocessing import get_context
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from metaheuristics.search import search
-from ocp import Front, PointToPoint
+from metaheuristics.workers import Report, Workers
+from ocp import Front, PointToPoint, QuietarmError
+from ocp.checks import whole
 
 STILL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
 
 
+class LostSeedsError(QuietarmError):
+    """Processes died while they searched.
+
+    Attributes
+    ----------
+    fronts : list of Front
+        What the other seeds found.
+    """
+
+    def __init__(self, lost: Mapping[int, str], fronts: list[Front], runs: int) -> None:
+        self.fronts = fronts
+        seeds = ", ".join(f"seed {seed} ({how})" for seed, how in lost.items())
+        super().__init__(
+            f"the process of {seeds} died; {len(fronts)} of {runs} seeds are done; where memory "
+            "ran short, give fewer workers or a smaller population"
+        )
+
+
 @dataclass(frozen=True)
 class Spread:
-    """Quartiles of a figure over seeds; NaN where fewer than one seed has it."""
+    """Quartiles of a figure over seeds.
+
+    Attributes
+    ----------
+    lower, median, upper : float
+        Quartiles over the seeds that have the figure; NaN where none has it.
+    count, seeds : int
+        How many seeds have the figure, of how many.
+    """
 
     lower: float
     median: float
     upper: float
+    count: int
+    seeds: int
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
-        """Quartiles of the finite values."""
+        """Quartiles of the finite values, interpolated as by `numpy.quantile`."""
         finite = [value for value in values if np.isfinite(value)]
-        if not finite:
-            return cls(np.nan, np.nan, np.nan)
-        return cls(*(float(q) for q in np.quantile(finite, [0.25, 0.5, 0.75])))
+        quartiles = np.quantile(finite, [0.25, 0.5, 0.75]) if finite else np.full(3, np.nan)
+        return cls(*(float(q) for q in quartiles), count=len(finite), seeds=len(values))
 
 
 def hypervolumes(fronts: Sequence[Front]) -> Spread:
@@ -41,10 +69,11 @@ def hypervolumes(fronts: Sequence[Front]) -> Spread:
 
 def energies_at(fronts: Sequence[Front], residual_limit: float = STILL) -> Spread:
     """Quartiles of the least energy [J] with a residual within the limit [m]."""
-    return Spread.of([_energy_at(front, residual_limit) for front in fronts])
+    return Spread.of([energy_at(front, residual_limit) for front in fronts])
 
 
-def _energy_at(front: Front, residual_limit: float) -> float:
+def energy_at(front: Front, residual_limit: float = STILL) -> float:
+    """Least energy [J] of a front with a residual within the limit [m]; NaN where none is."""
     try:
         return front.cheapest(residual_limit).energy
     except ValueError:
@@ -58,6 +87,7 @@ def search_many(
     *,
     workers: int = 1,
     seed: int = 0,
+    report: Report = lambda progress, seed: None,
     done: Callable[[Front], None] = lambda front: None,
     **settings: Any,
 ) -> list[Front]:
@@ -75,6 +105,8 @@ def search_many(
         Processes; 1 stays in this one.
     seed : int
         First seed.
+    report : callable, optional
+        Called with a `SearchProgress` and its seed, as the searches go on.
     done : callable, optional
         Called with every front when its run ends.
     **settings : Any
@@ -83,32 +115,46 @@ def search_many(
     Returns
     -------
     list of Front
-        In the order of the seeds; those of the runs that were done when Ctrl-C came.
+        In the order of the seeds. After Ctrl-C those that were done, and what the searches that
+        were running had found, with ``complete`` false.
 
     Raises
     ------
     ValueError
         When `runs` or `workers` is below 1, or a setting is out of range.
+    LostSeedsError
+        When a process died, as where memory runs out; it holds the fronts of the other seeds.
     """
-    for name, value in (("runs", runs), ("workers", workers)):
-        if value < 1:
-            raise ValueError(f"{name} is {value}; give 1 or more")
-    fronts: dict[int, Front] = {}
+    runs, workers = whole("runs", runs, 1), whole("workers", workers, 1)
+    seed = whole("seed", seed, 0)
     seeds = range(seed, seed + runs)
-    if workers == 1:
-        for one in seeds:
-            fronts[one] = search(task, method, seed=one, **settings)
-            done(fronts[one])
-            if not fronts[one].complete:
+    if min(workers, runs) == 1:
+        return _one_after_another(task, method, seeds, report, done, settings)
+    pool = Workers(task, method, settings, seeds, report, done)
+    pool.run(min(workers, runs))
+    fronts = [pool.fronts[one] for one in seeds if one in pool.fronts]
+    if pool.lost:
+        raise LostSeedsError(pool.lost, fronts, runs)
+    return fronts
+
+
+def _one_after_another(
+    task: PointToPoint,
+    method: str,
+    seeds: Iterable[int],
+    report: Report,
+    done: Callable[[Front], None],
+    settings: Mapping[str, Any],
+) -> list[Front]:
+    fronts: list[Front] = []
+    try:
+        for seed in seeds:
+            tell = partial(report, seed=seed)
+            fronts.append(search(task, method, seed=seed, report=tell, **settings))
+            if not fronts[-1].complete:
                 break
-        return list(fronts.values())
-    # spawn: a fork would carry casadi's and the threads' state into the child
-    with ProcessPoolExecutor(min(workers, runs), mp_context=get_context("spawn")) as pool:
-        futures = {pool.submit(search, task, method, seed=s, **settings): s for s in seeds}
-        try:
-            for future in as_completed(futures):
-                fronts[futures[future]] = future.result()
-                done(future.result())
-        except KeyboardInterrupt:
-            pool.shutdown(wait=False, cancel_futures=True)
-    return [fronts[one] for one in seeds if one in fronts]
+            done(fronts[-1])
+    except KeyboardInterrupt:
+        if not fronts:
+            raise
+    return fronts

@@ -60,7 +60,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Raises
     ------
     SystemExit
-        0 when done, 2 for bad input, 1 where a solve failed or was interrupted.
+        0 when done, 2 for bad input or a file that fails, 1 where a solve failed or was
+        interrupted.
     """
     try:
         status = quietarm.main(arguments, prog_name="quietarm", standalone_mode=False)
@@ -76,7 +77,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except (KeyboardInterrupt, click.Abort):
         status = _complain("interrupted; nothing was written", NOT_SOLVED)
     except OSError as error:
-        status = _complain(f"{error.filename or ''} {error.strerror or error}".strip(), NOT_SOLVED)
+        status = _complain(f"{error.filename or ''} {error.strerror or error}".strip(), BAD_INPUT)
     sys.exit(status or 0)
 
 

@@ -1,23 +1,32 @@
-"""How a search is going: a line that renews itself on a terminal, plain lines elsewhere."""
+"""How searches are going: lines that renew themselves on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from metaheuristics import SearchProgress
+from ocp import Front
 
 _PLAIN_SECONDS = 2.0
 
 
+class SearchDisplay:
+    """Hears of every generation, and of every search that is done; shows nothing of it."""
+
+    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
+        """Show where a search is; the seed tells one of several."""
+
+    def finish(self, front: Front) -> None:
+        """Show what one of several searches found."""
+
+
 @contextmanager
-def search_display(
-    console: Console, *, quiet: bool = False
-) -> Iterator[Callable[[SearchProgress], None]]:
+def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchDisplay]:
     """Show a search's generation, best residual, least energy, hypervolume, speed and time left.
 
     Parameters
@@ -29,50 +38,79 @@ def search_display(
 
     Yields
     ------
-    callable
+    SearchDisplay
         To be called with a `SearchProgress` after every generation.
     """
     if quiet:
-        yield lambda progress: None
+        yield SearchDisplay()
     elif not console.is_terminal:
-        yield _plain(console)
+        yield _Lines(console)
     else:
-        columns = (BarColumn(), TextColumn("{task.description}"), TimeRemainingColumn())
-        with Progress(*columns, console=console, transient=True) as bar:
-            task = bar.add_task("", total=None)
-
-            def renew(progress: SearchProgress) -> None:
-                bar.update(
-                    task,
-                    total=progress.generations,
-                    completed=progress.generation,
-                    description=_figures(progress),
-                )
-
-            yield renew
+        columns = (
+            BarColumn(bar_width=12),
+            TextColumn("{task.description}", markup=False),
+            TimeRemainingColumn(compact=True),
+        )
+        with Progress(*columns, console=console, transient=True) as bars:
+            yield _Bars(bars)
 
 
-def _plain(console: Console) -> Callable[[SearchProgress], None]:
-    last = time.perf_counter()
+class _Bars(SearchDisplay):
+    """A bar for every search that is running."""
 
-    def line(progress: SearchProgress) -> None:
-        nonlocal last
+    def __init__(self, bars: Progress) -> None:
+        self._bars = bars
+        self._tasks: dict[int | None, TaskID] = {}
+
+    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
+        if seed not in self._tasks:
+            self._tasks[seed] = self._bars.add_task("", total=progress.generations)
+        self._bars.update(
+            self._tasks[seed],
+            completed=progress.generation,
+            description=_figures(progress, seed),
+        )
+
+    def finish(self, front: Front) -> None:
+        if front.seed in self._tasks:
+            self._bars.remove_task(self._tasks.pop(front.seed))
+        _print(self._bars.console, _found(front))
+
+
+class _Lines(SearchDisplay):
+    """A line every few seconds for every search, and one for its last generation."""
+
+    def __init__(self, console: Console) -> None:
+        self._console, self._began = console, time.perf_counter()
+        self._last: dict[int | None, float] = {}
+
+    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
         now = time.perf_counter()
-        if now - last >= _PLAIN_SECONDS or progress.generation == progress.generations:
-            last = now
+        due = now - self._last.get(seed, self._began) >= _PLAIN_SECONDS
+        if due or progress.generation == progress.generations:
+            self._last[seed] = now
             left = (progress.generations - progress.generation) / max(progress.generation, 1)
-            console.print(
-                f"{_figures(progress)}, {left * progress.seconds:.0f} s left",
-                markup=False, highlight=False, soft_wrap=True,
-            )  # fmt: skip
+            line = f"{_figures(progress, seed)}, {left * progress.seconds:.0f} s left"
+            _print(self._console, line)
 
-    return line
+    def finish(self, front: Front) -> None:
+        _print(self._console, _found(front))
 
 
-def _figures(progress: SearchProgress) -> str:
+def _print(console: Console, line: str) -> None:
+    console.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def _found(front: Front) -> str:
+    share = front.history[-1].hypervolume if front.history else 0.0
+    return f"seed {front.seed} is done: hypervolume {share:.4f} in {front.seconds:.1f} s"
+
+
+def _figures(progress: SearchProgress, seed: int | None) -> str:
     speed = progress.evaluations / max(progress.seconds, 1e-9)
+    which = "" if seed is None else f"seed {seed}, "
     return (
-        f"generation {progress.generation}/{progress.generations}, "
+        f"{which}generation {progress.generation}/{progress.generations}, "
         f"residual {progress.residual * 1e3:.3g} mm, energy {progress.energy:.4g} J, "
         f"hypervolume {progress.hypervolume:.4f}, {speed:.0f} candidates/s"
     )

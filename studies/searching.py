@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 from rich.console import Console
 
 from metaheuristics import search
-from metaheuristics.ensemble import STILL, energies_at, hypervolumes, search_many
+from metaheuristics.ensemble import STILL, LostSeedsError, search_many
 from ocp import (
     CycloidPolynomial,
     Front,
@@ -23,8 +23,10 @@ from ocp import (
     plan_move,
 )
 from ocp.files import check_writable
+from studies.commands.shared import refuse_same_file
 from studies.figures import save_figure
 from studies.front_figure import front_figure
+from studies.front_report import show_fronts
 from studies.search_display import search_display
 
 
@@ -36,6 +38,7 @@ def plan_by_search(
     residual_limit: float,
     seed: int,
     polish: bool,
+    quiet: bool = False,
 ) -> Plan:
     """The cheapest point of a metaheuristic's front within the residual limit, as a plan.
 
@@ -55,6 +58,8 @@ def plan_by_search(
         Seed of the search.
     polish : bool
         Improve the point by the gradient, at the residual limit that was asked for.
+    quiet : bool
+        Show no progress.
 
     Returns
     -------
@@ -62,7 +67,7 @@ def plan_by_search(
         The plan, verified by CVODES.
     """
     SolveSettings(residual_limit=residual_limit, seed=seed)  # refused before the search, not after
-    with search_display(Console(stderr=True)) as report:
+    with search_display(Console(stderr=True), quiet=quiet) as report:
         front = search(task, method, profile=profile, bound=bound, seed=seed, report=report)
     if not front.complete:
         raise KeyboardInterrupt
@@ -98,51 +103,92 @@ def run_front(
     output: Path | None,
     figure: Path | None,
     quiet: bool,
-) -> list[Path]:
-    """Search, show what was found, and write it; return the files written."""
-    runs, workers = options.pop("runs"), options.pop("workers")
-    method, terms = options.pop("method"), options.pop("terms")
-    checkpoint, resume = options.pop("checkpoint"), options.pop("resume")
-    profile = CycloidPolynomial(terms)
+) -> Iterator[Path]:
+    """Search from every seed, show what was found, and write it.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    options : dict
+        The settings of `search`, with ``terms`` for its profile, ``runs`` and ``workers``.
+    output : Path or None
+        File for the front; with several runs `with_seed` names one for every seed.
+    figure : Path or None
+        File for the picture.
+    quiet : bool
+        Show no progress.
+
+    Yields
+    ------
+    Path
+        Every file, once it is written.
+
+    Raises
+    ------
+    LostSeedsError
+        When a process died, after what the others found was written.
+    """
+    runs, profile = options["runs"], CycloidPolynomial(options.pop("terms"))
+    if runs > 1 and (options["checkpoint"] or options["resume"]):
+        raise ValueError("--checkpoint and --resume are for one run, not with --runs")
     targets = _targets(output, options["seed"], runs)
-    error_console, console = Console(stderr=True), Console()
-    if workers > (os.cpu_count() or 1):
-        error_console.print(f"{workers} workers on {os.cpu_count()} cores: they will share them")
-    if runs == 1:
-        with search_display(error_console, quiet=quiet) as report:
-            fronts = [
-                search(
-                    task, method, profile=profile, checkpoint=checkpoint, resume=resume,
-                    report=report, **options,
-                )
-            ]  # fmt: skip
-    else:
-        if checkpoint or resume:
-            raise ValueError("--checkpoint and --resume are for one run, not with --runs")
-        fronts = search_many(
-            task, method, runs, workers=workers, profile=profile,
-            done=lambda front: None if quiet else _show_run(error_console, front), **options,
-        )  # fmt: skip
+    _refuse_same_files(targets, options, figure)
+    errors = Console(stderr=True)
+    found, lost = _fronts(errors, task, {**options, "profile": profile}, quiet)
+    fronts = [front for front in found if front.complete or front.points]
+    complete = sum(front.complete for front in fronts)
     if not any(front.points for front in fronts):
-        if not all(front.complete for front in fronts) or len(fronts) < runs:
+        if lost is None and complete < runs:
             raise KeyboardInterrupt
-        raise SolverFailedError(
-            f"{method} found no candidate that meets the task; widen its limits or the bound, or "
-            "search longer"
+        raise lost or SolverFailedError(
+            f"{options['method']} found no candidate that meets the task; widen its limits or the "
+            "bound, or search longer"
         )
-    if len(fronts) < runs:
-        error_console.print(f"interrupted: {len(fronts)} of {runs} seeds are done")
-    _show(console, fronts)
-    written: list[Path] = []
-    for front in fronts:
-        if output is not None:
-            front.save(targets[front.seed or 0])
-            written.append(targets[front.seed or 0])
+    if complete < runs and runs > 1 and lost is None:
+        part = f", {len(fronts) - complete} in part" * (complete < len(fronts))
+        errors.print(f"interrupted: {complete} of {runs} seeds are done{part}", highlight=False)
+    show_fronts(Console(), fronts)
+    for front in fronts if targets else ():
+        front.save(targets[front.seed or 0])
+        yield targets[front.seed or 0]
     if figure is not None:
-        title = f"{method}, {task.plant.name}, {len(fronts)} seed{'s' * (len(fronts) > 1)}"
+        seeds = f"{len(fronts)} seed{'s' * (len(fronts) > 1)}"
+        title = f"{options['method']}, {task.plant.name}, {seeds}"
         save_figure(front_figure(fronts, title), figure)
-        written.append(figure)
-    return written
+        yield figure
+    if lost is not None:
+        raise lost
+
+
+def _fronts(
+    errors: Console, task: PointToPoint, options: Mapping[str, Any], quiet: bool
+) -> tuple[list[Front], LostSeedsError | None]:
+    """What every seed found, shown as it goes; and the error of those whose process died."""
+    runs, workers, cores = options["runs"], options["workers"], os.cpu_count() or 1
+    if min(workers, runs) > cores:
+        errors.print(f"{workers} workers on {cores} cores: they will share them", highlight=False)
+    with search_display(errors, quiet=quiet) as display:
+        several = {"report": display, "done": display.finish}
+        one = {"report": lambda progress, seed: display(progress)}
+        try:
+            return search_many(task, **(several if runs > 1 else one), **options), None
+        except LostSeedsError as error:
+            return error.fronts, error
+
+
+def with_seed(path: Path, seed: int) -> Path:
+    """The file for one of several seeds: front.json is front-seed3.json for seed 3."""
+    return path.with_stem(f"{path.stem}-seed{seed}")
+
+
+def _refuse_same_files(
+    targets: Mapping[int, Path], options: Mapping[str, Any], figure: Path | None
+) -> None:
+    written = [*(("--output", path) for path in targets.values()), ("--figure", figure)]
+    refuse_same_file([*written, ("--checkpoint", options["checkpoint"])])
+    # a checkpoint may be gone on in, but not become a front
+    refuse_same_file([*written, ("--resume", options["resume"])])
 
 
 def _targets(output: Path | None, seed: int, runs: int) -> dict[int, Path]:
@@ -150,41 +196,4 @@ def _targets(output: Path | None, seed: int, runs: int) -> dict[int, Path]:
         return {}
     if runs == 1:
         return {seed: output}
-    names = {s: output.with_stem(f"{output.stem}-seed{s}") for s in range(seed, seed + runs)}
-    return {s: check_writable(path) for s, path in names.items()}
-
-
-def _show_run(console: Console, front: Front) -> None:
-    share = front.history[-1].hypervolume if front.history else 0.0
-    console.print(
-        f"seed {front.seed}: hypervolume {share:.4f} in {front.seconds:.1f} s",
-        highlight=False,
-    )
-
-
-def _show(console: Console, fronts: Sequence[Front]) -> None:
-    for front in fronts:
-        _show_front(console, front)
-    if len(fronts) > 1:
-        volume, energy = hypervolumes(fronts), energies_at(fronts)
-        console.print(
-            f"hypervolume: median {volume.median:.4f}, quartiles {volume.lower:.4f} to "
-            f"{volume.upper:.4f}\nenergy at {STILL * 1e3:g} mm: median {energy.median:.4g} J, "
-            f"quartiles {energy.lower:.4g} to {energy.upper:.4g} J",
-            highlight=False,
-        )
-
-
-def _show_front(console: Console, front: Front) -> None:
-    state = "" if front.complete else " (interrupted: what was found until then)"
-    lines = [
-        f"{front.method}, seed {front.seed}: {len(front.points)} points, "
-        f"{front.evaluations} candidates in {front.seconds:.1f} s, {front.failed} failed{state}"
-    ]
-    if front.points:
-        chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
-        lines += [
-            f"  {name:9}{point.energy:.4g} J at {point.residual * 1e3:.3g} mm"
-            for name, point in chosen.items()
-        ]
-    console.print("\n".join(lines), highlight=False)
+    return {s: check_writable(with_seed(output, s)) for s in range(seed, seed + runs)}

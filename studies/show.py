@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ocp import Plan
+from ocp.task import LIMITS
 
 
 def show_plan(console: Console, plan: Plan) -> None:
@@ -29,7 +30,7 @@ def show_plan(console: Console, plan: Plan) -> None:
         f"{task.plant.name}, {_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s",
     )
     limits = ", ".join(
-        f"{name} {value:g}{'' if motion.peak(name) <= value * 1.001 else ' (broken)'}"
+        f"{name} {_quantity(name, value)}{_broken(name, motion.peak(name), value)}"
         for name, value in task.limits.items()
     )
     if limits:
@@ -62,3 +63,12 @@ def _angle(value: float) -> str:
 
 def _length(value: float) -> str:
     return f"{value * 1e3:.3g} mm"
+
+
+def _quantity(name: str, value: float) -> str:
+    return f"{value:g} {LIMITS[f'{name}_limit']}"
+
+
+def _broken(name: str, peak: float, limit: float) -> str:
+    """How a limit is broken; nothing where it is kept to the README's tolerance."""
+    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {LIMITS[f'{name}_limit']})"

@@ -27,18 +27,26 @@ from studies.options import OUTPUT, PICTURE, task_options
 @click.option("--workers", type=int, default=1, show_default=True, help="Processes for the runs.")
 @click.option("--checkpoint", type=OUTPUT, help="Write the state here every few seconds.")
 @click.option("--resume", type=click.Path(path_type=Path), help="Go on from this checkpoint.")
-@click.option("--output", type=OUTPUT, help="Write the front here; a file a seed with --runs.")
-@click.option("--figure", type=PICTURE, help="Draw the front (.png, .pdf or .svg).")
+@click.option(
+    "--output", type=OUTPUT,
+    help="Write the front to this JSON file; with --runs one for every seed: front.json gives "
+    "front-seed0.json, front-seed1.json, ...",
+)  # fmt: skip
+@click.option(
+    "--figure", type=PICTURE, help="Draw the fronts, all in one picture (.png, .pdf or .svg)."
+)
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 def front(output: Path | None, figure: Path | None, quiet: bool, **rest: Any) -> None:
     """Search the trade-off of residual and energy with NSGA-II or VEPSO.
+
+    Ctrl-C ends a search early and keeps what was found.
 
     \b
     Examples, the paper's settings:
       quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --method nsga2 \\
           --output front.json --figure front.png
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \\
-          --runs 5 --workers 2
+          --runs 5 --workers 2 --output front.json --figure fronts.png
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.searching import run_front
 

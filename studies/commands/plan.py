@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import click
+from click.core import ParameterSource
 from rich.console import Console
 
 from ocp import CycloidPolynomial, plan_move
@@ -25,11 +26,14 @@ from studies.options import LENGTH, output_options, task_options
 @click.option(
     "--method", type=click.Choice(["ipopt", "nsga2", "vepso"]), default="ipopt", show_default=True,
     help="The gradient, or the cheapest point of a metaheuristic's front within the residual "
-    "limit (1mm where none is given).",
+    "limit (1mm where that is 0).",
 )  # fmt: skip
 @click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
+@click.option("--quiet", is_flag=True, help="Show no progress of a metaheuristic.")
 @output_options
+@click.pass_context
 def plan(
+    context: click.Context,
     terms: int,
     bound: float | None,
     residual_limit: float,
@@ -37,6 +41,7 @@ def plan(
     seed: int,
     method: str,
     polish: bool,
+    quiet: bool,
     **rest: Any,
 ) -> None:
     """Find the move of least energy whose residual vibration is within a limit.
@@ -51,6 +56,11 @@ def plan(
     from studies.show import show_plan
 
     task, outputs = split_options(rest)
+    given = context.get_parameter_source("starts") is not ParameterSource.DEFAULT
+    if method != "ipopt" and given:
+        raise ValueError(f"--starts is for ipopt, not for {method}; leave it out")
+    if method == "ipopt" and polish:
+        raise ValueError("--polish is for a metaheuristic's point; give --method nsga2 or vepso")
     profile = CycloidPolynomial(terms)
     if method == "ipopt":
         found = plan_move(
@@ -59,6 +69,10 @@ def plan(
     else:
         from studies.searching import plan_by_search
 
-        found = plan_by_search(task, method, profile, bound, residual_limit, seed, polish)
+        found = plan_by_search(task, method, profile, bound, residual_limit, seed, polish, quiet)
     show_plan(Console(), found)
+    if method != "ipopt" and residual_limit == 0 and not polish:
+        click.echo(
+            "residual limit 0 stands for 1 mm here: no search arrives quite at rest; --polish does"
+        )
     write_plan(found, **outputs)

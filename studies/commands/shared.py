@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,8 @@ from ocp.plan import ticks_of_move
 def split_options(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
     """The task and the output options, from a command's shared options."""
     outputs = {name: rest.pop(name) for name in ("output", "csv_file", "sample_rate", "figure")}
+    names = {"--output": "output", "--csv": "csv_file", "--figure": "figure"}
+    refuse_same_file((option, outputs[name]) for option, name in names.items())
     task = task_of(rest)
     ticks_of_move(task.duration, outputs["sample_rate"])  # refused now rather than after the solve
     return task, outputs
@@ -42,3 +45,11 @@ def write_plan(
     for path in (output, csv_file, figure):
         if path is not None:
             console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+
+
+def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
+    """Make sure that no two options name one file; ValueError names them."""
+    names: dict[Path, str] = {}
+    for name, path in files:
+        if path is not None and names.setdefault(path.resolve(), name) != name:
+            raise ValueError(f"{names[path.resolve()]} and {name} are both {path}; give two files")

@@ -1,0 +1,68 @@
+"""Fronts in words: what each holds, and the spread over seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Console
+
+from metaheuristics.ensemble import STILL, Spread, energies_at, hypervolumes
+from ocp import Front
+
+
+def show_fronts(console: Console, fronts: Sequence[Front]) -> None:
+    """Print the ends and the knee of every front, and the spread of those that are complete.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    fronts : sequence of Front
+        One for every seed.
+    """
+    for front in fronts:
+        _print(console, _front_lines(front))
+    complete = [front for front in fronts if front.complete]
+    if len(complete) > 1:
+        _print(
+            console,
+            [
+                f"hypervolume: {quartiles(hypervolumes(complete), '.4f')}",
+                f"energy at {STILL * 1e3:g} mm: {quartiles(energies_at(complete), '.4g', ' J')}; "
+                f"{reached(energies_at(complete))}",
+            ],
+        )
+
+
+def quartiles(spread: Spread, form: str, unit: str = "") -> str:
+    """Median and quartiles in words, each number in this form."""
+    if not spread.count:
+        return "none"
+    return (
+        f"median {spread.median:{form}}{unit}, quartiles {spread.lower:{form}} to "
+        f"{spread.upper:{form}}{unit}"
+    )
+
+
+def reached(spread: Spread) -> str:
+    """How many of the seeds the quartiles of the energy at `STILL` are of."""
+    return f"{spread.count} of {spread.seeds} seeds reach {STILL * 1e3:g} mm"
+
+
+def _front_lines(front: Front) -> list[str]:
+    state = "" if front.complete else " (interrupted: what was found until then)"
+    lines = [
+        f"{front.method}, seed {front.seed}: {len(front.points)} points, "
+        f"{front.evaluations} candidates in {front.seconds:.1f} s, {front.failed} failed{state}"
+    ]
+    if front.points:
+        chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
+        lines += [
+            f"  {name:9}{point.energy:.4g} J at {point.residual * 1e3:.3g} mm"
+            for name, point in chosen.items()
+        ]
+    return lines
+
+
+def _print(console: Console, lines: Sequence[str]) -> None:
+    console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)

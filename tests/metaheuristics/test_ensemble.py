@@ -1,0 +1,211 @@
+"""Many seeds: the same fronts however many processes, and none lost to Ctrl-C or to a death."""
+
+import dataclasses
+import math
+import multiprocessing
+import os
+import signal
+import sys
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import metaheuristics.ensemble as ensemble
+from metaheuristics import search
+from metaheuristics.ensemble import (
+    STILL,
+    LostSeedsError,
+    Spread,
+    energies_at,
+    energy_at,
+    hypervolumes,
+    search_many,
+)
+from models import SingleLinkManipulator
+from ocp import CycloidPolynomial, Front, FrontPoint, Generation, PointToPoint
+
+TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+SMALL = {"bound": 0.2, "population": 8, "generations": 3, "profile": CycloidPolynomial(2)}
+LONG = {**SMALL, "population": 40, "generations": 100_000}  # minutes, were it not stopped
+
+
+def front(points=(), seed=0, shares=(), complete=True):
+    """A front of these residuals [m] and energies [J], with these hypervolumes on the way."""
+    return Front(
+        task=TASK,
+        profile=CycloidPolynomial(2),
+        points=tuple(FrontPoint((0.0, 0.0), *point) for point in points),
+        method="vepso",
+        settings={},
+        seed=seed,
+        reference=(0.08, 0.4),
+        evaluations=10 * len(shares),
+        history=tuple(Generation(10 * (i + 1), share) for i, share in enumerate(shares)),
+        complete=complete,
+    )
+
+
+@pytest.fixture(autouse=True)
+def _no_process_is_left():
+    yield
+    assert multiprocessing.active_children() == []
+
+
+# -- the spread --
+
+
+def test_quartiles_of_five_seeds_are_the_second_third_and_fourth():
+    assert Spread.of([5.0, 1.0, 4.0, 2.0, 3.0]) == Spread(2.0, 3.0, 4.0, count=5, seeds=5)
+
+
+@given(st.lists(st.floats(-1e6, 1e6) | st.just(math.nan) | st.just(math.inf), max_size=9))
+def test_quartiles_are_numpys_of_the_seeds_that_have_the_figure(values):
+    spread = Spread.of(values)
+    finite = np.array([value for value in values if math.isfinite(value)])
+    assert (spread.count, spread.seeds) == (finite.size, len(values))
+    expected = np.quantile(finite, [0.25, 0.5, 0.75]) if finite.size else np.full(3, np.nan)
+    np.testing.assert_array_equal([spread.lower, spread.median, spread.upper], expected)
+
+
+def test_the_energy_is_that_of_the_cheapest_point_still_enough():
+    points = [(0.2e-3, 0.3), (STILL, 0.2), (2e-3, 0.1)]
+    assert energy_at(front(points)) == 0.2
+    assert energy_at(front(points), 1.9e-3) == 0.2
+    assert energy_at(front(points), 2e-3) == 0.1
+    assert math.isnan(energy_at(front(points), 0.1e-3))
+    assert math.isnan(energy_at(front()))
+
+
+def test_seeds_that_never_arrive_still_are_counted():
+    fronts = [front([(0.5e-3, 0.25)]), front([(3e-3, 0.1)]), front([(0.9e-3, 0.5)]), front()]
+    assert energies_at(fronts) == Spread(0.3125, 0.375, 0.4375, count=2, seeds=4)
+    assert energies_at(fronts, 5e-3).count == 3
+    none = energies_at(fronts, 0.1e-3)
+    assert (none.count, none.seeds) == (0, 4)
+    assert math.isnan(none.median)
+
+
+def test_the_hypervolume_is_that_of_the_last_generation():
+    fronts = [front(shares=shares) for shares in ([0.1, 0.5], [0.2, 0.75], [0.3, 0.625])]
+    assert hypervolumes(fronts) == Spread(0.5625, 0.625, 0.6875, count=3, seeds=3)
+    assert hypervolumes([front()]).median == 0.0
+
+
+# -- the searches --
+
+
+@pytest.mark.parametrize("name", ["runs", "workers"])
+@pytest.mark.parametrize("value", [0, -1, 1.5])
+def test_no_runs_or_workers_are_refused(name, value):
+    with pytest.raises(ValueError, match=f"{name} is {value}; give a whole number from 1 up"):
+        search_many(TASK, "vepso", **{"runs": 1, "workers": 1, name: value}, **SMALL)
+
+
+@pytest.mark.parametrize("method", ["vepso", "nsga2"])
+def test_the_fronts_are_those_of_single_searches_whatever_the_workers(method):
+    alone = [search(TASK, method, seed=seed, **SMALL) for seed in (4, 5, 6)]
+    for workers in (1, 2):
+        done, heard = [], set()
+        fronts = search_many(
+            TASK, method, 3, seed=4, workers=workers, **SMALL,
+            report=lambda progress, seed, heard=heard: heard.add((seed, progress.generations)),
+            done=done.append,
+        )  # fmt: skip
+        assert fronts == alone
+        assert sorted(front.seed for front in done) == [4, 5, 6]
+        assert heard == {(4, 3), (5, 3), (6, 3)}
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_wrong_setting_is_refused_as_by_one_search(workers):
+    with pytest.raises(ValueError, match="generations is 0"):
+        search_many(TASK, "vepso", 3, workers=workers, **{**SMALL, "generations": 0})
+
+
+def interrupt_at(seeds, generation=1):
+    """A report that sends this process Ctrl-C as soon as every one of these seeds is on its way."""
+    heard, sent = set(), []
+
+    def report(progress, seed):
+        if progress.generation >= generation:
+            heard.add(seed)
+        if heard >= seeds and not sent:
+            sent.append(time.perf_counter())
+            signal.raise_signal(signal.SIGINT)
+
+    return report, sent
+
+
+def test_ctrl_c_one_after_another_keeps_what_is_done_and_what_was_found_so_far():
+    report, _ = interrupt_at({1}, generation=2)
+    done = []
+    fronts = search_many(TASK, "vepso", 3, report=report, done=done.append, **SMALL)
+    assert [(front.seed, front.complete) for front in fronts] == [(0, True), (1, False)]
+    assert fronts[0] == search(TASK, "vepso", seed=0, **SMALL)
+    assert len(fronts[1].history) == 2
+    assert fronts[1].points
+    assert [front.seed for front in done] == [0]
+
+
+@pytest.mark.parametrize(("at", "kept"), [(0, None), (1, [0])])
+def test_ctrl_c_before_a_search_has_begun_keeps_the_others(monkeypatch, at, kept):
+    def interrupted(task, method, seed, **settings):
+        if seed == at:
+            raise KeyboardInterrupt
+        return search(task, method, seed=seed, **settings)
+
+    monkeypatch.setattr(ensemble, "search", interrupted)
+    if kept is None:
+        with pytest.raises(KeyboardInterrupt):
+            search_many(TASK, "vepso", 3, **SMALL)
+    else:
+        assert [front.seed for front in search_many(TASK, "vepso", 3, **SMALL)] == kept
+
+
+def test_ctrl_c_ends_processes_soon_and_keeps_what_they_found():
+    report, sent = interrupt_at({0, 1})
+    fronts = search_many(TASK, "nsga2", 4, workers=2, report=report, **LONG)
+    assert time.perf_counter() - sent[0] < 2
+    assert [(front.seed, front.complete) for front in fronts] == [(0, False), (1, False)]
+    for found in fronts:
+        assert found.points
+        assert found.evaluations == 40 * len(found.history)  # whole generations
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
+def test_a_process_that_dies_costs_its_own_seed_only():
+    killed = []
+
+    def report(progress, seed):
+        if seed == 0 and not killed:
+            children = multiprocessing.active_children()
+            first = min(children, key=lambda child: int(child.name.rpartition("-")[2]))
+            killed.append(first.pid)
+            os.kill(first.pid, signal.SIGKILL)
+
+    settings = {**SMALL, "generations": 300}
+    with pytest.raises(LostSeedsError) as caught:
+        search_many(TASK, "nsga2", 3, workers=2, report=report, **settings)
+    assert len(killed) == 1
+    message = str(caught.value)
+    assert "seed 0 (killed by SIGKILL)" in message
+    assert "2 of 3 seeds are done" in message
+    assert "fewer workers or a smaller population" in message
+    assert "\n" not in message
+    assert [front.seed for front in caught.value.fronts] == [1, 2]
+    assert caught.value.fronts[0] == search(TASK, "nsga2", seed=1, **settings)
+
+
+def test_a_front_goes_to_another_process_and_back_whole():
+    # what the processes rely on: every field, also one that is not compared, and read-only entries
+    found = search(TASK, "vepso", **SMALL)
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe()
+    theirs.send(found)
+    same = ours.recv()
+    assert same == found
+    assert same.seconds == found.seconds
+    assert dataclasses.asdict(same) == dataclasses.asdict(found)
