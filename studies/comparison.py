@@ -196,7 +196,7 @@ def compare(
     corner = np.max([*(front.reference for front in fronts), _MARGIN * best_front.max(0)], axis=0)
     extent = np.where(np.ptp(known, axis=0) > 0, np.ptp(known, axis=0), corner)
     stations = evenly_spaced(known / extent)
-    table = np.array([[energy_within(front, level) for level in levels] for front in fronts])
+    table = np.array([within(cloud, levels) for cloud in clouds])
     best = np.array([column[np.isfinite(column)].min(initial=np.inf) for column in table.T])
     best[np.isinf(best)] = np.nan
 
@@ -210,7 +210,7 @@ def compare(
             epsilon=float(moocore.epsilon_additive(scaled, ref=stations)),
             energies=_floats(table[i]),
             gaps=_floats(table[i] / best - 1),
-            steps=_floats([_step(fronts[i], level) for level in levels] / best),
+            steps=_floats(_steps(clouds[i], levels) / best),
         )
 
     groups = tuple(
@@ -235,18 +235,32 @@ def objectives(front: Front) -> Array:
     return np.column_stack([front.residuals, front.energies])
 
 
-def energy_within(front: Front, residual: float) -> float:
-    """Least energy [J] of a front's motions within a residual [m]; NaN where it has none."""
-    count = int(np.searchsorted(front.residuals, residual, side="right"))
-    return front.points[count - 1].energy if count else np.nan
+def within(front: Array, residuals: Sequence[float] | Array, missing: float = np.nan) -> Array:
+    """Least energies [J] on a staircase within residuals.
+
+    Parameters
+    ----------
+    front : ndarray, shape (points, 2)
+        Residuals [m], rising, and energies [J], falling.
+    residuals : array_like, shape (n,)
+        Residuals [m].
+    missing : float
+        What stands for the energy within a residual that no point has.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Energies [J].
+    """
+    count = np.searchsorted(front[:, 0], residuals, side="right")
+    return np.where(count > 0, front[np.maximum(count - 1, 0), 1], missing)
 
 
-def _step(front: Front, residual: float) -> float:
-    """How much energy falls from the motion within a residual to the next one beyond it [J]."""
-    count = int(np.searchsorted(front.residuals, residual, side="right"))
-    if not 0 < count < len(front.points):
-        return np.nan if count == 0 else 0.0
-    return front.points[count - 1].energy - front.points[count].energy
+def _steps(front: Array, residuals: Sequence[float]) -> Array:
+    """How much energy falls from the motion within each residual to the next one beyond it [J]."""
+    count = np.searchsorted(front[:, 0], residuals, side="right")
+    beyond = front[np.minimum(count, len(front) - 1), 1]
+    return within(front, residuals) - beyond
 
 
 def evenly_spaced(points: Array, stations: int = _STATIONS) -> Array:
@@ -270,8 +284,8 @@ def _coverage(one: Group, other: Group) -> float:
         return np.nan
     shares: list[float] = []
     for a, b in product(one.runs, other.runs):
-        within = np.array([energy_within(a.front, point.residual) for point in b.front.points])
-        shares.append(float(np.mean(within <= b.front.energies)))  # NaN counts as not
+        mine = within(objectives(a.front), b.front.residuals, np.inf)
+        shares.append(float(np.mean(mine <= b.front.energies)))
     return float(np.median(shares))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import cycle
 
+import moocore
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -14,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 from numpy.typing import NDArray
 
-from studies.comparison import Comparison, Group
+from studies.comparison import Comparison, objectives, within
 from studies.comparison_paper import PaperPoint
 
 _COLOURS = {
@@ -26,9 +27,10 @@ _SPARE = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#00
 _DASHES = {"weighted": (0, (1, 1)), "nsga2, polished": "--", "vepso, polished": (0, (4, 1, 1, 1))}
 _STILLEST = 1e-6
 """Residuals below this [m] are alike to the eye: the logarithmic axes begin here."""
-_SAMPLES = 201
 _TALLEST = 1.6
 """Panels end at this multiple of the energy of the best nearly still motion."""
+
+BANDS = "Of several seeds: the median, in a band from the best to the worst"
 
 Array = NDArray[np.float64]
 Dash = str | tuple[int, tuple[int, ...]]
@@ -73,9 +75,9 @@ def comparison_figure(
     Returns
     -------
     matplotlib.figure.Figure
-        Three panels: whole fronts; the nearly still end, residual logarithmic; energy above the
-        best of all. Of several seeds the median attainment surface, in a band from the best to the
-        worst. The legend stands beside the third.
+        Three panels: whole fronts; the nearly still end, residual logarithmic; points above the
+        best of all. Of several seeds the median attainment surface, in a band from the best to
+        the worst. The legend stands beside the third.
     """
     figure = Figure(figsize=(10, 7.4), layout="constrained")
     FigureCanvasAgg(figure)
@@ -84,7 +86,11 @@ def comparison_figure(
         draw(axis, comparison, paper)
         axis.set_title(f"({letter}) {axis.get_title(loc='left')}", fontsize=10, loc="left")
     axes[3].axis("off")
-    axes[3].legend(*_legend(axes), loc="center left", frameon=False, fontsize=10)
+    title_of_legend = BANDS if any(len(group.runs) > 1 for group in comparison.groups) else None
+    axes[3].legend(
+        *_legend(axes), loc="center left", frameon=False, fontsize=10, title=title_of_legend,
+        alignment="left",
+    )  # fmt: skip
     if title:
         figure.suptitle(title, fontsize=12)
     return figure
@@ -128,23 +134,26 @@ def draw_still(axis: Axes, comparison: Comparison, paper: Sequence[PaperPoint] =
 
 
 def draw_gaps(axis: Axes, comparison: Comparison, paper: Sequence[PaperPoint] = ()) -> None:
-    """Draw how far the energy is above the best of all fronts, against residual (logarithmic)."""
-    left, right = _left(comparison), _right(comparison)
-    residuals = np.geomspace(left, right, _SAMPLES)
-    best = np.min([_on(g.best, residuals, np.inf) for g in comparison.groups], axis=0)
+    """Draw how far points are above the line through the best of all points, residual logarithmic.
+
+    Points rather than staircases: between its points a coarse front would look bad by its steps.
+    """
+    best = moocore.filter_dominated(np.vstack([objectives(run.front) for run in comparison.runs]))
+    best = best[np.argsort(best[:, 0])]
     for group in comparison.groups:
         look = looks(comparison)[group.label]
-        gap = 100 * (_on(group.median, residuals) / best - 1)
+        residuals, energies = group.median.T
+        gap = 100 * np.maximum(energies / np.interp(residuals, *best.T) - 1, 0)
         axis.plot(
-            residuals * 1e3, gap, color=look.colour, linestyle=look.dash, linewidth=1.4,
-            label=_label(group),
+            np.maximum(residuals, _left(comparison)) * 1e3, gap, ".", color=look.colour,
+            markersize=5, markeredgewidth=0, label=group.label,
         )  # fmt: skip
     axis.set_yscale("symlog", linthresh=0.1, linscale=0.5)
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_ylim(0, None)
+    axis.set_ylim(-0.008, None)
     axis.set_ylabel("energy above the best [%]")
-    _logarithmic(axis, comparison, right)
-    axis.set_title("above the best of all", fontsize=10, loc="left")
+    _logarithmic(axis, comparison, _right(comparison))
+    axis.set_title("each point above the best of all", fontsize=10, loc="left")
 
 
 PANELS: dict[str, Callable[[Axes, Comparison, Sequence[PaperPoint]], None]] = {
@@ -162,14 +171,14 @@ def _draw_fronts(
         look = looks(comparison)[group.label]
         stairs = np.concatenate([group.best[:, 0], group.median[:, 0], group.worst[:, 0], [right]])
         stairs = np.unique(stairs[stairs <= right])
-        best, median, worst = (_on(s, stairs) for s in (group.best, group.median, group.worst))
+        best, median, worst = (within(s, stairs) for s in (group.best, group.median, group.worst))
         if len(group.runs) > 1:
             axis.fill_between(
                 stairs * 1e3, best, worst, step="post", color=look.colour, alpha=0.2, linewidth=0
             )
         axis.plot(
             stairs * 1e3, median, color=look.colour, linestyle=look.dash, linewidth=1.4,
-            drawstyle="steps-post", label=_label(group),
+            drawstyle="steps-post", label=group.label,
         )  # fmt: skip
     marks = cycle("*Pv")
     for point in paper:
@@ -195,7 +204,7 @@ def _energies_shown(
     top = min(max(group.median[0, 1] for group in comparison.groups), _TALLEST * still)
     marks = [point.energy for point in paper]
     marks += [] if comparison.floor is None else [comparison.floor]
-    ends = [_on(group.best, np.array([right]), np.inf)[0] for group in comparison.groups]
+    ends = [within(group.best, np.array([right]), np.inf)[0] for group in comparison.groups]
     low, high = min([*marks, *ends, still]), max([*marks, top])
     margin = 0.06 * ((high - low) or high)
     return low - margin, high + margin
@@ -220,14 +229,3 @@ def _logarithmic(axis: Axes, comparison: Comparison, right: float) -> None:
     axis.grid(alpha=0.25)
     for level in comparison.levels:
         axis.axvline(level * 1e3, color="0.75", linewidth=0.8, zorder=0)
-
-
-def _on(surface: Array, residuals: Array, missing: float = np.nan) -> Array:
-    """Energies of a staircase within each of the residuals."""
-    count = np.searchsorted(surface[:, 0], residuals, side="right")
-    return np.where(count > 0, surface[np.maximum(count - 1, 0), 1], missing)
-
-
-def _label(group: Group) -> str:
-    runs = len(group.runs)
-    return group.label if runs == 1 else f"{group.label}: median, best to worst of {runs} seeds"

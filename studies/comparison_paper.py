@@ -70,3 +70,13 @@ def paper_points(task: PointToPoint, terms: Collection[int]) -> list[PaperPoint]
             plan = evaluate_coefficients(row.condition.task, coefficients)
             points[row.terms] = PaperPoint(row.terms, plan.energy, plan.residual)
     return list(points.values())
+
+
+def title_of(task: PointToPoint) -> str:
+    """A task in a line: its plant, move and duration; its limits where it has any."""
+    condition = condition_of(task)
+    if condition is not None:
+        return f"{task.plant.name}, {condition.label}"
+    limits = "".join(f", {name} within {value:g}" for name, value in task.limits.items())
+    move = f"{task.start:.4g} to {task.target:.4g} rad, {task.duration:g} s"
+    return f"{task.plant.name}, {move}{limits}"

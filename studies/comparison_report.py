@@ -6,11 +6,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from ocp import Front, PointToPoint
+from ocp import Front
 from ocp.files import check_writable, write_whole
 from studies.comparison import Comparison
 from studies.comparison_figure import comparison_figure
-from studies.comparison_paper import condition_of, paper_points
+from studies.comparison_paper import paper_points, title_of
 from studies.comparison_tables import how_to_read, runs_table, tables
 from studies.figures import save_figure
 
@@ -22,16 +22,6 @@ def load_fronts(paths: list[Path]) -> tuple[list[Front], list[str]]:
     """The fronts of files and what to call them; FileFormatError where one is no front."""
     fronts = [Front.load(path) for path in paths]
     return fronts, [str(path) for path in paths]
-
-
-def title_of(task: PointToPoint) -> str:
-    """A task in a line: its plant, move and duration; its limits where it has any."""
-    condition = condition_of(task)
-    if condition is not None:
-        return f"{task.plant.name}, {condition.label}"
-    limits = "".join(f", {name} within {value:g}" for name, value in task.limits.items())
-    move = f"{task.start:.4g} to {task.target:.4g} rad, {task.duration:g} s"
-    return f"{task.plant.name}, {move}{limits}"
 
 
 def terms_of(comparison: Comparison) -> set[int]:

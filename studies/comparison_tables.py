@@ -9,7 +9,7 @@ from metaheuristics.ensemble import Spread
 from studies.comparison import Comparison, Group
 from studies.tables import Cell, Column, Table
 
-_ENERGY, _SHARE, _PERCENT = "{:.5g}".format, "{:.4f}".format, "{:.3g}".format
+_ENERGY, _SHARE, _PERCENT = "{:.5g}".format, "{:.4f}".format, "{:.2f}".format
 _QUARTILES = "  quartiles over seeds"
 
 

@@ -44,7 +44,7 @@ class Table:
     def for_screen(self) -> ScreenTable:
         """The table for rich's console."""
         table = ScreenTable(title=self.title, title_justify="left", box=box.SIMPLE_HEAD)
-        heading, *lines = self._upright()
+        heading, *lines = self.upright()
         table.add_column(Text(heading[0]), no_wrap=True)
         for name in heading[1:]:
             table.add_column(Text(name), justify="right")
@@ -54,7 +54,7 @@ class Table:
 
     def markdown(self) -> str:
         """The table in Markdown, with its title above it."""
-        heading, *lines = self._upright()
+        heading, *lines = self.upright()
         rule = ["---", *["---:"] * (len(heading) - 1)]
         rows = [_line(line) for line in (heading, rule, *lines)]
         return "\n".join([f"**{self.title}**", "", *rows]) + "\n"
@@ -67,7 +67,8 @@ class Table:
         writer.writerows([["" if cell is None else cell for cell in row] for row in self.rows])
         return text.getvalue()
 
-    def _upright(self) -> list[list[str]]:
+    def upright(self) -> list[list[str]]:
+        """The table as people read it: a line a quantity, its heading first; the names on top."""
         return [
             [column.heading, *(column.text(row[i]) for row in self.rows)]
             for i, column in enumerate(self.columns)

@@ -12,7 +12,7 @@ from models import ArmOnFlexibleLink
 from ocp import PointToPoint
 from studies.cli import main
 from studies.comparison import compare
-from studies.comparison_figure import PANELS, comparison_figure, looks, panel_figure
+from studies.comparison_figure import BANDS, PANELS, comparison_figure, looks, panel_figure
 from studies.comparison_paper import condition_of, paper_points
 from studies.comparison_report import FILES, write
 from studies.comparison_tables import runs_table, tables
@@ -70,10 +70,10 @@ def test_tables_show_the_figures_of_the_comparison(comparison):
     assert fronts["hypervolume (large is good)"] == [f"{value:.4f}" for value in volume]
     assert energies["energy at 0.1 mm [J]"] == ["0.8", "not reached"]
     assert energies["energy at 1 mm [J]"] == ["0.8", "0.96"]
-    assert energies["above the best at 1 mm [%]"] == ["0", "20"]
+    assert energies["above the best at 1 mm [%]"] == ["0.00", "20.00"]
     # NSGA-II's next point is 0.2 J lower, a quarter of the best: the whole gap may be its steps
     lines = [line for line in shown["energies"].markdown().splitlines() if "coarse" in line]
-    assert [line.split("|")[3].strip() for line in lines] == ["-", "20", "0"]  # by level
+    assert [line.split("|")[3].strip() for line in lines] == ["-", "20.00", "0.00"]  # by level
 
 
 def test_a_run_a_row_with_every_digit(comparison):
@@ -96,18 +96,27 @@ def drawn(axis, label):
 
 
 def test_the_picture_holds_the_fronts_as_staircases(comparison):
-    whole, still, gaps, _ = comparison_figure(comparison).axes
+    picture = comparison_figure(comparison)
+    whole, still, gaps, _ = picture.axes
     stairs = drawn(whole, "epsilon-constraint")
     np.testing.assert_allclose(stairs[:3], [[0, 0.8], [4, 0.5], [8, 0.4]])
     (line,) = [line for line in whole.get_lines() if line.get_label() == "epsilon-constraint"]
     assert line.get_drawstyle() == "steps-post"
-    seeds = "NSGA-II: median, best to worst of 3 seeds"
-    medians = drawn(whole, seeds)
-    np.testing.assert_allclose(medians[[0, 1]], [[1, 0.96], [5, 0.76]])
+    np.testing.assert_allclose(drawn(whole, "NSGA-II")[[0, 1]], [[1, 0.96], [5, 0.76]])
+    (band,) = whole.collections
+    heights = band.get_paths()[0].vertices[:, 1]
+    assert (heights.min(), heights.max()) == (0.75, 0.97)
     assert still.get_xscale() == gaps.get_xscale() == "log"
-    gap = drawn(gaps, seeds)
-    at = int(np.argmin(np.abs(gap[:, 0] - 2)))
-    assert gap[at, 1] == pytest.approx(100 * (0.96 / 0.8 - 1))
+    assert picture.axes[3].get_legend().get_title().get_text() == BANDS
+
+
+def test_points_are_held_against_the_line_through_the_best(comparison):
+    axis = comparison_figure(comparison).axes[2]
+    # from (0, 0.8) to (4, 0.5): 0.725 at 1 mm; from there to (8, 0.4): 0.475 at 5 mm
+    np.testing.assert_allclose(
+        drawn(axis, "NSGA-II"), [[1, 100 * (0.96 / 0.725 - 1)], [5, 100 * (0.76 / 0.475 - 1)]]
+    )
+    assert set(drawn(axis, "epsilon-constraint")[:, 1]) == {0}
 
 
 def test_the_picture_holds_floor_and_papers_points(front_of):
@@ -152,7 +161,7 @@ def test_a_panel_stands_alone_with_its_legend(comparison, panel):
     figure = panel_figure(comparison, panel)
     assert len(figure.axes) == 1
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels[:2] == ["epsilon-constraint", "NSGA-II: median, best to worst of 3 seeds"]
+    assert labels[:2] == ["epsilon-constraint", "NSGA-II"]
 
 
 def test_a_single_point_is_drawn_as_well(front_of):
