@@ -5,8 +5,9 @@ from ocp.shadowing import refuse_shadow
 
 refuse_shadow("models")
 
+from ocp.epsilon_front import epsilon_front
 from ocp.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
-from ocp.front import Front, FrontPoint, Generation, non_dominated
+from ocp.front import FailedPoint, Front, FrontPoint, Generation, non_dominated, reference_corner
 from ocp.objective import Motion
 from ocp.plan import Plan, SolveSettings, Verification, evaluate_coefficients
 from ocp.profile import MAX_TERMS, CycloidPolynomial, JointPath, JointProfile
@@ -20,6 +21,7 @@ from ocp.task import PointToPoint
 __all__ = [
     "MAX_TERMS",
     "CycloidPolynomial",
+    "FailedPoint",
     "FileFormatError",
     "Front",
     "FrontPoint",
@@ -37,9 +39,11 @@ __all__ = [
     "SolverFailedError",
     "Trajectory",
     "Verification",
+    "epsilon_front",
     "evaluate_coefficients",
     "non_dominated",
     "plan_move",
+    "reference_corner",
     "residual_matrix",
     "resimulate",
     "rollout",

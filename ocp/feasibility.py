@@ -89,7 +89,9 @@ def explain(
     if SolveStatus.INFEASIBLE not in statuses:
         text = next(iter(statuses)).text
         return SolverFailedError(f"none of {len(solutions)} starts was solved: {text}")
-    asked = ", ".join(f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items())
+    asked = ", ".join(
+        f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items() if limit < np.inf
+    )
     box = "" if bound is None else f", coefficients within +-{bound:g}"
     terms = f"{profile.size} term{'s' if profile.size > 1 else ''}"
     remedies = [

@@ -22,10 +22,14 @@ from ocp.documents import (
     versions,
     write_document,
 )
-from ocp.profile import JointProfile
+from ocp.profile import CycloidPolynomial, JointProfile
+from ocp.readonly import ReadOnlyDict
+from ocp.rollout import rollout
 from ocp.task import PointToPoint
 
 FORMAT, VERSION = "quietarm-front", 1
+LEAST_REFERENCE = 1e-3
+"""Where the plain cycloid arrives nearly still, its residual is no scale for hypervolumes [m]."""
 Setting = str | int | float | None
 
 
@@ -36,6 +40,25 @@ class FrontPoint:
     coefficients: tuple[float, ...]
     residual: float
     energy: float
+
+
+@dataclass(frozen=True)
+class FailedPoint:
+    """A point that a sweep asked for and did not get.
+
+    Attributes
+    ----------
+    asked : mapping of str to float
+        What was asked for: a residual limit [m], or the weights of the objectives.
+    reason : str
+        Why there is none.
+    """
+
+    asked: Mapping[str, float]
+    reason: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "asked", ReadOnlyDict(self.asked))
 
 
 @dataclass(frozen=True)
@@ -75,9 +98,13 @@ class Front:
     reference : tuple of float
         Residual [m] and energy [J] of the corner that hypervolumes are measured from.
     evaluations : int
-        Candidates evaluated.
+        Candidates evaluated; for the gradient, iterations of its solver.
     failed : int
         Candidates whose objectives were not finite; they never enter a front.
+    failures : tuple of FailedPoint
+        Points of a sweep that could not be found, with the reason.
+    gaps : tuple of (float, float)
+        Ranges of the residual [m] in which a weighted sum has no point, whatever the weight.
     history : tuple of Generation
         Hypervolume by generation.
     complete : bool
@@ -97,10 +124,16 @@ class Front:
     reference: tuple[float, float]
     evaluations: int
     failed: int = 0
+    failures: tuple[FailedPoint, ...] = ()
+    gaps: tuple[tuple[float, float], ...] = ()
     history: tuple[Generation, ...] = ()
     complete: bool = True
     versions: Mapping[str, str] = field(default_factory=versions)
     seconds: float = field(default=0.0, compare=False)
+
+    def __post_init__(self) -> None:
+        for name in ("settings", "versions"):
+            object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
 
     @property
     def residuals(self) -> NDArray[np.float64]:
@@ -177,6 +210,8 @@ class Front:
             "reference": list(self.reference),
             "evaluations": self.evaluations,
             "failed": self.failed,
+            "failures": [asdict(failure) for failure in self.failures],
+            "gaps": [list(gap) for gap in self.gaps],
             "history": [asdict(generation) for generation in self.history],
             "complete": self.complete,
             "versions": dict(self.versions),
@@ -211,6 +246,8 @@ class Front:
             reference=(finite("reference", residual), finite("reference", energy)),
             evaluations=whole("evaluations", document["evaluations"], 0),
             failed=whole("failed", document["failed"], 0),
+            failures=tuple(_failure(entry) for entry in document["failures"]),
+            gaps=tuple(_gap(entry) for entry in document["gaps"]),
             history=tuple(Generation(**entry) for entry in document["history"]),
             complete=document["complete"],
             versions=document["versions"],
@@ -221,6 +258,35 @@ class Front:
         if len(self.points) == 0:
             raise ValueError("the front has no point; search longer or widen the bound")
         return self.points
+
+
+def _failure(entry: Document) -> FailedPoint:
+    asked = {str(name): finite("asked", value) for name, value in entry["asked"].items()}
+    if not isinstance(entry["reason"], str):
+        raise ValueError(f"reason is {entry['reason']!r}, not a text")
+    return FailedPoint(asked, entry["reason"])
+
+
+def _gap(entry: Sequence[float]) -> tuple[float, float]:
+    begin, end = entry
+    return finite("gap", begin, "m"), finite("gap", end, "m")
+
+
+def reference_corner(task: PointToPoint) -> tuple[float, float]:
+    """The corner that hypervolumes of a task's fronts are measured from.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+
+    Returns
+    -------
+    tuple of float
+        Residual [m] of the plain cycloid, 1 mm at least, and twice its energy [J].
+    """
+    cycloid = rollout(task, CycloidPolynomial(0), []).motion
+    return max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy
 
 
 def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:

@@ -28,6 +28,7 @@ from ocp.documents import (
 from ocp.files import write_whole
 from ocp.objective import Motion
 from ocp.profile import CycloidPolynomial, JointPath, JointProfile
+from ocp.readonly import ReadOnlyDict
 from ocp.resimulation import Trajectory, resimulate, sample_trajectory
 from ocp.rollout import rollout
 from ocp.status import SolveStatus
@@ -110,8 +111,12 @@ class Provenance:
 
     method: str
     settings: Mapping[str, str | int | float | None]
-    versions: dict[str, str] = field(default_factory=versions)
+    versions: Mapping[str, str] = field(default_factory=versions)
     seconds: float = field(default=0.0, compare=False)
+
+    def __post_init__(self) -> None:
+        for name in ("settings", "versions"):
+            object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
 
 
 @dataclass(frozen=True)
@@ -202,7 +207,7 @@ class Plan:
             "diagnostics": diagnostics,
             "status": self.status.value,
             "verification": asdict(self.verification),
-            "provenance": {**vars(self.provenance), "settings": dict(self.provenance.settings)},
+            "provenance": vars(self.provenance),
         }
 
     @classmethod

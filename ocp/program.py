@@ -75,6 +75,8 @@ class Solution:
         How it ended.
     slope : float
         Change of the least energy with the residual limit [J/m], at most 0; 0 without a limit.
+    iterations : int
+        Iterations of the solver.
     point : Point
         Where the solver stopped, to start a neighbouring solve from.
     """
@@ -84,6 +86,7 @@ class Solution:
     peaks: dict[str, float]
     status: SolveStatus
     slope: float
+    iterations: int
     point: Point
 
 
@@ -164,7 +167,7 @@ class TaskProgram:
         )
         lower, upper = self._bounds(limits, bound)
         start = guess.point if isinstance(guess, Solution) else self._start(guess)
-        point, return_status = self.program.solve(start, lower, upper, parameters)
+        point, return_status, iterations = self.program.solve(start, lower, upper, parameters)
         x = point.unknowns
         mean_power = self.program.node_weights @ x[layout.first_slack :]
         peaks = dict(zip(layout.peaks, x[layout.coefficients : layout.first_state], strict=True))
@@ -181,6 +184,7 @@ class TaskProgram:
             peaks={name: float(peak * self.reference[name]) for name, peak in peaks.items()},
             status=SolveStatus.from_ipopt(return_status),
             slope=float(slope),
+            iterations=iterations,
             point=point,
         )
 

@@ -154,8 +154,8 @@ class NonlinearProgram:
 
     def solve(
         self, start: Point, lower: np.ndarray, upper: np.ndarray, parameters: np.ndarray
-    ) -> tuple[Point, str]:
-        """Run IPOPT: where it stopped and its own status, which tells all that casadi warns of."""
+    ) -> tuple[Point, str, int]:
+        """Run IPOPT: where it stopped, its own status (all casadi warns of) and its iterations."""
         solver, known = self._cold, {}
         if start.multipliers.size:
             solver, known = (
@@ -168,7 +168,8 @@ class NonlinearProgram:
                 p=parameters, **known,
             )  # fmt: skip
         stopped = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
-        return stopped, str(solver.stats()["return_status"])
+        stats = solver.stats()
+        return stopped, str(stats["return_status"]), int(stats["iter_count"])
 
     def _simulation(self) -> ca.Function:
         steps, coefficients = self.layout.steps, self.layout.coefficients

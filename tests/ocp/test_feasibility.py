@@ -136,7 +136,7 @@ def test_an_infeasible_task_is_a_failed_solve_is_quietarms_own():
 
 
 def _solution(status, **peaks):
-    return Solution(np.zeros(3), 1.0, peaks, status, 0.0, Point(np.empty(0)))
+    return Solution(np.zeros(3), 1.0, peaks, status, 0.0, 9, Point(np.empty(0)))
 
 
 @pytest.mark.parametrize("status", [SolveStatus.ITERATION_LIMIT, SolveStatus.NUMERICAL_TROUBLE])

@@ -1,0 +1,241 @@
+"""The front by epsilon-constraint: the least energy at one residual limit after another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
+from multiprocessing import get_context
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.checks import whole
+from ocp.front import FailedPoint, Front, FrontPoint
+from ocp.plan import SolveSettings
+from ocp.profile import CycloidPolynomial, JointProfile
+from ocp.program import Solution
+from ocp.sweep import RESIDUAL_LIMIT, SAME, Ends, Guess, Report, Sweep, better, no_report
+from ocp.task import PointToPoint
+from ocp.transcription import RESIDUAL
+from ocp.verification import STILL
+
+_SCOUTS = 12
+"""Steps along the front, about, that tell how its points are to be spaced."""
+
+
+def epsilon_front(
+    task: PointToPoint,
+    profile: JointProfile | None = None,
+    *,
+    bound: float | None = None,
+    points: int = 50,
+    starts: int = 4,
+    seed: int = 0,
+    steps: int | None = None,
+    workers: int = 1,
+    report: Report = no_report,
+) -> Front:
+    """Find the front of residual and energy by the gradient, least energy at each residual limit.
+
+    Both ends are found first, from several starts. A few points along the front tell how to space
+    the limits so that the points lie evenly in both objectives. The limits are swept from the cheap
+    end, each solve starting from the solution beside it, and swept back from the still end; where
+    the two disagree, random starts join, and what is found better is carried on to its neighbours.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move and its limits.
+    profile : JointProfile, optional
+        How the joint moves; the cycloid of a polynomial of six terms by default.
+    bound : float, optional
+        Largest absolute coefficient; none by default.
+    points : int
+        Number of points, the ends included.
+    starts : int
+        Starts of the ends, and of points that the sweeps do not agree on.
+    seed : int
+        Seed of the random starts.
+    steps : int, optional
+        Steps of the solver's discretisation, as for `plan_move`.
+    workers : int
+        Processes that share the sweep; 1 stays in this one.
+    report : callable, optional
+        Called with the number of points done and of all.
+
+    Returns
+    -------
+    Front
+        Method ``"epsilon"``; figures by the independent integrator. Points that could not be found
+        are in its `failures`. After Ctrl-C what was found until then, with ``complete`` false.
+
+    Raises
+    ------
+    ValueError
+        When an argument is out of range.
+    InfeasibleTaskError
+        When no motion of this profile keeps the task's limits.
+    SolverFailedError
+        When an end of the front could not be found for another reason.
+    """
+    profile = CycloidPolynomial() if profile is None else profile
+    points, workers = whole("points", points, 2), whole("workers", workers, 1)
+    sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
+    ends = sweep.ends()
+    found: list[FrontPoint | FailedPoint] = [ends.still_point]
+    found.append(sweep.checked(ends.cheapest, {RESIDUAL_LIMIT: np.inf}))
+    report(2, points)
+    iterations, complete = 0, True
+    try:
+        limits, scouts = _spaced_limits(sweep, ends, points)
+        if workers == 1:
+            stretch = _Stretch(sweep, limits)
+            complete = stretch.run(
+                ends.cheapest, ends.still.coefficients, lambda n: report(2 + n, points)
+            )
+            found += stretch.points()
+        else:
+            shared = _in_processes(sweep, ends, limits, scouts, workers)
+            for stretch_points, stretch_iterations, stretch_complete in shared:
+                found += stretch_points
+                iterations += stretch_iterations
+                complete = complete and stretch_complete
+                report(len(found), points)
+    except KeyboardInterrupt:
+        complete = False
+    return sweep.front("epsilon", found, points, iterations=iterations, complete=complete)
+
+
+def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], list[Solution]]:
+    """Residual limits, falling, at which the points between the ends lie at even distances.
+
+    Scouts go along the front from its cheap end in steps of about equal length, both objectives
+    scaled to the ends, by the slope that the solver's multiplier gives.
+    """
+    stillest = ends.still.peaks.get(RESIDUAL, 0.0)
+    width = ends.cheapest.peaks[RESIDUAL] - stillest
+    height = ends.still.energy - ends.cheapest.energy
+    if width <= STILL or height <= SAME * ends.still.energy or points == 2:
+        return [], []
+    scouts, limit = [ends.cheapest], ends.cheapest.peaks[RESIDUAL]
+    stride = 2 * width / _SCOUTS  # the scaled front is between sqrt(2) and 2 long
+    while True:
+        limit -= stride / np.hypot(1.0, scouts[-1].slope * width / height)
+        if limit <= stillest + stride / 4:
+            break
+        found = sweep.solve(scouts[-1], limit)
+        if found.status.solved:
+            scouts.append(found)
+    residuals = np.array([*(one.peaks[RESIDUAL] for one in scouts), stillest])
+    energies = np.array([*(one.energy for one in scouts), ends.still.energy])
+    along = np.hypot(np.diff(residuals) / width, np.diff(energies) / height).cumsum()
+    along = np.concatenate([[0.0], along])
+    spaced = np.interp(np.linspace(0.0, along[-1], points)[1:-1], along, residuals)
+    return spaced.tolist(), scouts
+
+
+class _Stretch:
+    """A stretch of the front: its limits, falling, and the best solution at each."""
+
+    def __init__(self, sweep: Sweep, limits: Sequence[float]) -> None:
+        self.sweep, self.limits = sweep, list(limits)
+        self.best: list[Solution | None] = [None] * len(self.limits)
+
+    def run(self, above: Guess, below: Guess, report: Callable[[int], None]) -> bool:
+        """Sweep down from the guess above and up from that below; False after Ctrl-C."""
+        try:
+            self._sweep(above, below, report)
+        except KeyboardInterrupt:
+            return False
+        return True
+
+    def _sweep(self, above: Guess, below: Guess, report: Callable[[int], None]) -> None:
+        order, doubtful = range(len(self.limits)), set[int]()
+        for i in order:
+            found = self._try(i, above)
+            above = found if found.status.solved else above
+            report((i + 1) // 2)
+        for i in reversed(order):
+            before = self.best[i]
+            found = self._try(i, below)
+            below = found if found.status.solved else below
+            report(len(order) - (i + 1) // 2)
+            if before is None or better(before, found) or better(found, before):
+                doubtful.add(i)
+        for i in sorted(doubtful):
+            for guess in self.sweep.guesses:
+                self._try(i, guess)
+        self._carry_on(doubtful)
+
+    def _try(self, i: int, guess: Guess) -> Solution:
+        found, best = self.sweep.solve(guess, self.limits[i]), self.best[i]
+        if best is None or better(found, best):
+            self.best[i] = found
+        return found
+
+    def _carry_on(self, changed: Iterable[int]) -> None:
+        """Start the neighbours of what changed from there, and theirs where that helps."""
+        waiting = list(changed)
+        while waiting:
+            i = waiting.pop()
+            for neighbour in (i - 1, i + 1):
+                start = self.best[i]
+                if 0 <= neighbour < len(self.limits) and start is not None and start.status.solved:
+                    before = self.best[neighbour]
+                    self._try(neighbour, start)
+                    if self.best[neighbour] is not before:
+                        waiting.append(neighbour)
+
+    def points(self) -> list[FrontPoint | FailedPoint]:
+        """What was found, checked, and what was not."""
+        found: list[FrontPoint | FailedPoint] = []
+        for limit, best in zip(self.limits, self.best, strict=True):
+            asked = {RESIDUAL_LIMIT: limit}
+            if best is None:
+                continue  # interrupted before
+            if best.status.solved:
+                found.append(self.sweep.checked(best, asked))
+            else:
+                found.append(FailedPoint(asked, best.status.text))
+        return found
+
+
+_StretchResult = tuple[list[FrontPoint | FailedPoint], int, bool]
+
+
+def _in_processes(
+    sweep: Sweep, ends: Ends, limits: list[float], scouts: list[Solution], workers: int
+) -> Iterator[_StretchResult]:
+    """Share the limits among processes, each starting from what is known beside its own."""
+    known = [*scouts, ends.still]
+    residuals = np.array([one.peaks.get(RESIDUAL, 0.0) for one in known])  # falling
+    sweep.settings = replace(sweep.settings, steps=sweep.steps)
+    tasks = []
+    for chunk in np.array_split(limits, workers):
+        if len(chunk):
+            above = known[int(np.flatnonzero(residuals >= chunk[0])[-1])]
+            below = known[int(np.flatnonzero(residuals <= chunk[-1])[0])]
+            tasks.append((chunk.tolist(), above.coefficients, below.coefficients))
+    # spawn: a fork would carry casadi's and the threads' state into the child
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        futures = [
+            pool.submit(_one_stretch, sweep.task, sweep.profile, sweep.settings, *task)
+            for task in tasks
+        ]
+        for future in as_completed(futures):
+            yield future.result()
+
+
+def _one_stretch(
+    task: PointToPoint,
+    profile: JointProfile,
+    settings: SolveSettings,
+    limits: list[float],
+    above: NDArray[np.float64],
+    below: NDArray[np.float64],
+) -> _StretchResult:
+    sweep = Sweep(task, profile, settings)
+    stretch = _Stretch(sweep, limits)
+    complete = stretch.run(above, below, lambda n: None)
+    return stretch.points(), sweep.iterations, complete

@@ -1,0 +1,248 @@
+"""What the gradient's fronts have in common: one program, its two ends, points that are checked."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.errors import SolverFailedError
+from ocp.feasibility import least_peaks
+from ocp.front import FailedPoint, Front, FrontPoint, non_dominated, reference_corner
+from ocp.objective import Motion
+from ocp.plan import SolveSettings
+from ocp.profile import JointProfile
+from ocp.program import LEAST_ENERGY, Solution, TaskProgram
+from ocp.rollout import default_steps
+from ocp.solver import LEAST_STEPS, least_energy, start_coefficients
+from ocp.task import PointToPoint
+from ocp.transcription import RESIDUAL
+from ocp.verification import STILL, verified
+
+RESIDUAL_LIMIT = "residual_limit"
+Guess = NDArray[np.float64] | Solution
+Report = Callable[[int, int], None]
+"""Called with the number of points done and asked for."""
+SAME = 1e-6
+"""Energies that differ by less than this share are of one motion."""
+_SAMPLING = 1e-4
+"""Share by which the residual between samples, or by CVODES, may pass that of the solver."""
+
+
+def no_report(done: int, total: int) -> None:
+    """Report nothing."""
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The ends of a front.
+
+    Attributes
+    ----------
+    still : Solution
+        Least energy at rest on arrival.
+    still_point : FrontPoint or FailedPoint
+        The same, checked.
+    cheapest : Solution
+        Least energy with any residual.
+    """
+
+    still: Solution
+    still_point: FrontPoint | FailedPoint
+    cheapest: Solution
+
+
+def better(one: Solution, other: Solution) -> bool:
+    """Whether one solution is cheaper than another by more than the solver's tolerance."""
+    if not (one.status.solved and other.status.solved):
+        return one.status.solved
+    return one.energy < other.energy * (1 - SAME)
+
+
+@dataclass
+class Sweep:
+    """A task's program, asked again and again with other residual limits or weights.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move and its limits.
+    profile : JointProfile
+        How the joint moves.
+    settings : SolveSettings
+        Bound, starts, seed, steps.
+    """
+
+    task: PointToPoint
+    profile: JointProfile
+    settings: SolveSettings
+    iterations: int = 0
+    began: float = field(default_factory=time.perf_counter)
+
+    def __post_init__(self) -> None:
+        if self.profile.size == 0:
+            raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+        self.steps = self.settings.steps or default_steps(self.task, least=LEAST_STEPS)
+        self.guesses = start_coefficients(self.profile.size, self.settings)
+        self._program: TaskProgram | None = None
+
+    @property
+    def program(self) -> TaskProgram:
+        """The program with the residual as a variable."""
+        if self._program is None or self._program.steps != self.steps:
+            self._program = TaskProgram(self.task, self.profile, self.steps, with_residual=True)
+        return self._program
+
+    def solve(
+        self,
+        guess: Guess,
+        residual_limit: float = np.inf,
+        minimise: Mapping[str, float] = LEAST_ENERGY,
+    ) -> Solution:
+        """Run the solver from one start, and again without its multipliers where that fails.
+
+        Parameters
+        ----------
+        guess : ndarray, shape (profile.size,), or Solution
+            Coefficients, or the solution beside it.
+        residual_limit : float
+            Largest residual [m].
+        minimise : mapping of str to float
+            As for `TaskProgram.solve`.
+
+        Returns
+        -------
+        Solution
+            The solution, whatever its status.
+        """
+        limits = {**self.task.limits, RESIDUAL: residual_limit}
+        found = self.program.solve(guess, limits, self.settings.bound, minimise)
+        self.iterations += found.iterations
+        if isinstance(guess, Solution) and not found.status.solved:
+            return self.solve(guess.coefficients, residual_limit, minimise)
+        return found
+
+    def ends(self) -> Ends:
+        """Find the motion of least energy that arrives at rest, and that whose residual is free.
+
+        The number of steps is raised until the independent integrator agrees with the still end.
+        Where no motion arrives at rest, that end is the motion of least residual.
+
+        Returns
+        -------
+        Ends
+            The ends of the front.
+
+        Raises
+        ------
+        InfeasibleTaskError
+            When no motion of this profile keeps the task's limits.
+        SolverFailedError
+            When no start ended at an optimum for another reason.
+        """
+        bound, free = self.settings.bound, {**self.task.limits, RESIDUAL: np.inf}
+        still = self._at_rest()  # first: it settles the number of steps
+        cheapest = least_energy(self.program, self.profile, free, bound, self.guesses)
+        self.iterations += cheapest.iterations
+        if still is None:
+            least = least_peaks(self.program, self.profile, free, bound, self.guesses)
+            if RESIDUAL not in least:
+                return Ends(cheapest, self.checked(cheapest, {RESIDUAL_LIMIT: np.inf}), cheapest)
+            limit = least[RESIDUAL].peaks[RESIDUAL] * (1 + _SAMPLING)
+            found = self.solve(least[RESIDUAL].coefficients, limit)
+            found = found if found.status.solved else least[RESIDUAL]
+            still = found, self.checked(found, {RESIDUAL_LIMIT: limit})
+        return Ends(*still, cheapest)
+
+    def _at_rest(self) -> tuple[Solution, FrontPoint] | None:
+        bound, limits = self.settings.bound, {**self.task.limits, RESIDUAL: 0.0}
+        program = TaskProgram(self.task, self.profile, self.steps, with_residual=False)
+        try:
+            found = least_energy(program, self.profile, limits, bound, self.guesses)
+            self.iterations += found.iterations
+            found, motion, self.steps = verified(program, self.profile, found, limits, bound)
+        except SolverFailedError:
+            return None
+        return found, self._point(found, motion)
+
+    def _point(self, found: Solution, motion: Motion) -> FrontPoint:
+        return FrontPoint(self.profile.checked(found.coefficients), motion.residual, motion.energy)
+
+    def checked(self, found: Solution, asked: Mapping[str, float]) -> FrontPoint | FailedPoint:
+        """Give a solution the figures of the independent integrator.
+
+        Parameters
+        ----------
+        found : Solution
+            A solution of the program.
+        asked : mapping of str to float
+            What was asked for.
+
+        Returns
+        -------
+        FrontPoint or FailedPoint
+            The point, or why it cannot be trusted.
+        """
+        limit = max(found.peaks[RESIDUAL], STILL) * (1 + _SAMPLING)
+        limits = {**self.task.limits, RESIDUAL: limit}
+        try:
+            found, motion, _ = verified(
+                self.program, self.profile, found, limits, self.settings.bound
+            )
+        except SolverFailedError as error:
+            return FailedPoint(asked, str(error))
+        return self._point(found, motion)
+
+    def front(
+        self,
+        method: str,
+        found: Sequence[FrontPoint | FailedPoint],
+        points: int,
+        *,
+        gaps: Sequence[tuple[float, float]] = (),
+        iterations: int = 0,
+        complete: bool = True,
+    ) -> Front:
+        """Put points together to a front.
+
+        Parameters
+        ----------
+        method : str
+            How they were found.
+        found : sequence of FrontPoint or FailedPoint
+            The points.
+        points : int
+            How many were asked for.
+        gaps : sequence of (float, float)
+            As in `Front`.
+        iterations : int
+            Iterations of the solver in other processes.
+        complete : bool
+            Whether the sweep ran to its end.
+
+        Returns
+        -------
+        Front
+            The front.
+        """
+        failures = tuple(point for point in found if isinstance(point, FailedPoint))
+        settings = self.settings
+        return Front(
+            task=self.task,
+            profile=self.profile,
+            points=non_dominated(point for point in found if isinstance(point, FrontPoint)),
+            method=method,
+            settings={"bound": settings.bound, "points": points, "starts": settings.starts,
+                      "steps": self.steps},
+            seed=settings.seed,
+            reference=reference_corner(self.task),
+            evaluations=self.iterations + iterations,
+            failed=len(failures),
+            failures=failures,
+            gaps=tuple(gaps),
+            complete=complete,
+            seconds=time.perf_counter() - self.began,
+        )  # fmt: skip
