@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from ocp.interrupts import keep_interrupts
+from ocp.interrupts import defer_interrupts, keep_interrupts, note_interrupts
 
 ROOT = Path(__file__).parents[2]
 
@@ -51,6 +51,32 @@ def test_without_ctrl_c_nothing_happens():
     with keep_interrupts():
         value = 1
     assert value == 1
+
+
+@pytest.mark.parametrize("times", [0, 1, 3])
+def test_noted_interrupts_are_told_and_end_nothing(times):
+    before = signal.getsignal(signal.SIGINT)
+    with note_interrupts() as interrupts:
+        for _ in range(times):
+            signal.raise_signal(signal.SIGINT)
+        with keep_interrupts():  # inside, it leaves them to the outer block
+            value = 1
+    assert value == 1
+    assert interrupts == [signal.SIGINT] * times
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_deferred_interrupts_come_after_the_block():
+    reached = []
+
+    def work():
+        with defer_interrupts():
+            signal.raise_signal(signal.SIGINT)
+            reached.append("the end of the block")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert reached
 
 
 def test_errors_of_the_block_pass():
