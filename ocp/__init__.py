@@ -7,6 +7,8 @@ refuse_shadow("models")
 
 from ocp.epsilon_front import epsilon_front
 from ocp.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
+from ocp.floor import energy_floor
+from ocp.floor_answer import Floor
 from ocp.front import FailedPoint, Front, FrontPoint, Generation, non_dominated, reference_corner
 from ocp.objective import Motion
 from ocp.plan import Plan, SolveSettings, Verification, evaluate_coefficients
@@ -23,6 +25,7 @@ __all__ = [
     "CycloidPolynomial",
     "FailedPoint",
     "FileFormatError",
+    "Floor",
     "Front",
     "FrontPoint",
     "Generation",
@@ -39,6 +42,7 @@ __all__ = [
     "SolverFailedError",
     "Trajectory",
     "Verification",
+    "energy_floor",
     "epsilon_front",
     "evaluate_coefficients",
     "non_dominated",

@@ -18,7 +18,7 @@ from models import Expression, JointMotion
 from ocp.errors import SolverFailedError
 from ocp.interrupts import keep_interrupts
 from ocp.objective import Motion
-from ocp.profile import JointProfile
+from ocp.profile import CycloidPolynomial, JointProfile
 from ocp.residual import fastest_mode, residual_samples
 from ocp.task import PointToPoint
 
@@ -116,6 +116,19 @@ class _Resimulation:
         observe = ca.Function("observe", [self.time, self.state], [outputs])
         return states, observe(ca.DM(times).T, ca.DM(states.T)).full().T
 
+    def trajectory(self, times: NDArray[np.float64], rows: NDArray[np.float64]) -> Trajectory:
+        """Outputs, a row a time, by their names."""
+        m = self.modes
+        joint, torque = rows[:, :3].copy(), rows[:, -1].copy()
+        return Trajectory(
+            time=times.copy(),
+            joint=joint,
+            modes=rows[:, 3 : 3 + m].copy(),
+            tips=rows[:, 3 + m : -1].copy(),
+            torque=torque,
+            power=torque * joint[:, 1],
+        )
+
     @property
     def at_rest(self) -> NDArray[np.float64]:
         return np.zeros(2 * self.modes + 1)
@@ -162,16 +175,7 @@ def sample_trajectory(
     if after.size:
         rest_times = np.concatenate([[task.duration], after])
         rows = np.vstack([rows, flow.run(rest_times, states[-1], moving=False)[1][1:]])
-    m, tips = flow.modes, task.plant.tips
-    joint, torque = rows[:, :3].copy(), rows[:, -1].copy()
-    return Trajectory(
-        time=grid.copy(),
-        joint=joint,
-        modes=rows[:, 3 : 3 + m].copy(),
-        tips=rows[:, 3 + m : 3 + m + tips].copy(),
-        torque=torque,
-        power=torque * joint[:, 1],
-    )
+    return flow.trajectory(grid, rows)
 
 
 @keep_interrupts()
@@ -210,19 +214,25 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     power = outputs[:, -1] * outputs[:, 1]
     energy = _energy(flow, times, power)
 
-    window = math.ceil(task.residual_window * fastest_mode(task) / _RADIANS_A_SAMPLE) + 1
-    rest_times = task.duration + np.linspace(0.0, task.residual_window, window)
-    _, rest = flow.run(rest_times, states[-1], moving=False)
     tip_columns = slice(3 + flow.modes, -1)
     return Motion.from_samples(
         task,
         outputs[:, :3],
         outputs[:, tip_columns],
         outputs[:, -1],
-        residual=float(np.abs(rest[:, tip_columns]).max()),
+        residual=float(np.abs(rest_of(task, states[-1, :-1]).tips).max()),
         energy=energy,
         net_work=float(states[-1, -1]),
     )
+
+
+def rest_of(task: PointToPoint, arrival: ArrayLike) -> Trajectory:
+    """What happens in the residual window, from W (m) and then W' (m/s) at arrival, by CVODES."""
+    flow = _Resimulation(task, CycloidPolynomial(0), ())
+    window = math.ceil(task.residual_window * fastest_mode(task) / _RADIANS_A_SAMPLE) + 1
+    times = task.duration + np.linspace(0.0, task.residual_window, window)
+    _, outputs = flow.run(times, np.append(arrival, 0.0), moving=False)
+    return flow.trajectory(times, outputs)
 
 
 def _energy(flow: _Resimulation, times: NDArray[np.float64], power: NDArray[np.float64]) -> float:

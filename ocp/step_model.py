@@ -28,6 +28,17 @@ class Group:
         return slice(self.first, self.first + self.rows)
 
 
+def groups_of(plant: Plant, quantities: Sequence[str]) -> list[Group]:
+    """A step's outputs: the state after it, the power, each limited quantity at the nodes."""
+    at_nodes = dict.fromkeys(("power", *quantities), NODES)
+    if "deflection" in at_nodes:
+        at_nodes["deflection"] *= plant.tips
+    groups = [Group("state", 0, 2 * plant.modes)]
+    for name, rows in at_nodes.items():
+        groups.append(Group(name, groups[-1].first + groups[-1].rows, rows))
+    return groups
+
+
 class StepModel:
     """One step as a small dense casadi function with its first and second derivatives.
 
@@ -45,14 +56,8 @@ class StepModel:
         self, plant: Plant, profile: JointProfile, steps: int, quantities: Sequence[str]
     ) -> None:
         self.size = 2 * plant.modes
-        at_nodes = dict.fromkeys(("power", *quantities), NODES)
-        if "deflection" in at_nodes:
-            at_nodes["deflection"] *= plant.tips
-        self.groups = [Group("state", 0, self.size)]
-        for name, rows in at_nodes.items():
-            last = self.groups[-1]
-            self.groups.append(Group(name, last.first + last.rows, rows))
-        self.scales = self.size + len(at_nodes)
+        self.groups = groups_of(plant, quantities)
+        self.scales = self.size + len(self.groups) - 1
 
         state, index = ca.SX.sym("z", self.size), ca.SX.sym("k")
         coefficients, move = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
@@ -66,7 +71,7 @@ class StepModel:
                 for c in GAUSS_NODES
             )
         )
-        lifted = _Lifted(plant, self.groups, state, duration * length, scale)
+        lifted = LiftedStep(plant, self.groups, state, duration * length, scale)
         inputs = [state, index, coefficients, move, scale]
         multipliers = ca.SX.sym("lam", lifted.outputs.numel())
         first, second = lifted.derivatives(joint, coefficients, state, multipliers)
@@ -81,7 +86,7 @@ class StepModel:
         )
 
 
-class _Lifted:
+class LiftedStep:
     """A step's outputs and collocation equations in its joint q, state and accelerations W''."""
 
     def __init__(

@@ -1,0 +1,231 @@
+"""The floor: the least energy of a move over all joint motions, not only polynomials."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+
+import numpy as np
+
+from ocp.checks import positive, whole
+from ocp.errors import InfeasibleTaskError, SolverFailedError
+from ocp.feasibility import _UNITS
+from ocp.floor_answer import Floor, Level
+from ocp.floor_grid import finer, first_grid
+from ocp.floor_motion import FreeSimulation, simulate
+from ocp.floor_program import FloorProgram, FreeSolution
+from ocp.plan import Provenance, Verification
+from ocp.profile import CycloidPolynomial, JointPath
+from ocp.rollout import default_steps
+from ocp.solver import UNBOUNDED_SPREAD, plan_move
+from ocp.status import SolveStatus
+from ocp.task import PointToPoint
+
+FIRST_STEPS = 80
+MOST_STEPS = 6000
+"""The grid is refined no further than this."""
+WITHIN = 0.005
+"""Starts whose energy is within this share of the best one's are said to agree."""
+_SAME = 1e-5
+_ROUNDS, _OVERRUN, _ROOM = 4, 1e-3, 1.001
+
+
+def energy_floor(
+    task: PointToPoint,
+    *,
+    smooth: bool = False,
+    starts: int = 4,
+    seed: int = 0,
+    tolerance: float = 0.005,
+) -> Floor:
+    """Find the least energy with which any joint motion does a move and arrives at rest.
+
+    The acceleration of the joint is free on every interval of a grid (piecewise constant), or its
+    jerk for a smooth motion (acceleration continuous, and zero at both ends). Joint and modes are
+    at rest at both ends. The grid is refined until the energy falls by less than the tolerance.
+
+    Without an acceleration limit the least energy is approached by motions whose speed jumps: an
+    impulse at either end, and on the single-link manipulator others on the way. The grid is finer
+    where it finds them; the estimate of what is left says how far off the limit is. A smooth motion
+    approaches the same limit, from further above.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move and its limits.
+    smooth : bool
+        Whether the acceleration is continuous.
+    starts : int
+        How many starts: the plain cycloid, the plan of six terms, then random motions.
+    seed : int
+        Seed of the random starts.
+    tolerance : float
+        Relative change of the energy at which the refinement stops.
+
+    Returns
+    -------
+    Floor
+        The motion, with the figures of an independent integrator.
+
+    Raises
+    ------
+    ValueError
+        When an argument is out of range.
+    InfeasibleTaskError
+        When no motion meets the limits; the text says what would be feasible.
+    SolverFailedError
+        When no start ended at an optimum for another reason.
+    """
+    starts, seed = whole("starts", starts, 1), whole("seed", seed, 0)
+    tolerance = positive("tolerance", tolerance)
+    began = time.perf_counter()
+    program = FloorProgram(task, bool(smooth))
+    fractions = first_grid(default_steps(task, least=FIRST_STEPS))
+    tried = [
+        program.solve(program.along(path, fractions), task.limits)
+        for path in _paths(task, starts, seed)
+    ]
+    solved = [found for found in tried if found.status.solved]
+    if not solved:
+        solved = _rescued(program, tried)
+    levels = [_level(min(solved, key=_energy))]
+    improved = _refined_once(program, solved)
+    best = min(improved, key=_energy)
+    levels.append(_level(best))
+    while not _settled(levels, tolerance) and 2 * best.free.steps <= MOST_STEPS:
+        following = _refined(program, best)
+        if not following.status.solved:
+            break
+        best = following
+        levels.append(_level(best))
+    best, simulation = _within_limits(program, best)
+    return Floor(
+        task=task,
+        free=best.free,
+        motion=simulation.motion,
+        levels=tuple(levels),
+        starts=tuple(found.energy for found in improved),
+        status=best.status,
+        verification=Verification.between(best.free.steps, best.energy, 0.0, simulation.motion),
+        provenance=Provenance(
+            f"ipopt, free {'jerk' if smooth else 'acceleration'}",
+            {"smooth": bool(smooth), "starts": starts, "seed": seed, "tolerance": tolerance},
+            seconds=time.perf_counter() - began,
+        ),
+    )
+
+
+def _paths(task: PointToPoint, starts: int, seed: int) -> Iterator[JointPath]:
+    """Motions to start from: plain cycloid, the plan of six terms, random ones."""
+    random = np.random.default_rng(seed)
+    profile = CycloidPolynomial()
+    for i in range(starts):
+        coefficients = random.uniform(-UNBOUNDED_SPREAD, UNBOUNDED_SPREAD, profile.size)
+        if i == 0:
+            coefficients = np.zeros(profile.size)
+        elif i == 1:
+            with suppress(SolverFailedError):  # limits that allow no such plan may allow a motion
+                coefficients = np.array(plan_move(task, profile, starts=1).coefficients)
+        yield profile.path(coefficients, *task.move)
+
+
+def _energy(found: FreeSolution) -> float:
+    return found.energy
+
+
+def _level(found: FreeSolution) -> Level:
+    return Level(found.free.steps, found.energy)
+
+
+def _settled(levels: list[Level], tolerance: float) -> bool:
+    before, after = levels[-2].energy, levels[-1].energy
+    return abs(before - after) <= tolerance * after
+
+
+def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:
+    """The solution on the next grid, warm, or cold where that fails."""
+    free, limits = finer(found.free), program.task.limits
+    warm = program.solve(free, limits, warm=True)
+    return warm if warm.status.solved else program.solve(free, limits)
+
+
+def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[FreeSolution]:
+    """Every solution on its next grid; those that are the same are refined once."""
+    refined: dict[float, FreeSolution] = {}
+    for found in solved:
+        if not any(abs(found.energy - energy) <= _SAME * energy for energy in refined):
+            refined[found.energy] = _refined(program, found)
+    results = [
+        refined[min(refined, key=lambda energy, found=found: abs(energy - found.energy))]
+        for found in solved
+    ]
+    return [
+        after if after.status.solved else before
+        for before, after in zip(solved, results, strict=True)
+    ]
+
+
+def _within_limits(
+    program: FloorProgram, best: FreeSolution
+) -> tuple[FreeSolution, FreeSimulation]:
+    """Verify; tighten limits that are passed between the solver's nodes."""
+    limits = program.task.limits
+    used, simulation = dict(limits), simulate(program.task, best.free)
+    for _ in range(_ROUNDS):
+        over = {name: simulation.motion.peak(name) / limit for name, limit in limits.items()}
+        if all(ratio <= 1 + 1e-9 for ratio in over.values()):
+            break
+        used = {name: limit / max(over[name], 1.0) for name, limit in used.items()}
+        again = program.solve(best.free, used, warm=True)
+        if not again.status.solved:
+            break
+        best, simulation = again, simulate(program.task, again.free)
+    for name, limit in limits.items():
+        if simulation.motion.peak(name) > limit * (1 + _OVERRUN):
+            raise SolverFailedError(
+                f"the verified {name} is {simulation.motion.peak(name):.4g}, above its limit of "
+                f"{limit:g}: the grid is too coarse for this motion; give a smaller tolerance"
+            )
+    return best, simulation
+
+
+def _rescued(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSolution]:
+    """Solutions from motions of least peaks, where no other start was solved; or the error."""
+    limits = program.task.limits
+    least: dict[str, FreeSolution] = {}
+    for name in limits:
+        others = {key: value for key, value in limits.items() if key != name}
+        found = [program.solve(one.free, others, minimise=name) for one in tried[:2]]
+        solved = [one for one in found if one.status.solved]
+        if solved:
+            least[name] = min(solved, key=lambda one, name=name: one.peaks[name])
+    again = [
+        program.solve(found.free, limits)
+        for name, found in least.items()
+        if found.peaks[name] <= limits[name]
+    ]
+    solved = [one for one in again if one.status.solved]
+    if solved:
+        return solved
+    statuses = {one.status for one in [*tried, *again]}
+    if SolveStatus.INFEASIBLE not in statuses:
+        raise SolverFailedError(
+            f"none of {len(tried)} starts was solved: {next(iter(statuses)).text}"
+        )
+    raise InfeasibleTaskError(_no_motion(limits, least))
+
+
+def _no_motion(limits: Mapping[str, float], least: Mapping[str, FreeSolution]) -> str:
+    asked = ", ".join(f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items())
+    remedies = [
+        f"{name} limit {found.peaks[name] * _ROOM:.4g} {_UNITS[name]}"
+        for name, found in least.items()
+        if found.peaks[name] > limits[name]
+    ]
+    feasible = (
+        f"feasible with the rest kept: {' or '.join(remedies)}"
+        if remedies
+        else "taking any one of these limits away does not help, so widen several"
+    )
+    return f"found no motion at all with {asked}; {feasible}; a longer duration may also do"
