@@ -79,6 +79,7 @@ def _scale_residuals(axis: Axes, residuals: Sequence[float]) -> None:
     if not positive:
         axis.text(0.5, 0.5, "no point", transform=axis.transAxes, ha="center")
     if span < _LOGARITHMIC_FROM or len(positive) < len(residuals):
+        axis.xaxis.set_major_locator(MaxNLocator(6))
         return
     axis.set_xscale("log")
     subs = (1.0, 2.0, 5.0) if span < 100 else (1.0,)

@@ -5,14 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import isnan
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from metaheuristics import SearchProgress
 from ocp import Front
 
 _PLAIN_SECONDS = 2.0
+_WIDE = 120
+"""Columns of a terminal from which every figure has its name."""
 
 
 class SearchDisplay:
@@ -46,11 +49,7 @@ def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchD
     elif not console.is_terminal:
         yield _Lines(console)
     else:
-        columns = (
-            BarColumn(bar_width=12),
-            TextColumn("{task.description}", markup=False),
-            TimeRemainingColumn(compact=True),
-        )
+        columns = (BarColumn(bar_width=12), TextColumn("{task.description}", markup=False))
         with Progress(*columns, console=console, transient=True) as bars:
             yield _Bars(bars)
 
@@ -61,6 +60,7 @@ class _Bars(SearchDisplay):
     def __init__(self, bars: Progress) -> None:
         self._bars = bars
         self._tasks: dict[int | None, TaskID] = {}
+        self._words = _figures if bars.console.width >= _WIDE else _brief
 
     def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
         if seed not in self._tasks:
@@ -68,7 +68,7 @@ class _Bars(SearchDisplay):
         self._bars.update(
             self._tasks[seed],
             completed=progress.generation,
-            description=_figures(progress, seed),
+            description=self._words(progress, seed),
         )
 
     def finish(self, front: Front) -> None:
@@ -89,9 +89,7 @@ class _Lines(SearchDisplay):
         due = now - self._last.get(seed, self._began) >= _PLAIN_SECONDS
         if due or progress.generation == progress.generations:
             self._last[seed] = now
-            left = (progress.generations - progress.generation) / max(progress.generation, 1)
-            line = f"{_figures(progress, seed)}, {left * progress.seconds:.0f} s left"
-            _print(self._console, line)
+            _print(self._console, _figures(progress, seed))
 
     def finish(self, front: Front) -> None:
         _print(self._console, _found(front))
@@ -107,10 +105,35 @@ def _found(front: Front) -> str:
 
 
 def _figures(progress: SearchProgress, seed: int | None) -> str:
-    speed = progress.evaluations / max(progress.seconds, 1e-9)
     which = "" if seed is None else f"seed {seed}, "
+    share = progress.infeasible / max(progress.evaluations, 1)
+    best = f"residual {progress.residual * 1e3:.3g} mm, energy {progress.energy:.4g} J"
+    best = "nothing found yet" if isnan(progress.residual) else best
+    broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
     return (
         f"{which}generation {progress.generation}/{progress.generations}, "
-        f"residual {progress.residual * 1e3:.3g} mm, energy {progress.energy:.4g} J, "
-        f"hypervolume {progress.hypervolume:.4f}, {speed:.0f} candidates/s"
+        f"{best}, hypervolume {progress.hypervolume:.4f}, {_speed(progress):.0f} candidates/s"
+        f"{broken}, {_left(progress)} left"
     )
+
+
+def _brief(progress: SearchProgress, seed: int | None) -> str:
+    """The same for a narrow terminal."""
+    which = "" if seed is None else f"seed {seed} "
+    best = f"{progress.residual * 1e3:.2g} mm {progress.energy:.3g} J"
+    best = "nothing yet" if isnan(progress.residual) else best
+    return (
+        f"{which}{progress.generation}/{progress.generations} {best} "
+        f"hv {progress.hypervolume:.3f} {_speed(progress):.0f}/s "
+        f"{_left(progress)} left"
+    )
+
+
+def _speed(progress: SearchProgress) -> float:
+    return progress.evaluations / max(progress.seconds, 1e-9)
+
+
+def _left(progress: SearchProgress) -> str:
+    share = (progress.generations - progress.generation) / max(progress.generation, 1)
+    seconds = share * progress.seconds
+    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from ocp import (
     Front,
     Plan,
     PointToPoint,
+    QuietarmError,
     SolverFailedError,
     SolveSettings,
     evaluate_coefficients,
@@ -126,8 +127,8 @@ def run_front(
 
     Raises
     ------
-    LostSeedsError
-        When a process died, after what the others found was written.
+    QuietarmError
+        When a search was interrupted, or a process died; after what was found is written.
     """
     runs, profile = options["runs"], CycloidPolynomial(options.pop("terms"))
     if runs > 1 and (options["checkpoint"] or options["resume"]):
@@ -137,17 +138,11 @@ def run_front(
     errors = Console(stderr=True)
     found, lost = _fronts(errors, task, {**options, "profile": profile}, quiet)
     fronts = [front for front in found if front.complete or front.points]
-    complete = sum(front.complete for front in fronts)
+    stopped = None if lost else _interruption(fronts, runs)
     if not any(front.points for front in fronts):
-        if lost is None and complete < runs:
+        if stopped:
             raise KeyboardInterrupt
-        raise lost or SolverFailedError(
-            f"{options['method']} found no candidate that meets the task; widen its limits or the "
-            "bound, or search longer"
-        )
-    if complete < runs and runs > 1 and lost is None:
-        part = f", {len(fronts) - complete} in part" * (complete < len(fronts))
-        errors.print(f"interrupted: {complete} of {runs} seeds are done{part}", highlight=False)
+        raise lost or _nothing_found(fronts)
     show_fronts(Console(), fronts)
     for front in fronts if targets else ():
         front.save(targets[front.seed or 0])
@@ -157,8 +152,9 @@ def run_front(
         title = f"{options['method']}, {task.plant.name}, {seeds}"
         save_figure(front_figure(fronts, title), figure)
         yield figure
-    if lost is not None:
-        raise lost
+    problem = lost or stopped
+    if problem:
+        raise problem
 
 
 def _fronts(
@@ -175,6 +171,25 @@ def _fronts(
             return search_many(task, **(several if runs > 1 else one), **options), None
         except LostSeedsError as error:
             return error.fronts, error
+
+
+def _interruption(fronts: Sequence[Front], runs: int) -> QuietarmError | None:
+    """What to say of searches that were interrupted; None where none was."""
+    done = sum(front.complete for front in fronts)
+    if done == runs:
+        return None
+    if runs == 1:
+        return QuietarmError("interrupted; what was found until then is kept")
+    part = f", {len(fronts) - done} in part" * (done < len(fronts))
+    return QuietarmError(f"interrupted: {done} of {runs} seeds are done{part}; these are kept")
+
+
+def _nothing_found(fronts: Sequence[Front]) -> SolverFailedError:
+    tried, failed = (sum(getattr(f, name) for f in fronts) for name in ("evaluations", "failed"))
+    return SolverFailedError(
+        f"{fronts[0].method} found no candidate that meets the task: of {tried}, {failed} were not "
+        "finite and the rest break a limit; widen its limits or the bound, or search longer"
+    )
 
 
 def with_seed(path: Path, seed: int) -> Path:
