@@ -51,7 +51,7 @@ from rockit.sampling_method import FunctionGrid
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from ocp.collocation import GAUSS_NODES, NODES, mesh
-from ocp.program import _OPTIONS, _SLACK_ROOM, TaskProgram
+from ocp.program import OPTIONS, SLACK_ROOM, TaskProgram
 
 PROFILE = CycloidPolynomial(6)
 AT_REST = {"residual": 0.0}
@@ -101,7 +101,7 @@ class Samples:
             boundaries=np.append(begin, 1.0),
             states=states,
             nodes=(begin + length * np.array(GAUSS_NODES)).ravel(),
-            slack=np.abs(power).ravel(order="F") + _SLACK_ROOM,
+            slack=np.abs(power).ravel(order="F") + SLACK_ROOM,
         )
 
 
@@ -137,7 +137,7 @@ class RockitMove:
                 N=steps, degree=NODES, scheme="legendre", grid=FunctionGrid(_boundaries)
             )
         )
-        ocp.solver("ipopt", {"expand": True, "print_time": False, "ipopt": dict(_OPTIONS)})
+        ocp.solver("ipopt", {"expand": True, "print_time": False, "ipopt": dict(OPTIONS)})
         if start is not None:
             for unknown, times, values in (
                 (W, start.boundaries, start.states[0] * scale[0]),

@@ -85,19 +85,56 @@ def explain(
     SolverFailedError
         An InfeasibleTaskError where the runs ended at infeasible motions.
     """
-    statuses = {solution.status for solution in solutions}
+    terms = f"{profile.size} term{'s' if profile.size > 1 else ''}"
+    return unmet(
+        f"motion of {terms}",
+        limits,
+        [solution.status for solution in solutions],
+        {name: found.peaks[name] for name, found in least.items()},
+        "more terms or a longer duration",
+        "" if bound is None else f", coefficients within +-{bound:g}",
+    )
+
+
+def unmet(
+    motion: str,
+    limits: Mapping[str, float],
+    statuses: Sequence[SolveStatus],
+    least: Mapping[str, float],
+    remedy: str,
+    box: str = "",
+) -> SolverFailedError:
+    """The error for limits that no start met, in words.
+
+    Parameters
+    ----------
+    motion : str
+        What was looked for.
+    limits : mapping of str to float
+        Residual [m] and peaks [SI units] that were asked for.
+    statuses : sequence of SolveStatus
+        How the runs ended.
+    least : mapping of str to float
+        The least that was found possible of each quantity, the others kept.
+    remedy : str
+        What else may do.
+    box : str
+        What else was asked.
+
+    Returns
+    -------
+    SolverFailedError
+        An InfeasibleTaskError where a run ended at an infeasible motion.
+    """
     if SolveStatus.INFEASIBLE not in statuses:
-        text = next(iter(statuses)).text
-        return SolverFailedError(f"none of {len(solutions)} starts was solved: {text}")
+        return SolverFailedError(f"none of {len(statuses)} starts was solved: {statuses[0].text}")
     asked = ", ".join(
         f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items() if limit < np.inf
     )
-    box = "" if bound is None else f", coefficients within +-{bound:g}"
-    terms = f"{profile.size} term{'s' if profile.size > 1 else ''}"
     remedies = [
-        f"{name} limit {found.peaks[name] * _ROOM:.4g} {_UNITS[name]}"
-        for name, found in least.items()
-        if found.peaks[name] > limits[name]
+        f"{name} limit {peak * _ROOM:.4g} {_UNITS[name]}"
+        for name, peak in least.items()
+        if peak > limits[name]
     ]
     feasible = (
         f"feasible with the rest kept: {' or '.join(remedies)}"
@@ -105,6 +142,5 @@ def explain(
         else "taking any one of these limits away does not help, so widen several"
     )
     return InfeasibleTaskError(
-        f"found no motion of {terms} with {asked}{box}; {feasible}; more terms or a longer "
-        "duration may also do"
+        f"found no {motion} with {asked}{box}; {feasible}; {remedy} may also do"
     )

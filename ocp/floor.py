@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 
 import numpy as np
 
 from ocp.checks import positive, whole
-from ocp.errors import InfeasibleTaskError, SolverFailedError
-from ocp.feasibility import _UNITS
+from ocp.errors import SolverFailedError
+from ocp.feasibility import unmet
 from ocp.floor_answer import Floor, Level
 from ocp.floor_grid import finer, first_grid
 from ocp.floor_motion import FreeSimulation, simulate
@@ -19,7 +19,6 @@ from ocp.plan import Provenance, Verification
 from ocp.profile import CycloidPolynomial, JointPath
 from ocp.rollout import default_steps
 from ocp.solver import UNBOUNDED_SPREAD, plan_move
-from ocp.status import SolveStatus
 from ocp.task import PointToPoint
 
 FIRST_STEPS = 80
@@ -28,7 +27,7 @@ MOST_STEPS = 6000
 WITHIN = 0.005
 """Starts whose energy is within this share of the best one's are said to agree."""
 _SAME = 1e-5
-_ROUNDS, _OVERRUN, _ROOM = 4, 1e-3, 1.001
+_ROUNDS, _OVERRUN = 4, 1e-3
 
 
 def energy_floor(
@@ -208,24 +207,10 @@ def _rescued(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSolut
     solved = [one for one in again if one.status.solved]
     if solved:
         return solved
-    statuses = {one.status for one in [*tried, *again]}
-    if SolveStatus.INFEASIBLE not in statuses:
-        raise SolverFailedError(
-            f"none of {len(tried)} starts was solved: {next(iter(statuses)).text}"
-        )
-    raise InfeasibleTaskError(_no_motion(limits, least))
-
-
-def _no_motion(limits: Mapping[str, float], least: Mapping[str, FreeSolution]) -> str:
-    asked = ", ".join(f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items())
-    remedies = [
-        f"{name} limit {found.peaks[name] * _ROOM:.4g} {_UNITS[name]}"
-        for name, found in least.items()
-        if found.peaks[name] > limits[name]
-    ]
-    feasible = (
-        f"feasible with the rest kept: {' or '.join(remedies)}"
-        if remedies
-        else "taking any one of these limits away does not help, so widen several"
+    raise unmet(
+        "motion at all",
+        limits,
+        [one.status for one in [*tried, *again]],
+        {name: found.peaks[name] for name, found in least.items()},
+        "a longer duration",
     )
-    return f"found no motion at all with {asked}; {feasible}; a longer duration may also do"

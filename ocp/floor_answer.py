@@ -19,7 +19,7 @@ from ocp.documents import (
 )
 from ocp.floor_motion import FreeMotion, simulate
 from ocp.objective import Motion
-from ocp.plan import Provenance, Verification, _provenance, _verification
+from ocp.plan import Provenance, Verification, provenance_of, verification_of
 from ocp.resimulation import Trajectory
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
@@ -188,7 +188,7 @@ class Floor:
         starts = tuple(finite("energy of a start", value, "J") for value in document["starts"])
         if len(levels) < 2 or not starts:
             raise ValueError("it has fewer than two levels, or no start")
-        provenance = _provenance(document["provenance"])
+        provenance = provenance_of(document["provenance"])
         if not isinstance(provenance.settings.get("smooth"), bool):
             raise ValueError("its settings do not say whether it is smooth")
         return cls(
@@ -200,6 +200,6 @@ class Floor:
             levels=levels,
             starts=starts,
             status=SolveStatus(document["status"]),
-            verification=_verification(document["verification"]),
+            verification=verification_of(document["verification"]),
             provenance=provenance,
         )

@@ -16,11 +16,11 @@ from ocp.floor_motion import FreeMotion
 from ocp.floor_transcription import FreePoint, FreeProgram
 from ocp.interrupts import keep_interrupts
 from ocp.profile import CycloidPolynomial, JointPath
-from ocp.program import _OPTIONS, _SLACK_ROOM, ENERGY
+from ocp.program import ENERGY, OPTIONS, SLACK_ROOM
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
 
-_COLD = {**_OPTIONS, "tol": 1e-8, "max_iter": 400}
+_COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400}
 _WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 250}
 """From a coarser grid's solution, which a larger barrier would let the solver leave."""
 _SCALE_STEPS = 40
@@ -182,7 +182,7 @@ class FloorProgram:
         return FreePoint(
             peaks=np.array([np.abs(values[name]).max() for name in program.peaks]),
             intervals=unknowns,
-            slack=np.abs(values["power"].ravel(order="F")) + _SLACK_ROOM,
+            slack=np.abs(values["power"].ravel(order="F")) + SLACK_ROOM,
         )
 
     def _bounds(

@@ -23,7 +23,7 @@ from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from ocp.floor_motion import joint_after
 from ocp.interrupts import keep_interrupts
 from ocp.step_model import LiftedStep, groups_of
-from ocp.transcription import _block_diagonal, _offsets, _unit_column
+from ocp.transcription import block_diagonal, offsets, unit_column
 
 _AT_NODES = ("torque", "deflection")
 _OF_JOINT = {"speed": 1, "acceleration": 2}
@@ -116,9 +116,9 @@ class FreeProgram:
         sizes = [len(quantities), model.unknowns * (steps + 1), NODES * steps]
         x = ca.MX.sym("x", sum(sizes))
         p = ca.MX.sym("p", steps + model.scales + 1 + len(quantities))
-        peak, flat, slack = ca.vertsplit(x, _offsets(sizes))
+        peak, flat, slack = ca.vertsplit(x, offsets(sizes))
         lengths, scale, weights = ca.vertsplit(
-            p, _offsets([steps, model.scales, 1 + len(quantities)])
+            p, offsets([steps, model.scales, 1 + len(quantities)])
         )
         unknowns = ca.reshape(flat, model.unknowns, steps + 1)
         arguments = (unknowns[:, :-1], lengths.T, scale)
@@ -231,7 +231,7 @@ class FreeProgram:
         blocks = self._mapped(model.first)(*arguments)
 
         def along(rows: slice, count: int) -> ca.MX:
-            inner = _block_diagonal(blocks[rows, :], count, model.unknowns, steps)
+            inner = block_diagonal(blocks[rows, :], count, model.unknowns, steps)
             return ca.horzcat(inner, ca.MX(count * steps, model.unknowns))
 
         size = len(model.after)
@@ -250,7 +250,7 @@ class FreeProgram:
             if name == "power":
                 of_slack = ca.MX(ca.DM.eye(count))
             else:
-                of_peak = ca.MX(_unit_column(count, n_peaks, self.peaks.index(name)))
+                of_peak = ca.MX(unit_column(count, n_peaks, self.peaks.index(name)))
             rows.extend(ca.horzcat(of_peak, sign * of_value, of_slack) for sign in (-1, 1))
 
         first = size
@@ -272,13 +272,13 @@ class FreeProgram:
         sizes = [size * steps]
         for count in model.outputs.values():
             sizes += [count * steps] * 2
-        *parts, _ = ca.vertsplit(multipliers, _offsets([*sizes, constraints - sum(sizes)]))
+        *parts, _ = ca.vertsplit(multipliers, offsets([*sizes, constraints - sum(sizes)]))
         rows = [ca.reshape(parts[0], size, steps)[model.joint - 1 :, :]]
         for i, count in enumerate(model.outputs.values()):
             below, above = parts[1 + 2 * i], parts[2 + 2 * i]
             rows.append(ca.reshape(above - below, count, steps))
         blocks = self._mapped(model.second)(*arguments, ca.vertcat(*rows))
-        inner = _block_diagonal(blocks, model.unknowns, model.unknowns, steps)
+        inner = block_diagonal(blocks, model.unknowns, model.unknowns, steps)
         rest = model.unknowns + n_slack
         hessian = ca.diagcat(ca.MX(n_peaks, n_peaks), inner, ca.MX(rest, rest))
         return ca.Function(

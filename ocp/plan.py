@@ -225,8 +225,8 @@ class Plan:
             coefficients=profile.checked(document["coefficients"]),
             motion=Motion(**numbers_of(figures, [entry.name for entry in fields(Motion)])),
             status=SolveStatus(document["status"]),
-            verification=_verification(document["verification"]),
-            provenance=_provenance(document["provenance"]),
+            verification=verification_of(document["verification"]),
+            provenance=provenance_of(document["provenance"]),
         )
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
@@ -341,12 +341,14 @@ def ticks_of_move(duration: float, sample_rate: float) -> int:
     return max(1, math.ceil(ticks - 1e-9))
 
 
-def _verification(document: Document) -> Verification:
+def verification_of(document: Document) -> Verification:
+    """The verification of a document; KeyError, TypeError or ValueError where it is not one."""
     names = [entry.name for entry in fields(Verification) if entry.name != "steps"]
     return Verification(whole("steps", document["steps"], 1), **numbers_of(document, names))
 
 
-def _provenance(document: Document) -> Provenance:
+def provenance_of(document: Document) -> Provenance:
+    """The provenance of a document; KeyError, TypeError or ValueError where it is not one."""
     for name in ("settings", "versions"):
         if not isinstance(document[name], dict):
             raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")

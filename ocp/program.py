@@ -19,7 +19,7 @@ from ocp.transcription import RESIDUAL, NonlinearProgram, Point
 
 ENERGY = "energy"
 LEAST_ENERGY = {ENERGY: 1.0}
-_OPTIONS: dict[str, str | int | float] = {
+OPTIONS: dict[str, str | int | float] = {
     "print_level": 0,
     "sb": "yes",
     "tol": 1e-9,
@@ -48,7 +48,7 @@ _WARM_OPTIONS: dict[str, str | int | float] = {
 """From the solution beside it a point of a front takes a third of the iterations with these."""
 _ROWS_AT_ONCE = 32
 """Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
-_SLACK_ROOM = 1e-2
+SLACK_ROOM = 1e-2
 """How far the slacks of |power| start inside their constraints, as a share of the peak power."""
 
 
@@ -56,7 +56,7 @@ _SLACK_ROOM = 1e-2
 def _compiled(
     plant: Plant, profile: JointProfile, steps: int, quantities: tuple[str, ...], rows: int
 ) -> NonlinearProgram:
-    return NonlinearProgram(plant, profile, steps, quantities, rows, _OPTIONS, _WARM_OPTIONS)
+    return NonlinearProgram(plant, profile, steps, quantities, rows, OPTIONS, _WARM_OPTIONS)
 
 
 @dataclass(frozen=True)
@@ -214,7 +214,7 @@ class TaskProgram:
         values = {group.name: outputs[group.where] for group in self.program.model.groups}
         values[RESIDUAL] = self.matrix @ states[:, -1]
         peaks = [float(np.abs(values[name]).max()) for name in self.program.layout.peaks]
-        slack = np.abs(values["power"].ravel(order="F")) + _SLACK_ROOM
+        slack = np.abs(values["power"].ravel(order="F")) + SLACK_ROOM
         return Point(np.concatenate([guess, peaks, states.ravel(order="F"), slack]))
 
 

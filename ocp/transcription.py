@@ -116,10 +116,10 @@ class NonlinearProgram:
             "residual": residual_rows * model.size,
         }
         x, p = ca.MX.sym("x", layout.unknowns), ca.MX.sym("p", sum(parameters.values()))
-        move, scale, weights, residual = ca.vertsplit(p, _offsets(parameters.values()))
+        move, scale, weights, residual = ca.vertsplit(p, offsets(parameters.values()))
         residual = ca.reshape(residual, residual_rows, model.size)
         a, peak, flat_states, slack = ca.vertsplit(
-            x, _offsets([layout.coefficients, len(peaks), model.size * (steps + 1), layout.slacks])
+            x, offsets([layout.coefficients, len(peaks), model.size * (steps + 1), layout.slacks])
         )
         states = ca.reshape(flat_states, model.size, steps + 1)
         arguments = (states[:, :-1], ca.MX(ca.DM(np.arange(steps)).T), a, move, scale)
@@ -217,7 +217,7 @@ class NonlinearProgram:
             count = group.rows * steps
             of_a = ca.vertcat(*ca.horzsplit(by_coefficients[group.where, :], layout.coefficients))
             of_z = ca.horzcat(
-                _block_diagonal(by_state[group.where, :], group.rows, size, steps),
+                block_diagonal(by_state[group.where, :], group.rows, size, steps),
                 ca.MX(count, size),
             )
             of_peak, of_slack = ca.MX(count, n_peaks), ca.MX(count, layout.slacks)
@@ -228,7 +228,7 @@ class NonlinearProgram:
             if group.name == "power":
                 of_slack = ca.MX(ca.DM.eye(count))
             else:
-                of_peak = ca.MX(_unit_column(count, n_peaks, layout.peaks.index(group.name)))
+                of_peak = ca.MX(unit_column(count, n_peaks, layout.peaks.index(group.name)))
             rows += [
                 ca.horzcat(-of_a, of_peak, -of_z, of_slack),
                 ca.horzcat(of_a, of_peak, of_z, of_slack),
@@ -236,7 +236,7 @@ class NonlinearProgram:
         if layout.residual_rows:
             count = layout.residual_rows
             before = ca.MX(count, layout.coefficients)
-            of_peak = ca.MX(_unit_column(count, n_peaks, 0))
+            of_peak = ca.MX(unit_column(count, n_peaks, 0))
             middle, after = ca.MX(count, size * steps), ca.MX(count, layout.slacks)
             rows += [
                 ca.horzcat(before, of_peak, middle, sign * residual, after) for sign in (-1, 1)
@@ -251,14 +251,14 @@ class NonlinearProgram:
         sizes: list[int] = []
         for group in self.model.groups:
             sizes += [group.rows * steps] * (1 if group.name == "state" else 2)
-        parts = ca.vertsplit(multipliers, _offsets([*sizes, 2 * layout.residual_rows]))
+        parts = ca.vertsplit(multipliers, offsets([*sizes, 2 * layout.residual_rows]))
         rows = [ca.reshape(parts[0], layout.state, steps)]
         for i, group in enumerate(self.model.groups[1:]):
             below, above = parts[1 + 2 * i], parts[2 + 2 * i]
             rows.append(ca.reshape(above - below, group.rows, steps))
         a_a, a_z, z_z = _mapped(self.model.second, steps)(*arguments, ca.vertcat(*rows))
         a_a = ca.reshape(ca.sum2(ca.reshape(a_a, n * n, steps)), n, n)
-        z_z = _block_diagonal(z_z, layout.state, layout.state, steps)
+        z_z = block_diagonal(z_z, layout.state, layout.state, steps)
         n_peaks, rest = len(layout.peaks), layout.state + layout.slacks
         inner = layout.state * steps
         hessian = ca.vertcat(
@@ -281,15 +281,17 @@ def _mapped(function: ca.Function, steps: int) -> ca.Function:
     return function.map(f"{function.name()}_all", "serial", steps, [2, 3, 4], [])
 
 
-def _block_diagonal(dense: ca.MX, rows: int, columns: int, blocks: int) -> ca.MX:
+def block_diagonal(dense: ca.MX, rows: int, columns: int, blocks: int) -> ca.MX:
     """Lay blocks that stand side by side along the diagonal; the entries stay where they are."""
     pattern = ca.diagcat(*[ca.Sparsity.dense(rows, columns)] * blocks)
     return ca.sparsity_cast(dense, pattern)
 
 
-def _unit_column(rows: int, columns: int, column: int) -> ca.DM:
+def unit_column(rows: int, columns: int, column: int) -> ca.DM:
+    """Zeros but for ones in one column."""
     return ca.horzcat(ca.DM(rows, column), ca.DM.ones(rows, 1), ca.DM(rows, columns - column - 1))
 
 
-def _offsets(sizes: Iterable[int]) -> list[int]:
+def offsets(sizes: Iterable[int]) -> list[int]:
+    """Where parts of these sizes begin, and where the last ends, for `vertsplit`."""
     return [0, *np.cumsum(list(sizes)).tolist()]
