@@ -22,14 +22,12 @@ from metaheuristics.population import PopulationObjective
 from metaheuristics.problem import UNUSABLE, MoveProblem
 from metaheuristics.states import array_of, count_of, number_of, part_of
 from metaheuristics.vepso import VEPSO
-from ocp import CycloidPolynomial, JointProfile, PointToPoint, rollout
+from ocp import JointProfile, PointToPoint, reference_corner
 from ocp.documents import profile_to_document, reading, task_to_document, versions
 from ocp.front import Front, FrontPoint, Generation, non_dominated
 from ocp.rollout import default_steps
 
 CHECKPOINT_SECONDS = 2.0
-STILL = 1e-3
-"""Least residual [m] of the corner that hypervolumes are measured from."""
 
 
 @dataclass(frozen=True)
@@ -106,9 +104,7 @@ class Run:
         self.history: list[Generation] = []
         self.before = 0.0  # seconds of the runs that this one resumes
         self.began = time.perf_counter()
-        cycloid = rollout(task, CycloidPolynomial(0), []).motion
-        # a slow cycloid may be still itself, and nothing is measured as a share of nothing
-        self.reference = (max(cycloid.residual, STILL), 2 * cycloid.energy)
+        self.reference = reference_corner(task)
         termination = MaximumGenerationTermination(settings["generations"])
         try:
             algorithm.setup(self.problem, termination=termination, seed=seed)
@@ -171,6 +167,7 @@ class Run:
             reference=self.reference,
             evaluations=int(self.algorithm.evaluator.n_eval),
             failed=self.problem.failed,
+            infeasible=self.problem.infeasible,
             history=tuple(self.history),
             versions=_versions(),
             seconds=self.seconds,

@@ -101,6 +101,8 @@ class Front:
         Candidates evaluated; for the gradient, iterations of its solver.
     failed : int
         Candidates whose objectives were not finite; they never enter a front.
+    infeasible : int
+        Candidates that broke a limit of the task; nor do they.
     failures : tuple of FailedPoint
         Points of a sweep that could not be found, with the reason.
     gaps : tuple of (float, float)
@@ -124,6 +126,7 @@ class Front:
     reference: tuple[float, float]
     evaluations: int
     failed: int = 0
+    infeasible: int = 0
     failures: tuple[FailedPoint, ...] = ()
     gaps: tuple[tuple[float, float], ...] = ()
     history: tuple[Generation, ...] = ()
@@ -210,6 +213,7 @@ class Front:
             "reference": list(self.reference),
             "evaluations": self.evaluations,
             "failed": self.failed,
+            "infeasible": self.infeasible,
             "failures": [asdict(failure) for failure in self.failures],
             "gaps": [list(gap) for gap in self.gaps],
             "history": [asdict(generation) for generation in self.history],
@@ -246,6 +250,7 @@ class Front:
             reference=(finite("reference", residual), finite("reference", energy)),
             evaluations=whole("evaluations", document["evaluations"], 0),
             failed=whole("failed", document["failed"], 0),
+            infeasible=whole("infeasible", document["infeasible"], 0),
             failures=tuple(_failure(entry) for entry in document["failures"]),
             gaps=tuple(_gap(entry) for entry in document["gaps"]),
             history=tuple(Generation(**entry) for entry in document["history"]),
@@ -256,8 +261,20 @@ class Front:
 
     def _nonempty(self) -> Sequence[FrontPoint]:
         if len(self.points) == 0:
-            raise ValueError("the front has no point; search longer or widen the bound")
+            raise ValueError(f"the front has no point; {self._remedy()}")
         return self.points
+
+    def _remedy(self) -> str:
+        """What an empty front lacks, from what became of the candidates."""
+        if 0 < self.evaluations == self.failed:
+            return f"the motions of all {self.failed} candidates overflow; give a smaller bound"
+        if self.infeasible == 0:
+            return "search longer or widen the bound"
+        limits = ", ".join(f"{name} {limit:g}" for name, limit in self.task.limits.items())
+        return (
+            f"{self.infeasible} of {self.evaluations} candidates break the limits ({limits}); "
+            "widen them or the bound, or search longer"
+        )
 
 
 def _failure(entry: Document) -> FailedPoint:

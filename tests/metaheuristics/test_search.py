@@ -395,9 +395,15 @@ def test_limits_that_nothing_keeps_leave_an_empty_front(tmp_path, method):
     assert front.points == ()
     assert front.evaluations == SWARMS[method] * 60
     assert front.failed == 0
+    assert front.infeasible == front.evaluations
     assert [progress.infeasible for progress in seen] == [e.evaluations for e in front.history]
     assert [entry.hypervolume for entry in front.history] == [0.0] * 3
     assert all(math.isnan(progress.residual) for progress in seen)
+    words = (
+        f"{front.evaluations} of {front.evaluations} candidates break the limits .*torque 0.0001"
+    )
+    with pytest.raises(ValueError, match=words):
+        front.stillest()
     for select in (front.stillest, front.cheapest, front.knee, lambda: front.cheapest(1.0)):
         with pytest.raises(ValueError, match="the front has no point") as caught:
             select()
@@ -419,8 +425,10 @@ def test_candidates_that_break_a_limit_are_counted(monkeypatch, method):
     monkeypatch.setattr(PopulationObjective, "__call__", counting)
     seen = []
     front = run(method, LIMITED[method], report=seen.append)
-    assert 0 < seen[-1].infeasible < front.evaluations
+    assert 0 < front.infeasible < front.evaluations
     assert [progress.infeasible for progress in seen] == np.cumsum(counts).tolist()
+    assert front.infeasible == seen[-1].infeasible
+    assert found(method).infeasible == 0  # a task without limits
 
 
 # -- candidates that fail --
@@ -472,7 +480,7 @@ def test_when_all_candidates_fail_the_front_is_empty(method):
     assert front.points == ()
     assert front.failed == front.evaluations == SWARMS[method] * 80
     assert [entry.hypervolume for entry in front.history] == [0.0] * 4
-    with pytest.raises(ValueError, match="the front has no point"):
+    with pytest.raises(ValueError, match=r"no point; .* all \d+ .* overflow; give a smaller bound"):
         front.stillest()
 
 
