@@ -13,21 +13,24 @@ from numpy.typing import NDArray
 from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
 from studies.comparison_groups import check_fronts, grouped
+from studies.comparison_staircase import best_of, evenly_spaced, filled, objectives, within
 
 LEVELS = (1e-4, 1e-3, 5e-3)
 """Residuals [m] at which energies are compared."""
-_STATIONS = 101
+FILL = 1000
+"""About how many points a filled front has."""
 _MARGIN = 1.1
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Measured:
     """One front and its figures in a comparison.
 
     A front is read as a staircase: within a residual only motions count that were found with that
-    residual or less. A front of few points loses by its steps alone; `steps` says how much.
+    residual or less. A front of few points would lose by its steps alone, so indicators are those
+    of the front filled with the motions between its points, as `filled` does for all alike.
 
     Attributes
     ----------
@@ -35,30 +38,35 @@ class Measured:
         Name of its file, or of the run.
     front : Front
         The front.
+    between : ndarray, shape (n, 2), read-only
+        The filled front: residuals [m] and energies [J].
     hypervolume : float
-        Share of the box from the origin to `Comparison.corner` that it dominates.
+        Share of the box from the origin to `Comparison.corner` that the filled front dominates.
+    hypervolume_found : float
+        The same of the front as it was found.
     igd_plus : float
-        Mean distance by which it misses the reference front, in `Comparison.extent`.
+        Mean distance by which the filled front misses the reference front, in `Comparison.extent`.
     epsilon : float
-        Least shift in both objectives after which nothing of the reference front is better, in
-        `Comparison.extent`.
+        Least shift of the filled front in both objectives after which nothing of the reference
+        front is better, in `Comparison.extent`.
     energies : tuple of float
-        Least energy [J] within each of `Comparison.levels`; NaN where it has no such motion.
+        Least energy [J] found within each of `Comparison.levels`; NaN where there is none.
     gaps : tuple of float
-        How far these are above the best of all fronts there, as a share of it.
-    steps : tuple of float
-        How much of a gap a denser sampling of the same front could at most take away: the fall of
-        energy to its next point, as a share of the best.
+        How far these are above `Comparison.best`, as a share of it.
+    gaps_between : tuple of float
+        The same for the filled front.
     """
 
     name: str
     front: Front
+    between: Array
     hypervolume: float
+    hypervolume_found: float
     igd_plus: float
     epsilon: float
     energies: tuple[float, ...]
     gaps: tuple[float, ...]
-    steps: tuple[float, ...]
+    gaps_between: tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,11 +123,15 @@ class Comparison:
         epsilon, so that both objectives weigh alike.
     levels : tuple of float
         Residuals [m] at which energies are compared.
+    best_front : ndarray, shape (n, 2), read-only
+        What no filled front beats: residuals [m], rising, and energies [J].
     best : tuple of float
-        Least energy [J] of all fronts within each level; NaN where none reaches it.
+        Its least energy [J] within each level; NaN where it has none.
     coverage : ndarray, shape (groups, groups), read-only
-        Share of the column's points that the row dominates or equals (the C-metric); the median
-        over the pairs of runs.
+        Share of the column's points, as found, that the row's filled front dominates or equals (the
+        C-metric); the median over the pairs of runs.
+    fill : int
+        About how many points a filled front has; 0 where fronts were left as they were found.
     floor : float or None
         Least energy [J] of any joint motion at rest on arrival, where it is known.
     """
@@ -130,8 +142,10 @@ class Comparison:
     corner: tuple[float, float]
     extent: tuple[float, float]
     levels: tuple[float, ...]
+    best_front: Array
     best: tuple[float, ...]
     coverage: Array
+    fill: int
     floor: float | None = None
 
     @property
@@ -155,6 +169,7 @@ def compare(
     reference_name: str = "the reference front",
     floor: float | None = None,
     levels: Sequence[float] = LEVELS,
+    fill: int = FILL,
 ) -> Comparison:
     """Measure fronts of one task against each other.
 
@@ -175,6 +190,8 @@ def compare(
         Least energy [J] of any joint motion at rest on arrival.
     levels : sequence of float
         Residuals [m] at which energies are compared.
+    fill : int
+        About how many points a filled front has; 0 leaves fronts as they were found.
 
     Returns
     -------
@@ -190,31 +207,31 @@ def compare(
     check_fronts(fronts, names)
     if reference is not None:
         check_fronts([fronts[0], reference], [names[0], reference_name], twice=True)
-    clouds = [objectives(front) for front in fronts]
-    best_front = moocore.filter_dominated(np.vstack(clouds))
-    known = best_front if reference is None else objectives(reference)
+    found, between = [objectives(front) for front in fronts], [filled(f, fill) for f in fronts]
+    best_front = best_of(between)
+    known = best_front if reference is None else filled(reference, fill)
     corner = np.max([*(front.reference for front in fronts), _MARGIN * best_front.max(0)], axis=0)
     extent = np.where(np.ptp(known, axis=0) > 0, np.ptp(known, axis=0), corner)
     stations = evenly_spaced(known / extent)
-    table = np.array([within(cloud, levels) for cloud in clouds])
-    best = np.array([column[np.isfinite(column)].min(initial=np.inf) for column in table.T])
-    best[np.isinf(best)] = np.nan
+    best = within(best_front, levels)
 
     def measured(i: int) -> Measured:
-        scaled = clouds[i] / extent
+        scaled, energies = between[i] / extent, within(found[i], levels)
         return Measured(
             name=names[i],
             front=fronts[i],
-            hypervolume=float(moocore.hypervolume(clouds[i] / corner, ref=[1.0, 1.0])),
+            between=_frozen(between[i]),
+            hypervolume=_share(between[i] / corner),
+            hypervolume_found=_share(found[i] / corner),
             igd_plus=float(moocore.igd_plus(scaled, ref=stations)),
             epsilon=float(moocore.epsilon_additive(scaled, ref=stations)),
-            energies=_floats(table[i]),
-            gaps=_floats(table[i] / best - 1),
-            steps=_floats(_steps(clouds[i], levels) / best),
+            energies=_floats(energies),
+            gaps=_floats(energies / best - 1),
+            gaps_between=_floats(within(between[i], levels) / best - 1),
         )
 
     groups = tuple(
-        Group(label, tuple(measured(i) for i in members), *_surfaces([clouds[i] for i in members]))
+        Group(label, tuple(measured(i) for i in members), *_surfaces([found[i] for i in members]))
         for label, members in grouped(fronts).items()
     )
     return Comparison(
@@ -224,51 +241,12 @@ def compare(
         corner=(float(corner[0]), float(corner[1])),
         extent=(float(extent[0]), float(extent[1])),
         levels=tuple(levels),
+        best_front=_frozen(best_front),
         best=_floats(best),
         coverage=_frozen([[_coverage(one, other) for other in groups] for one in groups]),
+        fill=fill,
         floor=floor,
     )
-
-
-def objectives(front: Front) -> Array:
-    """Residual [m] and energy [J] of every point, shape (points, 2)."""
-    return np.column_stack([front.residuals, front.energies])
-
-
-def within(front: Array, residuals: Sequence[float] | Array, missing: float = np.nan) -> Array:
-    """Least energies [J] on a staircase within residuals.
-
-    Parameters
-    ----------
-    front : ndarray, shape (points, 2)
-        Residuals [m], rising, and energies [J], falling.
-    residuals : array_like, shape (n,)
-        Residuals [m].
-    missing : float
-        What stands for the energy within a residual that no point has.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Energies [J].
-    """
-    count = np.searchsorted(front[:, 0], residuals, side="right")
-    return np.where(count > 0, front[np.maximum(count - 1, 0), 1], missing)
-
-
-def _steps(front: Array, residuals: Sequence[float]) -> Array:
-    """How much energy falls from the motion within each residual to the next one beyond it [J]."""
-    count = np.searchsorted(front[:, 0], residuals, side="right")
-    beyond = front[np.minimum(count, len(front) - 1), 1]
-    return within(front, residuals) - beyond
-
-
-def evenly_spaced(points: Array, stations: int = _STATIONS) -> Array:
-    """The points of a front nearest to stations at even distances along it, shape (few, 2)."""
-    ordered = points[np.argsort(points[:, 0])]
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ordered, axis=0).T))])
-    wanted = np.linspace(0.0, along[-1], stations)
-    return ordered[np.unique(np.abs(along - wanted[:, None]).argmin(axis=1))]
 
 
 def _surfaces(clouds: Sequence[Array]) -> tuple[Array, Array, Array]:
@@ -284,9 +262,13 @@ def _coverage(one: Group, other: Group) -> float:
         return np.nan
     shares: list[float] = []
     for a, b in product(one.runs, other.runs):
-        mine = within(objectives(a.front), b.front.residuals, np.inf)
+        mine = within(a.between, b.front.residuals, np.inf)
         shares.append(float(np.mean(mine <= b.front.energies)))
     return float(np.median(shares))
+
+
+def _share(scaled: Array) -> float:
+    return float(moocore.hypervolume(scaled, ref=[1.0, 1.0]))
 
 
 def _floats(values: Array) -> tuple[float, ...]:

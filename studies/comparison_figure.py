@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import cycle
 
-import moocore
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -15,8 +14,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 from numpy.typing import NDArray
 
-from studies.comparison import Comparison, objectives, within
+from studies.comparison import Comparison
 from studies.comparison_paper import PaperPoint
+from studies.comparison_staircase import within
 
 _COLOURS = {
     "epsilon": "#0072B2", "nsga2": "#D55E00", "vepso": "#009E73", "weighted": "#56B4E9",
@@ -30,7 +30,7 @@ _STILLEST = 1e-6
 _TALLEST = 1.6
 """Panels end at this multiple of the energy of the best nearly still motion."""
 
-BANDS = "Of several seeds: the median, in a band from the best to the worst"
+BANDS = "Of several seeds: the median,\nin a band from the best to the worst"
 
 Array = NDArray[np.float64]
 Dash = str | tuple[int, tuple[int, ...]]
@@ -86,10 +86,10 @@ def comparison_figure(
         draw(axis, comparison, paper)
         axis.set_title(f"({letter}) {axis.get_title(loc='left')}", fontsize=10, loc="left")
     axes[3].axis("off")
-    title_of_legend = BANDS if any(len(group.runs) > 1 for group in comparison.groups) else None
+    several = any(len(group.runs) > 1 for group in comparison.groups)
     axes[3].legend(
-        *_legend(axes), loc="center left", frameon=False, fontsize=10, title=title_of_legend,
-        alignment="left",
+        *_legend(axes), loc="center left", frameon=False, fontsize=10, alignment="left",
+        title=BANDS if several else None,
     )  # fmt: skip
     if title:
         figure.suptitle(title, fontsize=12)
@@ -134,16 +134,14 @@ def draw_still(axis: Axes, comparison: Comparison, paper: Sequence[PaperPoint] =
 
 
 def draw_gaps(axis: Axes, comparison: Comparison, paper: Sequence[PaperPoint] = ()) -> None:
-    """Draw how far points are above the line through the best of all points, residual logarithmic.
+    """Draw how far points are above the best of all filled fronts, residual logarithmic.
 
     Points rather than staircases: between its points a coarse front would look bad by its steps.
     """
-    best = moocore.filter_dominated(np.vstack([objectives(run.front) for run in comparison.runs]))
-    best = best[np.argsort(best[:, 0])]
     for group in comparison.groups:
         look = looks(comparison)[group.label]
         residuals, energies = group.median.T
-        gap = 100 * np.maximum(energies / np.interp(residuals, *best.T) - 1, 0)
+        gap = 100 * (energies / within(comparison.best_front, residuals) - 1)
         axis.plot(
             np.maximum(residuals, _left(comparison)) * 1e3, gap, ".", color=look.colour,
             markersize=5, markeredgewidth=0, label=group.label,

@@ -13,7 +13,7 @@ from ocp.task import LIMITS
 METHOD_NAMES: Mapping[str, str] = {
     "nsga2": "NSGA-II",
     "vepso": "VEPSO",
-    "epsilon": "epsilon-constraint",
+    "epsilon": "epsilon constraint",
     "weighted": "weighted sum",
 }
 """The methods as people write them."""

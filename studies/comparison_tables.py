@@ -10,6 +10,7 @@ from studies.comparison import Comparison, Group
 from studies.tables import Cell, Column, Table
 
 _ENERGY, _SHARE, _PERCENT = "{:.5g}".format, "{:.4f}".format, "{:.2f}".format
+_MISS = "{:.2g}".format
 _QUARTILES = "  quartiles over seeds"
 
 
@@ -31,22 +32,26 @@ def _fronts(comparison: Comparison) -> Table:
         Column("points", "{:.0f}".format),
         Column("hypervolume (large is good)", _SHARE),
         Column(_QUARTILES),
-        Column("IGD+ (small is good)", _SHARE),
+        Column("  as found", _SHARE),
+        Column("IGD+ (small is good)", _MISS),
         Column(_QUARTILES),
-        Column("additive epsilon (small is good)", _SHARE),
+        Column("additive epsilon (small is good)", _MISS),
         Column(_QUARTILES),
         Column("candidates evaluated", "{:.0f}".format),
         Column("time of a run [s]", "{:.1f}".format),
     )
     rows: list[list[Cell]] = []
+    filling = comparison.fill > 0
     for group in comparison.groups:
         front = group.runs[0].front
         bound, several = front.settings.get("bound"), len(group.runs) > 1
         row: list[Cell] = [group.label, "none" if bound is None else bound, front.profile.size]
         row += [len(group.runs) if several else None, _points(group)]
-        for figure in ("hypervolume", "igd_plus", "epsilon"):
+        for figure, show in (("hypervolume", _SHARE), ("igd_plus", _MISS), ("epsilon", _MISS)):
             spread = group.spread(figure)
-            row += [spread.median, _quartiles(spread, _SHARE) if several else None]
+            row += [spread.median, _quartiles(spread, show) if several else None]
+            if figure == "hypervolume":
+                row.append(group.spread("hypervolume_found").median if filling else None)
         row += [group.spread(figure).median for figure in ("evaluations", "seconds")]
         rows.append(row)
     return Table("Fronts", columns, rows)
@@ -64,29 +69,29 @@ def _energies(comparison: Comparison) -> Table:
             Column(f"energy {where} [J]", _ENERGY),
             Column(_QUARTILES),
             Column(f"  above the best {where} [%]", _PERCENT),
-            Column("  of it by coarse steps, at most [%]", _PERCENT),
+            Column("  with motions between its points", _PERCENT),
             Column("  seeds that reach it"),
         ]
     rows: list[list[Cell]] = []
     for group in comparison.groups:
         row: list[Cell] = [group.label]
         for i in range(len(comparison.levels)):
-            row += _at_level(group, i)
+            row += _at_level(group, i, comparison.fill > 0)
         rows.append(row)
     return Table("Least energy within a residual", columns, rows)
 
 
-def _at_level(group: Group, level: int) -> list[Cell]:
+def _at_level(group: Group, level: int, filling: bool) -> list[Cell]:
     reached, runs = group.reached(level), len(group.runs)
     if not reached:
         return ["not reached", None, None, None, None]
     energy = group.spread("energies", level)
-    gap, step = group.spread("gaps", level).median, group.spread("steps", level).median
+    gap = 100 * group.spread("gaps", level).median
     return [
         energy.median,
         _quartiles(energy, _ENERGY) if reached > 1 else None,
-        100 * gap,
-        100 * min(gap, step),
+        gap,
+        100 * group.spread("gaps_between", level).median if filling else None,
         f"{reached} of {runs}" if reached < runs else None,
     ]
 
@@ -109,17 +114,17 @@ def runs_table(comparison: Comparison) -> Table:
     levels = [f"{1e3 * level:g}mm" for level in comparison.levels]
     names = [
         "name", "label", "method", "seed", "bound", "coefficients", "points", "hypervolume",
-        "igd_plus", "epsilon", *(f"energy_at_{at}_J" for at in levels),
-        *(f"gap_at_{at}" for at in levels), *(f"step_at_{at}" for at in levels), "evaluations",
-        "seconds", "complete",
+        "hypervolume_found", "igd_plus", "epsilon",
+        *(f"{name}_at_{at}" for name in ("energy_J", "gap", "gap_between") for at in levels),
+        "evaluations", "seconds", "complete",
     ]  # fmt: skip
     rows: list[list[Cell]] = []
     for group in comparison.groups:
         for run in group.runs:
-            front, figures = run.front, (*run.energies, *run.gaps, *run.steps)
+            front, figures = run.front, (*run.energies, *run.gaps, *run.gaps_between)
             row: list[Cell] = [run.name, group.label, front.method, front.seed]
             row += [front.settings.get("bound"), front.profile.size, len(front.points)]
-            row += [run.hypervolume, run.igd_plus, run.epsilon]
+            row += [run.hypervolume, run.hypervolume_found, run.igd_plus, run.epsilon]
             row += [figure if isfinite(figure) else None for figure in figures]
             row += [front.evaluations, front.seconds, "yes" if front.complete else "no"]
             rows.append(row)
@@ -131,15 +136,22 @@ def how_to_read(comparison: Comparison) -> list[str]:
     (residual, energy), (length, joules) = comparison.corner, comparison.extent
     lines = [
         "A front is a staircase: within a residual only those motions count that were found with "
-        "that residual or less. A front of few points loses by its steps alone; a denser sampling "
-        "of it could take away the part of a gap that is marked so, and no more.",
+        "that residual or less."
+        + (
+            " A front of few points would lose by its steps alone. So fronts are filled, all "
+            "alike: motions with coefficients between those of neighbours are evaluated, until "
+            f"there are about {comparison.fill}. Indicators, and the best that energies are "
+            "measured against, are those of filled fronts."
+            if comparison.fill
+            else " Motions between them do not count: fronts of few points lose by their steps."
+        ),
         f"Hypervolume: share of the box up to {millimetres(residual)} and {energy:.4g} J, the same "
         "for all, that a front dominates.",
         f"IGD+ and additive epsilon are against {comparison.reference}, thinned to even distances. "
         f"Both objectives weigh alike: 1 is the extent of that front, {millimetres(length)} or "
         f"{joules:.4g} J. IGD+ is the mean distance by which a front misses it, epsilon the least "
         "shift in both objectives that makes up for the worst miss.",
-        "Coverage: share of a front's points that the other one dominates or equals.",
+        "Coverage: share of the points found that the other front, filled, dominates or equals.",
     ]
     if any(len(group.runs) > 1 for group in comparison.groups):
         lines.append("Of several seeds the median is shown, over those that reach the residual.")

@@ -3,20 +3,24 @@
 import csv
 import math
 import re
+from functools import partial
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
 
+import studies.comparison
 from models import ArmOnFlexibleLink
 from ocp import PointToPoint
 from studies.cli import main
-from studies.comparison import compare
 from studies.comparison_figure import BANDS, PANELS, comparison_figure, looks, panel_figure
 from studies.comparison_paper import condition_of, paper_points
 from studies.comparison_report import FILES, write
 from studies.comparison_tables import runs_table, tables
 from studies.paper import ARM_HALF, SINGLE_LINK_HALF_1_0
+
+# The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
+compare = partial(studies.comparison.compare, fill=0)
 
 
 @pytest.fixture
@@ -64,16 +68,13 @@ def cells(table):
 def test_tables_show_the_figures_of_the_comparison(comparison):
     shown = tables(comparison)
     fronts, energies = cells(shown["fronts"]), cells(shown["energies"])
-    assert fronts["method"] == ["epsilon-constraint", "NSGA-II"]
+    assert fronts["method"] == ["epsilon constraint", "NSGA-II"]
     assert fronts["seeds"] == ["-", "3"]
     volume = [group.spread("hypervolume").median for group in comparison.groups]
     assert fronts["hypervolume (large is good)"] == [f"{value:.4f}" for value in volume]
     assert energies["energy at 0.1 mm [J]"] == ["0.8", "not reached"]
     assert energies["energy at 1 mm [J]"] == ["0.8", "0.96"]
     assert energies["above the best at 1 mm [%]"] == ["0.00", "20.00"]
-    # NSGA-II's next point is 0.2 J lower, a quarter of the best: the whole gap may be its steps
-    lines = [line for line in shown["energies"].markdown().splitlines() if "coarse" in line]
-    assert [line.split("|")[3].strip() for line in lines] == ["-", "20.00", "0.00"]  # by level
 
 
 def test_a_run_a_row_with_every_digit(comparison):
@@ -83,7 +84,7 @@ def test_a_run_a_row_with_every_digit(comparison):
         assert float(row["igd_plus"]) == run.igd_plus
         assert float(row["gap_at_1mm"]) == run.gaps[1]
         assert row["complete"] == "yes"
-    assert rows[1]["energy_at_0.1mm_J"] == ""
+    assert rows[1]["energy_J_at_0.1mm"] == ""
 
 
 # Pictures
@@ -98,9 +99,9 @@ def drawn(axis, label):
 def test_the_picture_holds_the_fronts_as_staircases(comparison):
     picture = comparison_figure(comparison)
     whole, still, gaps, _ = picture.axes
-    stairs = drawn(whole, "epsilon-constraint")
+    stairs = drawn(whole, "epsilon constraint")
     np.testing.assert_allclose(stairs[:3], [[0, 0.8], [4, 0.5], [8, 0.4]])
-    (line,) = [line for line in whole.get_lines() if line.get_label() == "epsilon-constraint"]
+    (line,) = [line for line in whole.get_lines() if line.get_label() == "epsilon constraint"]
     assert line.get_drawstyle() == "steps-post"
     np.testing.assert_allclose(drawn(whole, "NSGA-II")[[0, 1]], [[1, 0.96], [5, 0.76]])
     (band,) = whole.collections
@@ -110,13 +111,12 @@ def test_the_picture_holds_the_fronts_as_staircases(comparison):
     assert picture.axes[3].get_legend().get_title().get_text() == BANDS
 
 
-def test_points_are_held_against_the_line_through_the_best(comparison):
+def test_points_are_held_against_the_best_within_their_residual(comparison):
     axis = comparison_figure(comparison).axes[2]
-    # from (0, 0.8) to (4, 0.5): 0.725 at 1 mm; from there to (8, 0.4): 0.475 at 5 mm
     np.testing.assert_allclose(
-        drawn(axis, "NSGA-II"), [[1, 100 * (0.96 / 0.725 - 1)], [5, 100 * (0.76 / 0.475 - 1)]]
+        drawn(axis, "NSGA-II"), [[1, 100 * (0.96 / 0.8 - 1)], [5, 100 * (0.76 / 0.5 - 1)]]
     )
-    assert set(drawn(axis, "epsilon-constraint")[:, 1]) == {0}
+    assert set(drawn(axis, "epsilon constraint")[:, 1]) == {0}
 
 
 def test_the_picture_holds_floor_and_papers_points(front_of):
@@ -161,7 +161,7 @@ def test_a_panel_stands_alone_with_its_legend(comparison, panel):
     figure = panel_figure(comparison, panel)
     assert len(figure.axes) == 1
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels[:2] == ["epsilon-constraint", "NSGA-II"]
+    assert labels[:2] == ["epsilon constraint", "NSGA-II"]
 
 
 def test_a_single_point_is_drawn_as_well(front_of):
@@ -174,17 +174,17 @@ def test_a_single_point_is_drawn_as_well(front_of):
 
 
 def test_compare_shows_tables_and_what_they_mean(call, files):
-    code, out, err = call("compare good.json poor.json")
+    code, out, err = call("compare good.json poor.json --as-found")
     assert (code, err) == (0, "")
     assert "single-link, 0 to pi/6, 0.8 s" in out
-    for words in ("epsilon-constraint", "hypervolume", "IGD+", "additive epsilon", "Coverage"):
+    for words in ("epsilon constraint", "hypervolume", "IGD+", "additive epsilon", "Coverage"):
         assert words in out
     assert re.search(r"box up to 10 mm and 1 J", " ".join(out.split()))
     assert {path.name for path in files.iterdir()} == {"good.json", "poor.json"}
 
 
 def test_compare_fills_a_folder(call, files, good, poor):
-    code, out, _ = call("compare good.json poor.json --output compared")
+    code, out, _ = call("compare good.json poor.json --as-found --output compared")
     assert code == 0
     assert out.splitlines()[-4:] == [f"wrote compared/{name}" for name in FILES]
     assert {path.name for path in (files / "compared").iterdir()} == set(FILES)
@@ -195,7 +195,7 @@ def test_compare_fills_a_folder(call, files, good, poor):
 
 
 def test_compare_measures_against_a_named_front(call, files, good):
-    code, out, _ = call("compare good.json poor.json --reference good.json")
+    code, out, _ = call("compare good.json poor.json --as-found --reference good.json")
     assert code == 0
     assert "epsilon are against good.json" in " ".join(out.split())
 

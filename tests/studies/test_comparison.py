@@ -2,15 +2,20 @@
 
 import dataclasses
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
+import studies.comparison
 from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import PointToPoint
-from studies.comparison import compare, evenly_spaced
+from ocp import CycloidPolynomial, PointToPoint, epsilon_front, evaluate_coefficients
+from studies.comparison import FILL
 from studies.comparison_groups import method_name
+from studies.comparison_staircase import evenly_spaced, filled
 
+# The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
+compare = partial(studies.comparison.compare, fill=0)
 # Corners are (10 mm, 1 J); `good` and `poor` stand in conftest.py.
 
 
@@ -78,9 +83,7 @@ def test_energies_count_only_what_was_found_within_the_residual(good, poor):
     assert better.gaps == (0, 0, 0)
     np.testing.assert_allclose(worse.energies, [np.nan, 0.9, 0.6])
     np.testing.assert_allclose(worse.gaps, [np.nan, 0.9 / 0.5 - 1, 0.6 / 0.4 - 1])
-    # a denser sampling of poor at 4 mm could come down to its next point at most
-    np.testing.assert_allclose(worse.steps, [np.nan, (0.9 - 0.6) / 0.5, 0])
-    np.testing.assert_allclose(better.steps, [(0.8 - 0.5) / 0.8, (0.5 - 0.4) / 0.5, 0])
+    assert worse.gaps_between == pytest.approx(worse.gaps, nan_ok=True)
 
 
 def test_coverage_is_the_share_that_the_other_dominates_or_equals(measured, good, front_of):
@@ -118,7 +121,7 @@ def test_seeds_that_reach_a_residual_are_counted(good, front_of):
 @pytest.mark.parametrize(
     ("other", "labels"),
     [
-        ({"method": "epsilon"}, ["NSGA-II", "epsilon-constraint"]),
+        ({"method": "epsilon"}, ["NSGA-II", "epsilon constraint"]),
         ({"bound": 0.5}, ["NSGA-II, bound 0.2", "NSGA-II, bound 0.5"]),
         ({"terms": 4}, ["NSGA-II, terms 2", "NSGA-II, terms 4"]),
         ({"complete": False}, ["NSGA-II", "NSGA-II, interrupted"]),
@@ -201,3 +204,50 @@ def test_a_plant_without_a_name_in_the_paper_is_no_obstacle(two_links, front_of)
     task = PointToPoint(two_links, 1.5, 0.9)
     fronts = [front_of([(1, 0.5)], task=task), front_of([(2, 0.4)], "vepso", task=task)]
     assert len(compare(fronts).groups) == 2
+
+
+# Real fronts: what lies between their points
+
+
+@pytest.fixture(scope="module")
+def real():
+    """A gradient's front of the README's move, of a few points."""
+    task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+    return epsilon_front(task, CycloidPolynomial(2), bound=0.2, points=9)
+
+
+def test_between_points_lie_motions_with_coefficients_in_between(real):
+    one, other = real.points[3:5]
+    middle = np.mean([one.coefficients, other.coefficients], axis=0)
+    plan = evaluate_coefficients(real.task, middle)  # by CVODES
+    table = filled(real, 2 * (len(real.points) - 1))  # one between each two
+    found = table[np.argmin(np.abs(table[:, 0] - plan.residual))]
+    assert tuple(found) == pytest.approx((plan.residual, plan.energy), rel=1e-4)
+    assert one.residual < found[0] < other.residual
+    assert one.energy > found[1] > other.energy
+
+
+def test_a_filled_front_is_one(real):
+    table = filled(real, FILL)
+    assert len(table) > FILL / 2
+    assert (np.diff(table[:, 0]) > 0).all()
+    assert (np.diff(table[:, 1]) < 0).all()
+
+
+def test_the_number_of_points_does_not_decide(real):
+    """Every other point left out: as found the front seems far worse, filled it is the same."""
+    thinned = dataclasses.replace(real, points=real.points[::2], method="thinned")
+    whole, few = (group.runs[0] for group in studies.comparison.compare([real, thinned]).groups)
+    lost_as_found = whole.hypervolume_found - few.hypervolume_found
+    assert lost_as_found > 0.004
+    assert abs(whole.hypervolume - few.hypervolume) < lost_as_found / 20
+    assert max(few.gaps) > 20 * max(few.gaps_between)
+
+
+def test_motions_between_that_break_a_limit_do_not_count(real):
+    limited = dataclasses.replace(real, task=dataclasses.replace(real.task, torque_limit=1e-6))
+    np.testing.assert_array_equal(filled(limited, FILL)[:, 0], real.residuals)
+
+
+def test_a_front_of_one_point_has_nothing_between(front_of):
+    np.testing.assert_array_equal(filled(front_of([(1, 0.5)]), FILL), [[1e-3, 0.5]])
