@@ -10,12 +10,18 @@ from typing import Any
 import numpy as np
 
 from metaheuristics.search import search
-from metaheuristics.workers import Report, Workers
+from metaheuristics.workers import KILLED, Report, Workers
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.checks import whole
 
 STILL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
+
+_KILLED_REMEDY = "where memory ran short, give fewer workers or a smaller population"
+_ENDED_REMEDY = (
+    "search under if __name__ == '__main__' in a script of your own, with a plant from a file that "
+    "can be imported, or with one worker"
+)
 
 
 class LostSeedsError(QuietarmError):
@@ -29,10 +35,11 @@ class LostSeedsError(QuietarmError):
 
     def __init__(self, lost: Mapping[int, str], fronts: list[Front], runs: int) -> None:
         self.fronts = fronts
-        seeds = ", ".join(f"seed {seed} ({how})" for seed, how in lost.items())
+        seeds = ", ".join(f"seed {seed} ({how})" for seed, how in sorted(lost.items()))
+        killed = any(how.startswith(KILLED) for how in lost.values())
         super().__init__(
-            f"the process of {seeds} died; {len(fronts)} of {runs} seeds are done; where memory "
-            "ran short, give fewer workers or a smaller population"
+            f"the process of {seeds} died; {len(fronts)} of {runs} seeds are done; "
+            + (_KILLED_REMEDY if killed else _ENDED_REMEDY)
         )
 
 

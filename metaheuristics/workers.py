@@ -29,6 +29,8 @@ _CONTEXT = get_context("spawn")  # a fork would carry casadi's and the threads' 
 _PATIENCE = 1.2
 """How long [s] the searches that run at Ctrl-C have to hand over what they found."""
 _REPORT_SECONDS = 0.2
+KILLED = "killed by"
+"""How the end of a process by a signal is told; the rest ended by themselves, with a status."""
 
 
 class Workers:
@@ -123,7 +125,7 @@ class _Death:
     """What is heard of a process that died."""
 
     def __init__(self, code: int) -> None:
-        self.how = f"killed by {signal.Signals(-code).name}" if code < 0 else f"status {code}"
+        self.how = f"{KILLED} {signal.Signals(-code).name}" if code < 0 else f"status {code}"
 
 
 class _Worker:
@@ -176,6 +178,7 @@ def _serve(link: Connection, task: PointToPoint, method: str, settings: Mapping[
 
     with suppress(EOFError, OSError):  # the parent is gone
         for seed in iter(link.recv, None):
+            said = 0.0  # of every search its first generation is reported
             try:
                 link.send(search(task, method, seed=seed, report=report, **settings))
             except Exception as error:

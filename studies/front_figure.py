@@ -18,6 +18,9 @@ _MOST_NAMED = 10
 """More seeds than this are drawn without a name."""
 _LOGARITHMIC_FROM = 5.0
 """Residuals that span less than this factor are drawn on a linear axis."""
+_LEAST_SPAN = 0.01
+"""The axis of energies spans at least this share of their median, so that seeds that agree look so.
+"""
 
 
 def front_figure(fronts: Sequence[Front], title: str = "") -> Figure:
@@ -138,3 +141,8 @@ def _draw_energies(axis: Axes, fronts: Sequence[Front], colours: dict[int | None
     if len(fronts) <= 20:
         axis.set_xticks(range(len(fronts)), [str(front.seed) for front in fronts])
     axis.margins(x=0.1, y=0.2)
+    axis.ticklabel_format(axis="y", useOffset=False)
+    low, high = axis.get_ylim()
+    more = _LEAST_SPAN * spread.median - (high - low)
+    if more > 0:  # false where no seed has an energy
+        axis.set_ylim(low - more / 2, high + more / 2)

@@ -81,12 +81,12 @@ class _Lines(SearchDisplay):
     """A line every few seconds for every search, and one for its last generation."""
 
     def __init__(self, console: Console) -> None:
-        self._console, self._began = console, time.perf_counter()
+        self._console = console
         self._last: dict[int | None, float] = {}
 
     def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
         now = time.perf_counter()
-        due = now - self._last.get(seed, self._began) >= _PLAIN_SECONDS
+        due = now - self._last.setdefault(seed, now) >= _PLAIN_SECONDS
         if due or progress.generation == progress.generations:
             self._last[seed] = now
             _print(self._console, _figures(progress, seed))

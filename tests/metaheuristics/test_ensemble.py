@@ -5,6 +5,7 @@ import math
 import multiprocessing
 import os
 import signal
+import subprocess
 import sys
 import time
 
@@ -209,3 +210,20 @@ def test_a_front_goes_to_another_process_and_back_whole():
     assert same == found
     assert same.seconds == found.seconds
     assert dataclasses.asdict(same) == dataclasses.asdict(found)
+
+
+def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
+    # every process runs the script anew, as Python's spawn does
+    (tmp_path / "script.py").write_text(
+        "from metaheuristics.ensemble import search_many\n"
+        "from models import SingleLinkManipulator\n"
+        "from ocp import PointToPoint\n"
+        "task = PointToPoint(SingleLinkManipulator(), 0.5, 0.8)\n"
+        "search_many(task, 'vepso', 3, workers=2, bound=0.2)\n"
+    )
+    ran = subprocess.run(
+        [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    last = ran.stderr.splitlines()[-1]
+    assert last.startswith("metaheuristics.ensemble.LostSeedsError: the process of seed 0 (status ")
+    assert "search under if __name__ == '__main__'" in last

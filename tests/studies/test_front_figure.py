@@ -71,6 +71,13 @@ def test_the_energy_of_each_seed_is_drawn_over_its_quartiles(fronts):
     assert panel.get_xlabel() == "seed (x: never within 1 mm, line: median, band: quartiles)"
 
 
+def test_seeds_that_agree_are_not_drawn_as_if_they_did_not(front_of):
+    fronts = [front_of([(0.5, 0.2 + 1e-6 * s)], seed=s, history=history(0.5)) for s in range(3)]
+    low, high = front_figure(fronts).axes[2].get_ylim()
+    assert (low + high) / 2 == pytest.approx(0.200001, rel=1e-9)
+    assert high - low == pytest.approx(0.01 * 0.200001, rel=1e-9)
+
+
 def test_where_no_seed_is_still_it_says_so(front_of):
     fronts = [front_of([(5, 0.2)], seed=seed, history=history(0.5)) for seed in (0, 1)]
     panel = front_figure(fronts).axes[2]

@@ -88,9 +88,9 @@ def test_every_running_seed_has_a_bar_until_it_is_done(front_of):
 def test_elsewhere_a_line_comes_every_two_seconds_and_at_the_end(clock):
     pipe = console(width=40)
     with search_display(pipe) as display:
-        for clock[0] in (0.5, 1.9, 2.1, 3.0, 4.0, 4.2):
+        for clock[0] in (0.5, 2.4, 2.6, 3.0, 4.5, 4.7):
             display(NOW)
-        clock[0] = 4.3
+        clock[0] = 4.8
         display(END)
     line = (
         "generation 120/500, residual 0.123 mm, energy 0.0523 J, hypervolume 0.8123, "
@@ -103,10 +103,8 @@ def test_elsewhere_a_line_comes_every_two_seconds_and_at_the_end(clock):
 def test_elsewhere_every_seed_has_its_lines(clock, front_of):
     pipe = console()
     with search_display(pipe) as display:
-        clock[0] = 2.5
-        display(NOW, 0)
-        display(NOW, 1)
-        display(NOW, 0)
+        for clock[0], seed in ((0.5, 0), (2.2, 1), (2.7, 0), (3.0, 0), (4.3, 1)):
+            display(NOW, seed)
         display.finish(front_of([(1, 0.2)], seed=0, history=(Generation(9, 0.5),), seconds=3.04))
     first, second, done = pipe.file.getvalue().splitlines()
     assert first.startswith("seed 0, generation 120/500, ")
