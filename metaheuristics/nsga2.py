@@ -150,6 +150,8 @@ class PaperNSGA2(NSGA2):
         ranked = ranks[feasible]
         if ranked.size and not (ranked.min() == 0 and np.isfinite(ranked).all()):
             raise ValueError("rank is not from 0 up for all that keep the limits")
+        if np.isnan(crowding[feasible]).any():
+            raise ValueError("crowding is not a number for all that keep the limits")
         for individual, rank, distance in zip(individuals, ranks, crowding, strict=True):
             individual.set("rank", None if np.isnan(rank) else rank)
             individual.set("crowding", None if np.isnan(distance) else distance)

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.population import Population
-from pymoo.core.problem import Problem
 
 from ocp.checks import finite, whole
 
@@ -79,7 +78,7 @@ def array_of(
     return values
 
 
-def population_of(columns: Mapping[str, Any], problem: Problem | None, rows: int = -1) -> Any:
+def population_of(columns: Mapping[str, Any], problem: Any, rows: int = -1) -> Any:
     """A population that counts as evaluated.
 
     Parameters
@@ -96,7 +95,6 @@ def population_of(columns: Mapping[str, Any], problem: Problem | None, rows: int
     Population
         The individuals.
     """
-    assert problem is not None, "set the algorithm up first"
     sizes = (problem.n_var, problem.n_obj, problem.n_ieq_constr, problem.n_eq_constr)
     arrays: dict[str, NDArray[np.float64]] = {}
     for name, size in zip(POPULATION_ARRAYS, sizes, strict=True):

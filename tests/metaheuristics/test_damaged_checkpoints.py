@@ -108,6 +108,8 @@ OWN = {
         "rank gone": (("PEOPLE", "rank"), GONE),
         "rank of another length": (("PEOPLE", "rank"), lambda rank: rank[:-1]),
         "rank NaN": (("PEOPLE", "rank"), lambda rank: rank * np.nan),
+        "crowding NaN": (("PEOPLE", "crowding"), lambda crowding: crowding * np.nan),
+        "crowding null": (("PEOPLE", "crowding"), None),
         "nobody of rank 0": (("PEOPLE", "rank"), lambda rank: rank + 1),
         "more than the population": (
             ("PEOPLE",),
@@ -186,6 +188,7 @@ def _leaves(tree, keys=()):
 SCALARS = [None, True, -1, 0, 3, 2**70, 0.5, math.nan, -math.inf, 1e308, "", "free", [], [[1]], {}]
 ARRAYS = [
     np.zeros(()), np.zeros(3), np.zeros((6, 6)), np.zeros((0, 6)), np.ones((6, 2), dtype=int),
+    np.full(6, np.nan), np.full(6, -np.inf), np.full((2, 6, 6), np.nan),
     np.full((6, 6), np.nan), np.full((6, 2), np.inf), np.array(["a"]), np.array([1j]),
 ]  # fmt: skip
 
