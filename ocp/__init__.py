@@ -12,6 +12,7 @@ from ocp.floor_answer import Floor
 from ocp.front import FailedPoint, Front, FrontPoint, Generation, non_dominated, reference_corner
 from ocp.objective import Motion
 from ocp.plan import Plan, SolveSettings, Verification, evaluate_coefficients
+from ocp.polish import Gain, Polish, polish_front
 from ocp.profile import MAX_TERMS, CycloidPolynomial, JointPath, JointProfile
 from ocp.residual import residual_matrix
 from ocp.resimulation import Trajectory, resimulate, sample_trajectory
@@ -19,6 +20,7 @@ from ocp.rollout import Rollout, rollout, symbolic_rollout
 from ocp.solver import plan_move
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
+from ocp.weighted_front import weighted_front
 
 __all__ = [
     "MAX_TERMS",
@@ -28,6 +30,7 @@ __all__ = [
     "Floor",
     "Front",
     "FrontPoint",
+    "Gain",
     "Generation",
     "InfeasibleTaskError",
     "JointPath",
@@ -35,6 +38,7 @@ __all__ = [
     "Motion",
     "Plan",
     "PointToPoint",
+    "Polish",
     "QuietarmError",
     "Rollout",
     "SolveSettings",
@@ -47,10 +51,12 @@ __all__ = [
     "evaluate_coefficients",
     "non_dominated",
     "plan_move",
+    "polish_front",
     "reference_corner",
     "residual_matrix",
     "resimulate",
     "rollout",
     "sample_trajectory",
     "symbolic_rollout",
+    "weighted_front",
 ]

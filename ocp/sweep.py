@@ -205,6 +205,7 @@ class Sweep:
         gaps: Sequence[tuple[float, float]] = (),
         iterations: int = 0,
         complete: bool = True,
+        seconds: float = 0.0,
     ) -> Front:
         """Put points together to a front.
 
@@ -222,6 +223,8 @@ class Sweep:
             Iterations of the solver in other processes.
         complete : bool
             Whether the sweep ran to its end.
+        seconds : float
+            Time that was spent before the sweep [s].
 
         Returns
         -------
@@ -244,5 +247,5 @@ class Sweep:
             failures=failures,
             gaps=tuple(gaps),
             complete=complete,
-            seconds=time.perf_counter() - self.began,
+            seconds=seconds + time.perf_counter() - self.began,
         )  # fmt: skip
