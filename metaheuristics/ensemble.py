@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from metaheuristics.search import search
-from metaheuristics.workers import KILLED, Report, Workers
+from metaheuristics.workers import ENDED, Report, Workers
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.checks import whole
 
@@ -36,10 +36,10 @@ class LostSeedsError(QuietarmError):
     def __init__(self, lost: Mapping[int, str], fronts: list[Front], runs: int) -> None:
         self.fronts = fronts
         seeds = ", ".join(f"seed {seed} ({how})" for seed, how in sorted(lost.items()))
-        killed = any(how.startswith(KILLED) for how in lost.values())
+        ended = all(how.startswith(ENDED) for how in lost.values())
         super().__init__(
             f"the process of {seeds} died; {len(fronts)} of {runs} seeds are done; "
-            + (_KILLED_REMEDY if killed else _ENDED_REMEDY)
+            + (_ENDED_REMEDY if ended else _KILLED_REMEDY)
         )
 
 

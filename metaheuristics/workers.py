@@ -29,8 +29,8 @@ _CONTEXT = get_context("spawn")  # a fork would carry casadi's and the threads' 
 _PATIENCE = 1.2
 """How long [s] the searches that run at Ctrl-C have to hand over what they found."""
 _REPORT_SECONDS = 0.2
-KILLED = "killed by"
-"""How the end of a process by a signal is told; the rest ended by themselves, with a status."""
+ENDED = "status"
+"""How the end of a process is told that ended by itself, neither killed nor out of memory."""
 
 
 class Workers:
@@ -122,10 +122,15 @@ class Workers:
 
 
 class _Death:
-    """What is heard of a process that died."""
+    """What is heard of a process that died, or that has no memory left to go on."""
 
-    def __init__(self, code: int) -> None:
-        self.how = f"{KILLED} {signal.Signals(-code).name}" if code < 0 else f"status {code}"
+    def __init__(self, how: str) -> None:
+        self.how = how
+
+    @classmethod
+    def of(cls, code: int) -> _Death:
+        """The death of a process by its exit code."""
+        return cls(f"killed by {signal.Signals(-code).name}" if code < 0 else f"{ENDED} {code}")
 
 
 class _Worker:
@@ -149,10 +154,11 @@ class _Worker:
     def receive(self) -> SearchProgress | Front | Exception | _Death:
         """The message that is there."""
         try:
-            return self.link.recv()
+            message = self.link.recv()
         except (EOFError, OSError):
             self.process.join()
-            return _Death(self.process.exitcode or 0)
+            return _Death.of(self.process.exitcode or 0)
+        return _Death("out of memory") if isinstance(message, MemoryError) else message
 
     def end(self) -> None:
         """End the process, whatever it does."""

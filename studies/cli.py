@@ -76,6 +76,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
         status = _complain("interrupted; nothing was written", NOT_SOLVED)
+    except MemoryError:
+        status = _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
     except OSError as error:
         status = _complain(f"{error.filename or ''} {error.strerror or error}".strip(), BAD_INPUT)
     sys.exit(status or 0)

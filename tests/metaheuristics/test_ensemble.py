@@ -212,6 +212,14 @@ def test_a_front_goes_to_another_process_and_back_whole():
     assert dataclasses.asdict(same) == dataclasses.asdict(found)
 
 
+def test_a_process_without_memory_costs_its_own_seed_only():
+    with pytest.raises(LostSeedsError) as caught:
+        search_many(TASK, "nsga2", 2, workers=2, **{**SMALL, "population": 10**13})  # 160 TB
+    assert "seed 0 (out of memory), seed 1 (out of memory)" in str(caught.value)
+    assert "fewer workers or a smaller population" in str(caught.value)
+    assert caught.value.fronts == []
+
+
 def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
     # every process runs the script anew, as Python's spawn does
     (tmp_path / "script.py").write_text(

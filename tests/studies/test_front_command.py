@@ -116,6 +116,16 @@ def test_a_search_that_finds_nothing_says_why(call, folder):
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.parametrize("several", ["", "--runs 2 --workers 2"])
+def test_a_population_beyond_the_memory_ends_in_one_line(call, folder, several):
+    # 10 million million individuals: 160 TB, more than a process can address
+    code, out, err = call(f"{SMALL} --population 10000000000000 {several} --output f.json")
+    assert (code, out, err.count("\n")) == (1, "", 1)
+    assert "out of memory" in err
+    assert "smaller population" in err
+    assert list(folder.iterdir()) == []
+
+
 @pytest.mark.parametrize("method", ["vepso", "nsga2"])
 def test_an_interrupted_search_goes_on_to_the_same_front(call, interrupted_at, method):
     line = f"{SMALL} --quiet --method {method} --generations 6"
