@@ -26,6 +26,8 @@ MOST_STEPS = 6000
 """The grid is refined no further than this."""
 WITHIN = 0.005
 """Starts whose energy is within this share of the best one's are said to agree."""
+_LEAST_LEVELS = 3
+"""As many as show whether the falls of the energy become smaller, and how fast."""
 _SAME = 1e-5
 _ROUNDS, _OVERRUN = 4, 1e-3
 
@@ -139,7 +141,7 @@ def _level(found: FreeSolution) -> Level:
 
 def _settled(levels: list[Level], tolerance: float) -> bool:
     before, after = levels[-2].energy, levels[-1].energy
-    return abs(before - after) <= tolerance * after
+    return len(levels) >= _LEAST_LEVELS and abs(before - after) <= tolerance * after
 
 
 def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:

@@ -18,6 +18,7 @@ COMMANDS = (
     "evaluate",
     "front",
     "compare",
+    "floor",
     "reproduce",
 )
 """Each is of this name in the file of this name in `studies.commands`."""

@@ -12,18 +12,20 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ocp import Plan, evaluate_coefficients
+from ocp import Floor, Plan, Trajectory, evaluate_coefficients
 from ocp.files import write_whole
 from studies.picture_names import check_figure
 
 _SAMPLES = 1500
+_SHOWN, _ABOVE = 0.99, 1.15
+"""The torque panel reaches this far above what the torque stays below 99 % of the time."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """One motion in a picture: its plan, label, colour and matplotlib line style."""
+    """One motion in a picture: its plan or floor, label, colour and matplotlib line style."""
 
-    plan: Plan
+    plan: Plan | Floor
     label: str
     colour: str
     style: str = "-"
@@ -60,10 +62,7 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
     FigureCanvasAgg(figure)
     axes: list[Axes] = list(figure.subplots(2, 2, sharex=True).flat)
     for line in lines:
-        task = line.plan.task
-        end = task.duration + task.residual_window
-        times = np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration])
-        sampled = line.plan.trajectory(times)
+        sampled = _sampled(line.plan)
         tips = sampled.tips * 1e3
         panels = [sampled.joint[:, :1], sampled.joint[:, 1:2], tips, sampled.torque[:, None]]
         for axis, values in zip(axes, panels, strict=True):
@@ -88,6 +87,7 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
         axis.set_title(f"({letter}) {name} {unit}", fontsize=10, loc="left")
         axis.grid(alpha=0.25)
         axis.margins(x=0)
+    _leave_out_jolts(axes[3], lines)
     for axis in axes[2:]:
         axis.set_xlabel("time [s]  (dashed: arrival)")
     handles, labels = axes[2].get_legend_handles_labels()
@@ -95,6 +95,30 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
     if title:
         figure.suptitle(title, fontsize=12)
     return figure
+
+
+def _sampled(motion: Plan | Floor) -> Trajectory:
+    if isinstance(motion, Floor):
+        return motion.trajectory
+    task = motion.task
+    end = task.duration + task.residual_window
+    return motion.trajectory(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
+
+
+def _leave_out_jolts(axis: Axes, lines: Sequence[Line]) -> None:
+    """Let a floor's jolts, a thousand times its other torque for a moment, leave the panel."""
+    peaks = [0.0]
+    for line in lines:
+        sampled = _sampled(line.plan)
+        torque, held = np.abs(sampled.torque), np.gradient(sampled.time)
+        order = np.argsort(torque)
+        most_of_the_time = np.searchsorted(np.cumsum(held[order]), _SHOWN * held.sum())
+        peaks.append(float(torque[order][min(most_of_the_time, len(order) - 1)]))
+    highest = _ABOVE * max(peaks)
+    lower, upper = axis.get_ylim()
+    if max(-lower, upper) > highest and any(isinstance(line.plan, Floor) for line in lines):
+        axis.set_ylim(-highest, highest)
+        axis.set_title(f"{axis.get_title(loc='left')}, jolts left out", fontsize=10, loc="left")
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:

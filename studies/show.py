@@ -7,7 +7,7 @@ import math
 from rich.console import Console
 from rich.table import Table
 
-from ocp import Plan
+from ocp import Motion, Plan, PointToPoint
 from ocp.task import LIMITS
 
 
@@ -21,10 +21,34 @@ def show_plan(console: Console, plan: Plan) -> None:
     plan : Plan
         The plan.
     """
-    task, motion, check = plan.task, plan.motion, plan.verification
+    motion, check = plan.motion, plan.verification
+    table = upright_table()
+    add_move(table, plan.task, motion)
+    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    table.add_row("coefficients", coefficients or "none: the plain cycloid")
+    table.add_row("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)")
+    add_figures(table, plan.task, motion)
+    table.add_row("status", plan.status.text)
+    relative = abs(check.energy_difference) / motion.energy if motion.energy else 0.0
+    table.add_row(
+        "verified",
+        f"by CVODES: {check.steps} fixed steps differ by {relative:.0e} in energy and "
+        f"{_length(abs(check.residual_difference))} in residual",
+    )
+    table.add_row("time", f"{plan.provenance.seconds:.2f} s")
+    console.print(table, highlight=False)
+
+
+def upright_table() -> Table:
+    """A table of names and their values."""
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column(style="bold")
     table.add_column()
+    return table
+
+
+def add_move(table: Table, task: PointToPoint, motion: Motion) -> None:
+    """Add the move and its limits, with what the motion makes of them."""
     table.add_row(
         "move",
         f"{task.plant.name}, {_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s",
@@ -35,9 +59,10 @@ def show_plan(console: Console, plan: Plan) -> None:
     )
     if limits:
         table.add_row("limits", limits)
-    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
-    table.add_row("coefficients", coefficients or "none: the plain cycloid")
-    table.add_row("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)")
+
+
+def add_figures(table: Table, task: PointToPoint, motion: Motion) -> None:
+    """Add a motion's residual, peaks and overshoot."""
     table.add_row(
         "residual F1", f"{_length(motion.residual)} at the tip within {task.residual_window:g} s"
     )
@@ -46,15 +71,6 @@ def show_plan(console: Console, plan: Plan) -> None:
     table.add_row("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2")
     table.add_row("peak deflection", _length(motion.peak_deflection))
     table.add_row("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none")
-    table.add_row("status", plan.status.text)
-    relative = abs(check.energy_difference) / motion.energy if motion.energy else 0.0
-    table.add_row(
-        "verified",
-        f"by CVODES: {check.steps} fixed steps differ by {relative:.0e} in energy and "
-        f"{_length(abs(check.residual_difference))} in residual",
-    )
-    table.add_row("time", f"{plan.provenance.seconds:.2f} s")
-    console.print(table, highlight=False)
 
 
 def _angle(value: float) -> str:

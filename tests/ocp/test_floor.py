@@ -91,7 +91,8 @@ def test_a_rigid_joint_with_friction_has_its_closed_form(rigid, smooth):
     floor = energy_floor(PointToPoint(plant, 1.5, 0.8), smooth=smooth, **SHORT)
     assert floor.energy == pytest.approx(expected, rel=2e-3)
     assert floor.energy > expected * (1 - 1e-4)  # no motion is cheaper
-    assert abs(floor.energy - expected) < 2 * floor.left
+    # A jolt takes up to 4e-5 of the move at any level.
+    assert abs(floor.energy - expected) < 2 * floor.left + 1e-4 * expected
 
 
 def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form(rigid):
@@ -167,7 +168,7 @@ def test_the_figures_are_those_of_the_independent_integrator(floor_of):
 
 def test_what_is_left_is_what_finer_grids_gain(floor_of):
     # Against a much finer grid: the estimate is of the right size, and errs to the safe side.
-    rough, fine = floor_of(ARM, **SHORT), floor_of(ARM, tolerance=3e-4, **SHORT)
+    rough, fine = floor_of(ARM, **SHORT), floor_of(ARM, tolerance=1.5e-4, **SHORT)
     assert fine.levels[: len(rough.levels)] == rough.levels
     assert len(fine.levels) > len(rough.levels)
     gained = rough.levels[-1].energy - fine.levels[-1].energy
@@ -183,8 +184,8 @@ def test_what_is_left_is_what_finer_grids_gain(floor_of):
     [
         ([1.0, 0.9], None, 0.1),  # nothing known: first order, the last fall once more
         ([1.0, 0.8, 0.7], 0.5, 0.1),
-        ([1.0, 0.6, 0.5], 0.25, 0.1 / 3),
-        ([1.0, 0.5, 0.49], 0.02, 0.01 / 3),  # no better than second order is believed
+        ([1.0, 0.7, 0.5], 2 / 3, 0.4),
+        ([1.0, 0.5, 0.49], 0.02, 0.01),  # no better than first order is believed
         ([1.0, 0.9, 0.8], 1.0, 0.4),  # nor a series that does not end
         ([1.0, 0.9, 0.95], None, 0.05),  # the energy rose: another minimum
     ],
@@ -193,7 +194,9 @@ def test_the_estimate_continues_the_falls_of_the_energy(floor_of, energies, rati
     levels = tuple(Level(100 * 2**i, energy) for i, energy in enumerate(energies))
     floor = replace(floor_of(ARM, **SHORT), levels=levels)
     assert floor.ratio == (None if ratio is None else pytest.approx(ratio))
-    assert floor.left == pytest.approx(left)
+    missed = -floor.verification.energy_difference
+    assert floor.left == pytest.approx(left + missed)
+    assert missed > 0
 
 
 def test_starts_that_agree_are_counted(floor_of):
