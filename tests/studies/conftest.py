@@ -1,6 +1,7 @@
 """What the tests of `studies` share: one reproduction of the paper, one plan."""
 
 import math
+import shlex
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from ocp import (
     plan_move,
 )
 from studies import reproduce as reproduce_module
+from studies.cli import main
 
 
 @pytest.fixture(scope="session")
@@ -38,6 +40,20 @@ def reproduction(begun):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(reproduce_module, "search", short)
         return reproduce_module.reproduce(begun.append)
+
+
+@pytest.fixture
+def call(capfd):
+    """Run a line in this process: its status, standard output and standard error."""
+
+    def run_here(line):
+        words = line if isinstance(line, list) else shlex.split(line)
+        with pytest.raises(SystemExit) as ended:
+            main(words)
+        out, err = capfd.readouterr()  # what casadi's libraries write, too
+        return ended.value.code, out, err
+
+    return run_here
 
 
 @pytest.fixture(scope="session")

@@ -22,7 +22,6 @@ import studies.reproduce
 import studies.searching
 from models import __version__
 from ocp import InfeasibleTaskError, Plan
-from studies.cli import main
 from studies.paper import ROWS
 from studies.reproduce import amount_of_work
 
@@ -50,20 +49,6 @@ def run(line, **settings):
 def contents(folder):
     """All files of a folder with what they hold, and the folders in it."""
     return {path: path.is_file() and path.read_bytes() for path in folder.rglob("*")}
-
-
-@pytest.fixture
-def call(capfd):
-    """Run a line in this process: its status, standard output and standard error."""
-
-    def run_here(line):
-        words = line if isinstance(line, list) else shlex.split(line)
-        with pytest.raises(SystemExit) as ended:
-            main(words)
-        out, err = capfd.readouterr()  # what casadi's libraries write, too
-        return ended.value.code, out, err
-
-    return run_here
 
 
 @pytest.fixture

@@ -18,7 +18,6 @@ from metaheuristics import search
 from metaheuristics.ensemble import LostSeedsError
 from models import SingleLinkManipulator
 from ocp import CycloidPolynomial, Front, Plan, PointToPoint
-from studies.cli import main
 from studies.search_display import SearchDisplay
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
@@ -38,18 +37,6 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
     return tmp_path
-
-
-@pytest.fixture
-def call(capfd):
-    """Run a line: its status, standard output and standard error."""
-
-    def run_here(line):
-        with pytest.raises(SystemExit) as ended:
-            main(shlex.split(line))
-        return ended.value.code, *capfd.readouterr()
-
-    return run_here
 
 
 @pytest.fixture
