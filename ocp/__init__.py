@@ -5,7 +5,7 @@ from ocp.shadowing import refuse_shadow
 
 refuse_shadow("models")
 
-from ocp.epsilon_front import epsilon_front
+from ocp.epsilon import epsilon_front
 from ocp.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
 from ocp.floor import energy_floor
 from ocp.floor_answer import Floor
@@ -20,7 +20,7 @@ from ocp.rollout import Rollout, rollout, symbolic_rollout
 from ocp.solver import plan_move
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
-from ocp.weighted_front import weighted_front
+from ocp.weighted import weighted_front
 
 __all__ = [
     "MAX_TERMS",

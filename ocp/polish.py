@@ -95,9 +95,14 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
         f"{front.method}, polished", [*found, *left], len(front.points),
         iterations=front.evaluations, complete=complete, seconds=front.seconds,
     )  # fmt: skip
-    settings_of_both = {**front.settings, "steps": polished.settings["steps"]}
-    kept = replace(polished, settings=settings_of_both, seed=front.seed, history=front.history)
-    return Polish(kept, tuple(gains))
+    with_origin = replace(
+        polished,
+        settings={**front.settings, "steps": polished.settings["steps"]},
+        seed=front.seed,
+        reference=front.reference,
+        history=front.history,
+    )
+    return Polish(with_origin, tuple(gains))
 
 
 def _polished(

@@ -26,7 +26,7 @@ RESIDUAL_LIMIT = "residual_limit"
 Guess = NDArray[np.float64] | Solution
 Report = Callable[[int, int], None]
 """Called with the number of points done and asked for."""
-SAME = 1e-6
+SAME = 1e-5
 """Energies that differ by less than this share are of one motion."""
 _SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""

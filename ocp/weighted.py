@@ -80,6 +80,8 @@ def weighted_front(
     profile = CycloidPolynomial() if profile is None else profile
     points = whole("points", points, 2)
     chosen = None if weights is None else [_checked(pair) for pair in weights]
+    if chosen == []:
+        raise ValueError("no weights are given; give a pair of residual and energy, or none at all")
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     sums = _Sums(sweep, sweep.ends())
     complete = True

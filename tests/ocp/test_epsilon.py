@@ -1,0 +1,205 @@
+"""The front by epsilon-constraint: its ends, its spacing, and that no point could be cheaper."""
+
+import math
+
+import numpy as np
+import pytest
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import (
+    CycloidPolynomial,
+    Front,
+    InfeasibleTaskError,
+    PointToPoint,
+    epsilon_front,
+    plan_move,
+    reference_corner,
+    resimulate,
+)
+from ocp.epsilon import _Stretch
+from ocp.plan import SolveSettings
+from ocp.status import SolveStatus
+from ocp.sweep import Sweep
+from ocp.verification import STILL
+
+POINTS = 12
+CASES = {
+    "arm": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
+    "single link": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request):
+    task, bound = CASES[request.param]
+    return task, bound, epsilon_front(task, bound=bound, points=POINTS)
+
+
+def test_the_ends_are_the_plans_of_least_energy(case):
+    # plan_move starts on its own, four times at either end
+    task, bound, front = case
+    still = plan_move(task, bound=bound)
+    free = plan_move(task, bound=bound, residual_limit=1.0)
+    assert front.stillest().residual < STILL
+    assert front.stillest().energy == pytest.approx(still.energy, rel=1e-6)
+    assert front.cheapest().energy == pytest.approx(free.energy, rel=1e-6)
+    assert front.cheapest().residual == pytest.approx(free.residual, rel=1e-3)
+
+
+def test_no_point_is_dearer_than_a_plan_at_its_residual(case):
+    task, bound, front = case
+    for point in front.points[2:-1:3]:
+        plan = plan_move(task, bound=bound, residual_limit=point.residual)
+        assert point.energy <= plan.energy * (1 + 1e-4)  # the issue's tolerance
+        assert point.energy == pytest.approx(plan.energy, rel=2e-3)
+
+
+def test_points_are_even_in_both_objectives(case):
+    _, _, front = case
+    assert len(front.points) == POINTS
+    steps = np.hypot(
+        np.diff(front.residuals) / np.ptp(front.residuals),
+        np.diff(front.energies) / np.ptp(front.energies),
+    )
+    assert steps.max() < 1.5 * steps.mean()
+    assert steps.min() > 0.5 * steps.mean()
+
+
+def test_every_point_has_the_figures_of_the_independent_integrator(case):
+    task, bound, front = case
+    for point in front.points:
+        motion = resimulate(task, front.profile, point.coefficients)
+        assert (point.residual, point.energy) == (motion.residual, motion.energy)
+        assert np.abs(point.coefficients).max() <= bound
+
+
+def test_a_front_says_where_it_comes_from(case, tmp_path):
+    task, bound, front = case
+    assert (front.method, front.complete, front.failures) == ("epsilon", True, ())
+    assert front.settings == {"bound": bound, "points": POINTS, "starts": 4, "steps": 80}
+    assert front.reference == reference_corner(task)
+    assert front.evaluations > POINTS  # iterations: several a point
+    front.save(tmp_path / "front.json")
+    assert Front.load(tmp_path / "front.json") == front
+
+
+def test_processes_find_the_same_front():
+    task, bound = CASES["arm"]
+    alone, shared = (
+        epsilon_front(task, CycloidPolynomial(3), bound=bound, points=6, workers=workers)
+        for workers in (1, 2)
+    )
+    np.testing.assert_allclose(shared.energies, alone.energies, rtol=1e-5)
+    np.testing.assert_allclose(shared.residuals, alone.residuals, rtol=1e-5, atol=STILL)
+
+
+def test_limits_of_the_task_are_kept_along_the_front():
+    plant = ArmOnFlexibleLink()
+    free = epsilon_front(PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=4)
+    peak = min(
+        resimulate(free.task, free.profile, point.coefficients).peak_torque for point in free.points
+    )
+    task = PointToPoint(plant, math.pi / 2, 0.8, torque_limit=0.95 * peak)
+    front = epsilon_front(task, bound=0.5, points=4)
+    for point in front.points:
+        motion = resimulate(task, front.profile, point.coefficients)
+        assert motion.peak_torque <= task.torque_limit * 1.001
+    assert front.cheapest().energy > free.cheapest().energy
+
+
+def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
+    # One term has nothing left to arrive at rest with: two conditions, one coefficient.
+    task, profile = CASES["arm"][0], CycloidPolynomial(1)
+    front = epsilon_front(task, profile, points=5)
+    scan = [resimulate(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)]
+    stillest = front.stillest()
+    assert 0.9 * min(scan) < stillest.residual < 1.001 * min(scan)
+    assert len(front.points) > 2
+
+
+def test_an_impossible_task_is_refused():
+    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, torque_limit=1e-3)
+    with pytest.raises(InfeasibleTaskError, match=r"torque <= 0\.001 N m; feasible"):
+        epsilon_front(task, CycloidPolynomial(2), points=3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"points": 1}, "points is 1; give a whole number from 2 up"),
+        ({"workers": 0}, "workers is 0; give a whole number from 1 up"),
+        ({"bound": -1.0}, "bound on the coefficients is -1"),
+        ({"profile": CycloidPolynomial(0)}, "0 terms has nothing to choose"),
+    ],
+)
+def test_bad_input_is_refused(arguments, text):
+    with pytest.raises(ValueError, match=text):
+        epsilon_front(CASES["arm"][0], **arguments)
+
+
+def test_a_solve_that_fails_does_not_end_the_sweep(monkeypatch):
+    task, bound = CASES["arm"]
+    profile, whole = CycloidPolynomial(3), Sweep.solve
+    solved = []
+
+    def failing(self, guess, residual_limit=np.inf, **rest):
+        found = whole(self, guess, residual_limit, **rest)
+        if 4e-3 < residual_limit < 6e-3:
+            object.__setattr__(found, "status", SolveStatus.NUMERICAL_TROUBLE)
+        solved.append(residual_limit)
+        return found
+
+    monkeypatch.setattr(Sweep, "solve", failing)
+    front = epsilon_front(task, profile, bound=bound, points=8)
+    assert front.failed == len(front.failures) > 0
+    assert len(front.points) + front.failed == 8
+    for failure in front.failures:
+        assert 4e-3 < failure.asked["residual_limit"] < 6e-3
+        assert failure.reason == SolveStatus.NUMERICAL_TROUBLE.text
+    assert min(solved) < 4e-3 < 6e-3 < max(solved)
+
+
+def test_ctrl_c_keeps_what_was_found(monkeypatch):
+    task, bound = CASES["arm"]
+    calls = []
+
+    def interrupt(done, total):
+        calls.append((done, total))
+        if done == 4:
+            raise KeyboardInterrupt
+
+    front = epsilon_front(task, CycloidPolynomial(3), bound=bound, points=8, report=interrupt)
+    assert not front.complete
+    assert 3 <= len(front.points) < 8
+    assert calls[-1] == (4, 8)
+
+
+def test_what_one_sweep_misses_the_other_mends(monkeypatch):
+    # A sweep down that ends high at one limit: the sweep up finds better, and restarts agree.
+    task, bound = CASES["arm"]
+    profile = CycloidPolynomial(3)
+    expected = epsilon_front(task, profile, bound=bound, points=6)
+    attempt, spoilt = _Stretch._try, []
+
+    def spoil(self, i, guess):
+        found = attempt(self, i, guess)
+        if i == 2 and not spoilt:
+            spoilt.append(found)
+            object.__setattr__(found, "energy", found.energy * 1.05)
+        return found
+
+    monkeypatch.setattr(_Stretch, "_try", spoil)
+    front = epsilon_front(task, profile, bound=bound, points=6)
+    assert len(spoilt) == 1
+    np.testing.assert_allclose(front.energies, expected.energies, rtol=1e-6)
+
+
+def test_the_same_settings_give_the_same_front():
+    task, bound = CASES["arm"]
+    one, two = (epsilon_front(task, CycloidPolynomial(3), bound=bound, points=4) for _ in "12")
+    assert one == two
+
+
+def test_settings_of_a_sweep_reach_its_solves():
+    sweep = Sweep(CASES["arm"][0], CycloidPolynomial(3), SolveSettings(starts=3, steps=50))
+    assert (sweep.program.steps, len(sweep.guesses)) == (50, 3)
