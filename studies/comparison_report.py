@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
 
-from ocp import Front
+from ocp import Front, QuietarmError
 from ocp.files import check_writable, write_whole
+from ocp.floor import energy_floor
 from studies.comparison import Comparison
 from studies.comparison_figure import comparison_figure
 from studies.comparison_paper import paper_points, title_of
@@ -22,6 +24,16 @@ def load_fronts(paths: list[Path]) -> tuple[list[Front], list[str]]:
     """The fronts of files and what to call them; FileFormatError where one is no front."""
     fronts = [Front.load(path) for path in paths]
     return fronts, [str(path) for path in paths]
+
+
+def with_floor(comparison: Comparison, console: Console) -> Comparison:
+    """The comparison with the floor of its task; the console says so where it cannot be found."""
+    try:
+        floor = energy_floor(comparison.task)
+    except QuietarmError as error:
+        console.print(f"no floor: {error}", highlight=False, soft_wrap=True)
+        return comparison
+    return replace(comparison, floor=floor.energy)
 
 
 def terms_of(comparison: Comparison) -> set[int]:

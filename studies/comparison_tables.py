@@ -157,8 +157,9 @@ def how_to_read(comparison: Comparison) -> list[str]:
         lines.append("Of several seeds the median is shown, over those that reach the residual.")
     if comparison.floor is not None:
         lines.append(
-            f"Floor: no joint motion of any kind arrives at rest with less than "
-            f"{comparison.floor:.4g} J. A front may go below it where it leaves a residual."
+            f"Floor: the least energy found over all joint motions that arrive at rest, not of "
+            f"polynomials only, is {comparison.floor:.4g} J. A front may go below it where it "
+            "leaves a residual."
         )
     return lines
 

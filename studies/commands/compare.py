@@ -15,10 +15,18 @@ FRONT_FILE = click.Path(path_type=Path)
 @click.command(short_help="Hold fronts of one task against each other.")
 @click.argument("fronts", nargs=-1, type=FRONT_FILE, metavar="FRONT FRONT ...")
 @click.option("--reference", type=FRONT_FILE, help="Measure IGD+ and epsilon against this front.")
+@click.option(
+    "--floor/--no-floor", default=True, show_default=True,
+    help="Find the least energy over all joint motions as well: some seconds.",
+)  # fmt: skip
 @click.option("--as-found", is_flag=True, help="Count no motions between the points of a front.")
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
 def compare(
-    fronts: tuple[Path, ...], reference: Path | None, as_found: bool, output: Path | None
+    fronts: tuple[Path, ...],
+    reference: Path | None,
+    floor: bool,
+    as_found: bool,
+    output: Path | None,
 ) -> None:
     """Hold fronts of one task, by any methods, against each other.
 
@@ -34,7 +42,7 @@ def compare(
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.comparison import FILL
     from studies.comparison import compare as measure
-    from studies.comparison_report import load_fronts, show, write
+    from studies.comparison_report import load_fronts, show, with_floor, write
 
     loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
     named = None if reference is None else loaded.pop()
@@ -42,6 +50,8 @@ def compare(
         loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
         fill=0 if as_found else FILL,
     )  # fmt: skip
+    if floor:
+        comparison = with_floor(comparison, Console(stderr=True))
     console = Console()
     show(console, comparison)
     if output is not None:

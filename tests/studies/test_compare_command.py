@@ -10,8 +10,9 @@ import pytest
 from matplotlib.colors import to_rgba
 
 import studies.comparison
+import studies.comparison_report
 from models import ArmOnFlexibleLink
-from ocp import PointToPoint
+from ocp import PointToPoint, SolverFailedError
 from studies.cli import main
 from studies.comparison_figure import BANDS, PANELS, comparison_figure, looks, panel_figure
 from studies.comparison_paper import condition_of, paper_points
@@ -174,7 +175,7 @@ def test_a_single_point_is_drawn_as_well(front_of):
 
 
 def test_compare_shows_tables_and_what_they_mean(call, files):
-    code, out, err = call("compare good.json poor.json --as-found")
+    code, out, err = call("compare good.json poor.json --as-found --no-floor")
     assert (code, err) == (0, "")
     assert "single-link, 0 to pi/6, 0.8 s" in out
     for words in ("epsilon constraint", "hypervolume", "IGD+", "additive epsilon", "Coverage"):
@@ -184,7 +185,7 @@ def test_compare_shows_tables_and_what_they_mean(call, files):
 
 
 def test_compare_fills_a_folder(call, files, good, poor):
-    code, out, _ = call("compare good.json poor.json --as-found --output compared")
+    code, out, _ = call("compare good.json poor.json --as-found --no-floor --output compared")
     assert code == 0
     assert out.splitlines()[-4:] == [f"wrote compared/{name}" for name in FILES]
     assert {path.name for path in (files / "compared").iterdir()} == set(FILES)
@@ -195,9 +196,29 @@ def test_compare_fills_a_folder(call, files, good, poor):
 
 
 def test_compare_measures_against_a_named_front(call, files, good):
-    code, out, _ = call("compare good.json poor.json --as-found --reference good.json")
+    code, out, _ = call("compare good.json poor.json --as-found --no-floor --reference good.json")
     assert code == 0
     assert "epsilon are against good.json" in " ".join(out.split())
+
+
+def test_the_floor_is_found_and_shown(call, files, monkeypatch):
+    class Found:
+        energy = 0.1234
+
+    monkeypatch.setattr(studies.comparison_report, "energy_floor", lambda task: Found())
+    code, out, _ = call("compare good.json poor.json --as-found")
+    assert code == 0
+    assert "arrive at rest, not of polynomials only, is 0.1234 J" in " ".join(out.split())
+
+
+def test_a_floor_that_is_not_found_is_no_obstacle(call, files, monkeypatch):
+    def fail(task):
+        raise SolverFailedError("no start ended at an optimum")
+
+    monkeypatch.setattr(studies.comparison_report, "energy_floor", fail)
+    code, out, err = call("compare good.json poor.json --as-found")
+    assert (code, err) == (0, "no floor: no start ended at an optimum\n")
+    assert "Floor" not in out
 
 
 def test_other_tasks_are_refused_in_a_line(call, files, front_of):
