@@ -19,6 +19,7 @@ COMMANDS = (
     "front",
     "compare",
     "floor",
+    "study",
     "reproduce",
 )
 """Each is of this name in the file of this name in `studies.commands`."""

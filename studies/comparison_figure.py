@@ -103,7 +103,12 @@ def panel_figure(comparison: Comparison, panel: str, paper: Sequence[PaperPoint]
     axis = figure.subplots()
     PANELS[panel](axis, comparison, paper)
     figure.legend(
-        *_legend([axis]), loc="outside lower center", ncols=2, frameon=False, fontsize=8.5
+        *_legend([axis]),
+        loc="outside lower center",
+        ncols=2,
+        frameon=False,
+        fontsize=8.5,
+        markerscale=2 if panel == "gaps" else 1,
     )
     return figure
 

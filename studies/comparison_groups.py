@@ -22,9 +22,9 @@ _SAME = 1e-9
 
 
 def method_name(method: str) -> str:
-    """A method as people write it: ``"nsga2, polished"`` is ``"NSGA-II, polished"``."""
-    head, comma, rest = method.partition(",")
-    return METHOD_NAMES.get(head, head) + comma + rest
+    """A method as people write it: ``"nsga2, polished"`` is ``"NSGA-II polished"``."""
+    head, _, rest = method.partition(",")
+    return METHOD_NAMES.get(head, head) + rest
 
 
 def task_difference(one: PointToPoint, other: PointToPoint) -> str:

@@ -135,7 +135,7 @@ def test_methods_are_named_with_what_tells_them_apart(poor, front_of, other, lab
 
 
 def test_methods_have_names_for_people():
-    assert method_name("nsga2, polished") == "NSGA-II, polished"
+    assert method_name("nsga2, polished") == "NSGA-II polished"
     assert method_name("MOEAD") == "MOEAD"
 
 
