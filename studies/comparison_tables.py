@@ -37,7 +37,7 @@ def _fronts(comparison: Comparison) -> Table:
         Column(_QUARTILES),
         Column("additive epsilon (small is good)", _MISS),
         Column(_QUARTILES),
-        Column("candidates evaluated", "{:.0f}".format),
+        Column("candidates, or iterations of the gradient", "{:.0f}".format),
         Column("time of a run [s]", "{:.1f}".format),
     )
     rows: list[list[Cell]] = []

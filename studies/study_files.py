@@ -42,7 +42,12 @@ def write(study: Study, output: Path, folder: Path | None = None) -> list[Path]:
             for run in found.comparison.runs:
                 seed = "" if run.front.seed is None else f"-seed{run.front.seed}"
                 name = f"{title_of(found.case.task)}-{run.front.method}{seed}"
-                path = folder / f"{re.sub(r'[^A-Za-z0-9.]+', '-', name)}.json"
+                path = folder / f"{_file_name(name)}.json"
                 run.front.save(path)
                 written.append(path)
     return written
+
+
+def _file_name(words: str) -> str:
+    signed = re.sub(r"(?<!\w)-", "minus-", words)
+    return re.sub(r"[^A-Za-z0-9.]+", "-", signed)

@@ -27,10 +27,12 @@ def group_of(comparison: Comparison, method: str) -> Group | None:
     return next((g for g in comparison.groups if g.runs[0].front.method == method), None)
 
 
-def gap(comparison: Comparison, method: str, level: int = STILL_LEVEL) -> float:
+def gap(
+    comparison: Comparison, method: str, level: int = STILL_LEVEL, name: str = "gaps_between"
+) -> float:
     """Median share by which a method is above the best at a level; NaN where it is not there."""
     group = group_of(comparison, method)
-    return np.nan if group is None else group.spread("gaps_between", level).median
+    return np.nan if group is None else group.spread(name, level).median
 
 
 def percent(share: float) -> str:
@@ -175,9 +177,12 @@ def _searches(study: Study, method: str) -> str:
         return f"{method_name(method)} never comes within {level}." if study.cases else ""
     worst = study.cases[int(np.nanargmax(gaps))]
     where = f", most for {title_of(worst.case.task)}" if len(finite) > 1 else ""
+    found = [gap(case.comparison, method, name="gaps") for case in study.cases]
+    alone = percents([share for share in found if isfinite(share)])
     return (
-        f"{method_name(method)} takes {percents(finite)} more energy than the best at "
-        f"{level}{where} (median of {study.settings.runs} seeds)."
+        f"{method_name(method)} takes {percents(finite)} more energy than the best at {level}"
+        f"{where}; {alone} with the points of its front alone, no motions between them (median of "
+        f"{study.settings.runs} seeds)."
     )
 
 

@@ -77,8 +77,12 @@ def study(
     console = Console()
     for line in findings(result) if len(cases) > 1 else case_findings(result.cases[0]):
         console.print(f"- {line}", highlight=False, markup=False)
-    for path in write(result, output, fronts):
-        console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+    written = write(result, output, fronts)
+    console.print(f"wrote {output}", highlight=False, soft_wrap=True)
+    if fronts is not None:
+        console.print(
+            f"wrote {len(written) - 1} fronts to {fronts}", highlight=False, soft_wrap=True
+        )
 
 
 def _refuse_without_plant(context: click.Context, names: Iterable[str]) -> None:
