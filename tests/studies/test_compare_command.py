@@ -13,7 +13,6 @@ import studies.comparison
 import studies.comparison_report
 from models import ArmOnFlexibleLink
 from ocp import PointToPoint, SolverFailedError
-from studies.cli import main
 from studies.comparison_figure import BANDS, PANELS, comparison_figure, looks, panel_figure
 from studies.comparison_paper import condition_of, paper_points
 from studies.comparison_report import FILES, write
@@ -43,18 +42,6 @@ def files(good, poor, tmp_path, monkeypatch):
     good.save("good.json")
     poor.save("poor.json")
     return tmp_path
-
-
-@pytest.fixture
-def call(capfd):
-    """Run a line: its status, standard output and standard error."""
-
-    def run_here(line):
-        with pytest.raises(SystemExit) as ended:
-            main(line.split())
-        return ended.value.code, *capfd.readouterr()
-
-    return run_here
 
 
 # Tables

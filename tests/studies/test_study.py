@@ -11,7 +11,6 @@ import pytest
 
 import studies.study as study_module
 from ocp import Front, PointToPoint, SolverFailedError
-from studies.cli import main
 from studies.paper import ARM_HALF, SINGLE_LINK_SIXTH
 from studies.study import PAPER_CASES, Case, StudySettings, amount_of_work, study
 from studies.study_files import _file_name, write
@@ -251,23 +250,17 @@ def test_the_page_fits_a_desktop_and_a_phone(text, tmp_path, width):
 
 
 @pytest.fixture
-def call(capfd, tmp_path, monkeypatch):
-    """Run a line in a folder of the test's own: its status, output and errors."""
+def folder(tmp_path, monkeypatch):
+    """A folder of the test's own, and standing in it; lines are not wrapped."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "1000")
-
-    def run_here(line):
-        with pytest.raises(SystemExit) as ended:
-            main(line.split())
-        return ended.value.code, *capfd.readouterr()
-
-    return run_here
+    return tmp_path
 
 
 MOVE = "study single-link --target 30deg --duration 0.8"
 
 
-def test_study_writes_the_page_and_the_fronts(call, small, monkeypatch, tmp_path):
+def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
     asked = {}
 
     def at_once(cases, settings, begin):
@@ -285,9 +278,9 @@ def test_study_writes_the_page_and_the_fronts(call, small, monkeypatch, tmp_path
     for line in case_findings(small.cases[0]):
         assert f"- {line}" in out
     assert out.splitlines()[-2:] == ["wrote study.html", "wrote 8 fronts to fronts"]
-    assert (tmp_path / "study.html").read_text().startswith("<!DOCTYPE html>")
+    assert (folder / "study.html").read_text().startswith("<!DOCTYPE html>")
     runs = small.cases[0].comparison.runs
-    saved = [Front.load(path) for path in (tmp_path / "fronts").iterdir()]
+    saved = [Front.load(path) for path in (folder / "fronts").iterdir()]
     assert len(saved) == len(runs) == 8
     assert all(run.front in saved for run in runs)
 
@@ -300,7 +293,7 @@ def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small,
     assert _file_name("-pi/2 to pi/4") == "minus-pi-2-to-pi-4"
 
 
-def test_without_a_plant_it_is_the_papers_conditions(call, small, monkeypatch):
+def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkeypatch):
     asked = {}
 
     def at_once(cases, settings, begin):
@@ -330,22 +323,22 @@ def test_without_a_plant_it_is_the_papers_conditions(call, small, monkeypatch):
         ("study singel-link --target 1 --duration 1", "did you mean 'single-link'?"),
     ],
 )
-def test_bad_input_is_refused_in_a_line_before_any_work(call, monkeypatch, tmp_path, line, words):
+def test_bad_input_is_refused_in_a_line_before_any_work(call, folder, monkeypatch, line, words):
     monkeypatch.setattr(study_module, "study", lambda *given: pytest.fail("work was begun"))
     code, out, err = call(line)
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert words in err
-    assert list(tmp_path.iterdir()) == []
+    assert list(folder.iterdir()) == []
 
 
-def test_an_interrupt_leaves_no_file(call, monkeypatch, tmp_path):
+def test_an_interrupt_leaves_no_file(call, folder, monkeypatch):
     def interrupted(*given):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(study_module, "study", interrupted)
     code, _, err = call(f"{MOVE} --quiet")
     assert (code, err.strip()) == (1, "quietarm: interrupted; nothing was written")
-    assert list(tmp_path.iterdir()) == []
+    assert list(folder.iterdir()) == []
 
 
 def test_nothing_is_half_written(small, tmp_path, monkeypatch):
