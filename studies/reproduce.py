@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 
 from metaheuristics import search
 from metaheuristics.ensemble import Spread, energies_at
-from ocp import CycloidPolynomial, Front, Plan, evaluate_coefficients, plan_move
+from ocp import (
+    CycloidPolynomial,
+    Floor,
+    Front,
+    Plan,
+    energy_floor,
+    evaluate_coefficients,
+    plan_move,
+)
 from studies.paper import (
     ARM_HALF,
     COEFFICIENTS,
@@ -22,6 +31,10 @@ BEYOND_SIX = (8, 10)
 """Numbers of terms that check the paper's 'no gain above six'."""
 PAPER_METHOD = {SINGLE_LINK_SIXTH.plant.name: "vepso", ARM_HALF.plant.name: "nsga2"}
 """The paper's search for each plant: sections 3.1 and 3.2."""
+METHODS = ("vepso", "nsga2")
+TERMS = (2, 4, 6, *BEYOND_SIX)
+"""Numbers of terms that the gradient solves every condition for."""
+CONDITIONS = tuple(dict.fromkeys(row.condition for row in ROWS))
 STUDIED = (SINGLE_LINK_SIXTH, ARM_HALF)
 """The conditions whose number of terms the paper varies: its Figs 2 and 5."""
 
@@ -43,6 +56,8 @@ class RowResult:
     fronts : tuple of Front
         The paper's own search with its settings, a front a seed: VEPSO for the single link,
         NSGA-II for the arm.
+    other_fronts : tuple of Front
+        The same by the other one of the two.
     residual_level : float
         Residual [m] of the paper's coefficients, or where it prints none, of its N = 6 row for the
         same plant (with the misprint mended).
@@ -54,12 +69,18 @@ class RowResult:
     in_box: Plan
     free: Plan
     fronts: tuple[Front, ...]
+    other_fronts: tuple[Front, ...]
     residual_level: float
 
     @property
     def searched(self) -> Spread:
         """Quartiles over the seeds of the least energy [J] at the residual level."""
         return energies_at(self.fronts, self.residual_level)
+
+    def searched_by(self, method: str) -> Spread:
+        """The same for a method by its name."""
+        own = method == PAPER_METHOD[self.row.condition.plant.name]
+        return energies_at(self.fronts if own else self.other_fronts, self.residual_level)
 
     @property
     def search_seconds(self) -> float:
@@ -78,12 +99,15 @@ class Reproduction:
     cycloids : dict
         The plain cycloid of each studied condition.
     more_terms : dict
-        Gradient answers by (condition, terms, whether in the box), for the studied conditions.
+        Gradient answers by (condition, terms, whether in the box).
+    floors : dict
+        The least energy over all joint motions, at rest on arrival, of each condition.
     """
 
     rows: tuple[RowResult, ...]
     cycloids: dict[Condition, Plan]
     more_terms: dict[tuple[Condition, int, bool], Plan]
+    floors: dict[Condition, Floor]
 
     def row(self, table: int, condition: Condition, terms: int) -> RowResult:
         """The result for one row of a table."""
@@ -96,8 +120,7 @@ class Reproduction:
 
 def solve_keys() -> list[tuple[Condition, int, bool]]:
     """What the gradient has to solve, each once: (condition, terms, whether in the box)."""
-    cases = [*search_keys(), *((c, terms) for c in STUDIED for terms in BEYOND_SIX)]
-    return [(*case, boxed) for case in cases for boxed in (True, False)]
+    return [(c, terms, boxed) for c in CONDITIONS for terms in TERMS for boxed in (True, False)]
 
 
 def search_keys() -> list[tuple[Condition, int]]:
@@ -106,18 +129,18 @@ def search_keys() -> list[tuple[Condition, int]]:
 
 
 def amount_of_work(seeds: int) -> int:
-    """How many solves and searches `reproduce` begins."""
-    return len(solve_keys()) + seeds * len(search_keys())
+    """How many solves, floors and searches `reproduce` begins."""
+    return len(solve_keys()) + len(CONDITIONS) + seeds * len(METHODS) * len(search_keys())
 
 
 def reproduce(begin: Callable[[str], None] = lambda name: None, seeds: int = 1) -> Reproduction:
-    """Recompute the paper's tables with the gradient and the metaheuristics beside them.
+    """Recompute the paper's tables with gradient, metaheuristics and floor beside them.
 
     Parameters
     ----------
     begin : callable, optional
-        Called with the name of every solve and search when it begins; `amount_of_work` says how
-        many there are.
+        Called with the name of every solve, floor and search when it begins; `amount_of_work` says
+        how many there are.
     seeds : int
         Seeds of the metaheuristics.
 
@@ -136,10 +159,13 @@ def reproduce(begin: Callable[[str], None] = lambda name: None, seeds: int = 1) 
     if seeds < 1:
         raise ValueError(f"seeds is {seeds}; give 1 or more")
     solved = _solve(begin)
+    floors = _floors(begin)
     fronts = _search(begin, seeds)
     rows: list[RowResult] = []
     for row in ROWS:
         key = (row.condition, row.terms)
+        own = PAPER_METHOD[row.condition.plant.name]
+        (other,) = (method for method in METHODS if method != own)
         rows.append(
             RowResult(
                 row,
@@ -147,14 +173,16 @@ def reproduce(begin: Callable[[str], None] = lambda name: None, seeds: int = 1) 
                 mended=_evaluated(MENDED, *key),
                 in_box=solved[*key, True],
                 free=solved[*key, False],
-                fronts=fronts[key],
+                fronts=fronts[own, *key],
+                other_fronts=fronts[other, *key],
                 residual_level=_residual_level(*key),
             )
         )
     return Reproduction(
         tuple(rows),
         cycloids={c: evaluate_coefficients(c.task, []) for c in STUDIED},
-        more_terms={key: plan for key, plan in solved.items() if key[0] in STUDIED},
+        more_terms=solved,
+        floors=floors,
     )
 
 
@@ -169,12 +197,19 @@ def _solve(begin: Callable[[str], None]) -> dict[tuple[Condition, int, bool], Pl
     return solved
 
 
+def _floors(begin: Callable[[str], None]) -> dict[Condition, Floor]:
+    floors: dict[Condition, Floor] = {}
+    for condition in CONDITIONS:
+        begin(f"floor: {condition.plant.name}, {condition.label}")
+        floors[condition] = energy_floor(condition.task)
+    return floors
+
+
 def _search(
     begin: Callable[[str], None], seeds: int
-) -> dict[tuple[Condition, int], tuple[Front, ...]]:
-    found: dict[tuple[Condition, int], tuple[Front, ...]] = {}
-    for condition, terms in search_keys():
-        method = PAPER_METHOD[condition.plant.name]
+) -> dict[tuple[str, Condition, int], tuple[Front, ...]]:
+    found: dict[tuple[str, Condition, int], tuple[Front, ...]] = {}
+    for method, (condition, terms) in product(METHODS, search_keys()):
         fronts: list[Front] = []
         for seed in range(seeds):
             begin(f"{method}: {_label(condition, terms)}, seed {seed}")
@@ -183,7 +218,7 @@ def _search(
             if not front.complete:
                 raise KeyboardInterrupt
             fronts.append(front)
-        found[condition, terms] = tuple(fronts)
+        found[method, condition, terms] = tuple(fronts)
     return found
 
 

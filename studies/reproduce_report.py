@@ -1,4 +1,4 @@
-"""What `quietarm reproduce` shows and writes: tables, claims, the paper's Figs 2 and 5."""
+"""What `quietarm reproduce` shows and writes: tables, the floor, claims, Figs 2 and 5."""
 
 from __future__ import annotations
 
@@ -16,6 +16,9 @@ from ocp import Plan
 from ocp.files import write_whole
 from studies.claims import Claim
 from studies.figures import Line, four_panels, save_figure
+from studies.floor_dots import floor_dots
+from studies.floor_table import LEGEND as FLOOR_LEGEND
+from studies.floor_table import finding, floor_table, floor_tables
 from studies.paper import ARM_HALF, SINGLE_LINK_SIXTH, Condition
 from studies.reproduce import Reproduction, RowResult
 from studies.tables import Cell, Column, Table
@@ -119,6 +122,10 @@ def show(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> N
     for table in tables(result):
         console.print(table.for_screen())
     console.print(LEGEND, highlight=False, style="dim")
+    for table in floor_tables(result):
+        console.print(table.for_screen())
+    console.print(FLOOR_LEGEND, highlight=False, style="dim")
+    console.print(f"\n{finding(result)}", highlight=False)
     console.print("\nWhat the paper claims", style="bold")
     for claim in verdicts:
         style = "green" if claim.holds else "red"
@@ -128,7 +135,7 @@ def show(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> N
 
 
 def write(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[Path]:
-    """Write report.md, a CSV for every table, and the figures; return what was written."""
+    """Write report.md, a CSV for every table, and the pictures; return what was written."""
     written: list[Path] = []
 
     def keep(name: str, content: str) -> None:
@@ -143,13 +150,21 @@ def write(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list
     paper_tables = tables(result)
     for number, table in zip(_TITLES, paper_tables, strict=True):
         keep(f"table_{number}.csv", table.csv())
-    keep("report.md", _markdown(paper_tables, verdicts))
+    save_figure(floor_dots(result), folder / "floor.png")
+    written.append(folder / "floor.png")
+    keep("floor.csv", floor_table(result).csv())
+    keep("report.md", _markdown(result, paper_tables, verdicts))
     return written
 
 
-def _markdown(paper_tables: Sequence[Table], verdicts: Sequence[Claim]) -> str:
+def _markdown(
+    result: Reproduction, paper_tables: Sequence[Table], verdicts: Sequence[Claim]
+) -> str:
     parts = ["# The paper, recomputed\n", LEGEND + "\n"]
     parts += [table.markdown() for table in paper_tables]
+    parts += ["## How far from the floor\n", finding(result) + "\n", FLOOR_LEGEND + "\n"]
+    parts += [table.markdown() for table in floor_tables(result)]
+    parts.append("![Multiples of the floor](floor.png)\n")
     parts.append("## What the paper claims\n")
     for claim in verdicts:
         evidence = "\n".join(f"- {line}" for line in claim.evidence)

@@ -81,8 +81,12 @@ def test_every_problem_is_solved_once_and_announced(reproduction, begun):
     gradient = [name for name in begun if "gradient" in name]
     assert len(gradient) == len(solve_keys())
     assert sum("in the box" in name for name in gradient) == len(gradient) / 2
-    assert len(begun) - len(gradient) == len(search_keys()) == 2 * 3 + 4  # Tables 2 and 5; 3 and 6
-    assert len(reproduction.more_terms) == 2 * 5 * 2  # conditions, N = 2 to 10, with and without
+    assert len(search_keys()) == 2 * 3 + 4  # Tables 2 and 5; 3 and 6
+    assert sum(name.startswith("floor: ") for name in begun) == 6  # conditions
+    for method in ("vepso", "nsga2"):
+        assert sum(name.startswith(f"{method}: ") for name in begun) == len(search_keys())
+    assert len(begun) - len(gradient) == 6 + 2 * len(search_keys())
+    assert len(reproduction.more_terms) == 6 * 5 * 2  # conditions, N = 2 to 10, with and without
 
 
 def test_printed_coefficients_are_evaluated_where_there_are_any(reproduction):
@@ -399,7 +403,7 @@ def test_the_report_says_what_it_wrote_and_writes_nothing_else(report):
     folder, written = report
     assert sorted(written) == sorted(folder.iterdir())
     assert sorted(path.name for path in written) == [
-        "figure_2.png", "figure_5.png", "report.md",
+        "figure_2.png", "figure_5.png", "floor.csv", "floor.png", "report.md",
         "table_2.csv", "table_3.csv", "table_5.csv", "table_6.csv",
     ]  # fmt: skip
 
@@ -458,7 +462,7 @@ def test_markdown_holds_the_claims_with_verdict_and_evidence(reproduction, repor
 def test_markdown_shows_pictures_that_are_there(report):
     folder, _ = report
     pictures = re.findall(r"!\[.*?\]\((.*?)\)", (folder / "report.md").read_text())
-    assert pictures == ["figure_2.png", "figure_5.png"]
+    assert pictures == ["floor.png", "figure_2.png", "figure_5.png"]
     for name in pictures:
         assert (folder / name).read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
 
