@@ -40,6 +40,7 @@ Dash = str | tuple[int, tuple[int, ...]]
 class _Look:
     colour: str
     dash: Dash
+    width: float
 
 
 def looks(comparison: Comparison) -> dict[str, _Look]:
@@ -54,7 +55,8 @@ def looks(comparison: Comparison) -> dict[str, _Look]:
             colour = next((c for c in _SPARE if c not in taken), None) or next(spare)
         dash = _DASHES.get(method, "-") if colour not in taken else ":"
         taken.add(colour)
-        found[group.label] = _Look(colour, dash)
+        below = len(comparison.groups) - len(found) - 1  # wider, to be seen below those after it
+        found[group.label] = _Look(colour, dash, 1.2 + 0.45 * below)
     return found
 
 
@@ -149,7 +151,7 @@ def draw_gaps(axis: Axes, comparison: Comparison, paper: Sequence[PaperPoint] = 
         gap = 100 * (energies / within(comparison.best_front, residuals) - 1)
         axis.plot(
             np.maximum(residuals, _left(comparison)) * 1e3, gap, ".", color=look.colour,
-            markersize=5, markeredgewidth=0, label=group.label,
+            markersize=3.5 + 1.2 * look.width, markeredgewidth=0, label=group.label,
         )  # fmt: skip
     axis.set_yscale("symlog", linthresh=0.1, linscale=0.5)
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -180,7 +182,7 @@ def _draw_fronts(
                 stairs * 1e3, best, worst, step="post", color=look.colour, alpha=0.2, linewidth=0
             )
         axis.plot(
-            stairs * 1e3, median, color=look.colour, linestyle=look.dash, linewidth=1.4,
+            stairs * 1e3, median, color=look.colour, linestyle=look.dash, linewidth=look.width,
             drawstyle="steps-post", label=group.label,
         )  # fmt: skip
     marks = cycle("*Pv")

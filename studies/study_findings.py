@@ -84,7 +84,7 @@ def _search(found: CaseStudy, method: str) -> str:
         if reached:
             words.append(f"{percent(gap(comparison, method, i))} at {millimetres(level)}{short}")
         else:
-            words.append(f"it does not reach {millimetres(level)}")
+            words.append(f"{millimetres(level)} not reached")
     return (
         f"{name} needs this much more energy than the best, motions between its points counted: "
         f"{', '.join(words)}."
@@ -110,8 +110,8 @@ def _polish(found: CaseStudy, method: str) -> str:
     better = sum(share > _ALIKE for share in shares)
     return (
         f"Polished by the gradient, each at its own residual, {better} of the {len(shares)} points "
-        f"of {method_name(method)}'s first front save energy: half of all at least "
-        f"{percent(float(np.median(shares)))}, the best {percent(max(shares))}."
+        f"of {method_name(method)}'s first front save energy: the median of all "
+        f"{percent(float(np.median(shares)))}, the most {percent(max(shares))}."
     )
 
 
@@ -119,6 +119,13 @@ def _paper(found: CaseStudy) -> str:
     words: list[str] = []
     for point in found.paper:
         if point.residual is None:
+            rest = at_rest(found)
+            if isfinite(rest):
+                words.append(
+                    f"The paper prints {point.energy:.3g} J for N = {point.terms}, of unknown "
+                    f"residual: {percent(point.energy / rest - 1)} more than the best found here "
+                    "at rest on arrival."
+                )
             continue
         (best,) = within(found.comparison.best_front, [point.residual])
         words.append(
