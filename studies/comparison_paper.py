@@ -6,6 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from ocp import PointToPoint, evaluate_coefficients
+from ocp.task import LIMITS
 from studies.comparison_groups import task_difference
 from studies.paper import COEFFICIENTS, MENDED, ROWS, Condition
 
@@ -77,6 +78,9 @@ def title_of(task: PointToPoint) -> str:
     condition = condition_of(task)
     if condition is not None:
         return f"{task.plant.name}, {condition.label}"
-    limits = "".join(f", {name} within {value:g}" for name, value in task.limits.items())
+    limits = "".join(
+        f", {name} within {value:g} {LIMITS[f'{name}_limit']}"
+        for name, value in task.limits.items()
+    )
     move = f"{task.start:.4g} to {task.target:.4g} rad, {task.duration:g} s"
     return f"{task.plant.name}, {move}{limits}"

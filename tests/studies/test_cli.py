@@ -18,8 +18,10 @@ import pytest
 
 import studies.commands.evaluate
 import studies.commands.plan
+import studies.comparison_report
 import studies.reproduce
 import studies.searching
+import studies.study
 from models import __version__
 from ocp import InfeasibleTaskError, Plan
 from studies.paper import ROWS
@@ -242,7 +244,9 @@ def examples(text):
     return [line.strip() for line in lines if line.strip().startswith("quietarm ")]
 
 
-@pytest.mark.parametrize("command", ["", "plan", "evaluate", "front", "reproduce"])
+@pytest.mark.parametrize(
+    "command", ["", "plan", "evaluate", "front", "compare", "study", "reproduce"]
+)
 @pytest.mark.parametrize("flag", ["-h", "--help"])
 def test_help_shows_examples(call, command, flag):
     code, out, err = call(f"{command} {flag}")
@@ -275,7 +279,9 @@ def test_the_installed_command_says_its_version(launcher):
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, f"quietarm, version {__version__}\n", "")
 
 
-@pytest.mark.parametrize("command", ["", "plan", "evaluate", "front", "reproduce"])
+@pytest.mark.parametrize(
+    "command", ["", "plan", "evaluate", "front", "compare", "study", "reproduce"]
+)
 def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, folder, command):
     _, out, _ = call(f"{command} --help")
     reached = []
@@ -288,6 +294,8 @@ def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, fold
     monkeypatch.setattr(studies.commands.evaluate, "evaluate_coefficients", note)
     monkeypatch.setattr(studies.searching, "search", note)
     monkeypatch.setattr(studies.searching, "search_many", note)
+    monkeypatch.setattr(studies.comparison_report, "load_fronts", note)
+    monkeypatch.setattr(studies.study, "study", note)
     monkeypatch.setattr(studies.reproduce, "reproduce", note)
     shown = examples(out)
     assert shown

@@ -1,6 +1,7 @@
 """`quietarm compare`: what it shows, what it writes, what it refuses, and its picture."""
 
 import csv
+import dataclasses
 import math
 import re
 from functools import partial
@@ -14,7 +15,7 @@ import studies.comparison_report
 from models import ArmOnFlexibleLink
 from ocp import PointToPoint, SolverFailedError
 from studies.comparison_figure import BANDS, PANELS, comparison_figure, looks, panel_figure
-from studies.comparison_paper import condition_of, paper_points
+from studies.comparison_paper import condition_of, paper_points, title_of
 from studies.comparison_report import FILES, write
 from studies.comparison_tables import runs_table, tables
 from studies.paper import ARM_HALF, SINGLE_LINK_HALF_1_0
@@ -134,6 +135,12 @@ def test_where_the_paper_prints_no_coefficients_its_energy_is_known(task):
     assert paper_points(SINGLE_LINK_HALF_1_0.task, {3}) == []
     assert paper_points(PointToPoint(ArmOnFlexibleLink(), 1.0, 1.0), {6}) == []
     assert condition_of(task).label == "0 to pi/6, 0.8 s"
+
+
+def test_a_task_is_named_with_its_limits(task):
+    assert title_of(task) == "single-link, 0 to pi/6, 0.8 s"
+    limited = dataclasses.replace(task, torque_limit=0.2, duration=1.5)
+    assert title_of(limited) == "single-link, 0 to 0.5236 rad, 1.5 s, torque within 0.2 N m"
 
 
 def test_every_group_has_a_look_of_its_own(front_of):
