@@ -20,6 +20,9 @@ from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 from ocp.verification import STILL
 
+_DOUBT = 1e-4
+"""Share of the energy by which sweeps must differ for random starts to join; below it lies the
+error of the fixed steps, and the better of the two is taken."""
 _SCOUTS = 12
 """Steps along the front, about, that tell how its points are to be spaced."""
 
@@ -161,7 +164,7 @@ class _Stretch:
             found = self._try(i, below)
             below = found if found.status.solved else below
             report(len(order) - (i + 1) // 2)
-            if before is None or better(before, found) or better(found, before):
+            if before is None or _differ(before, found):
                 doubtful.add(i)
         for i in sorted(doubtful):
             for guess in self.sweep.guesses:
@@ -199,6 +202,13 @@ class _Stretch:
             else:
                 found.append(FailedPoint(asked, best.status.text))
         return found
+
+
+def _differ(one: Solution, other: Solution) -> bool:
+    """Whether two solutions at one limit are told apart by more than the steps' own error."""
+    if not (one.status.solved and other.status.solved):
+        return True
+    return abs(one.energy - other.energy) > _DOUBT * one.energy
 
 
 _StretchResult = tuple[list[FrontPoint | FailedPoint], int, bool]
