@@ -12,7 +12,13 @@ import click
 from models import Plant, known_plants
 from ocp.files import check_writable
 from studies.picture_names import check_figure
-from studies.quantities import parse_angle, parse_coefficients, parse_length, parse_time
+from studies.quantities import (
+    parse_angle,
+    parse_coefficients,
+    parse_length,
+    parse_time,
+    parse_weights,
+)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -64,6 +70,7 @@ ANGLE = Parsed("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
 COEFFICIENTS = Parsed("numbers", parse_coefficients)
+WEIGHTS = Parsed("weights", parse_weights)
 OUTPUT = Parsed("file", _is_output)
 PICTURE = Parsed("picture", check_figure)
 FOLDER = Parsed("folder", _is_folder)

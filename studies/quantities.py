@@ -67,6 +67,18 @@ def parse_coefficients(text: str) -> list[float]:
     return values
 
 
+def parse_weights(text: str) -> tuple[float, float]:
+    """Read a pair of weights, of residual and energy: ``1:3``. ValueError when it is none."""
+    parts = text.split(":")
+    try:
+        of_residual, of_energy = (float(part) for part in parts)
+    except ValueError:
+        raise ValueError(
+            f"{text!r} is no pair of weights; give those of residual and energy as in 1:3"
+        ) from None
+    return of_residual, of_energy
+
+
 def _with_unit(text: str, units: dict[str, float], kind: str, examples: str) -> float:
     match = _PLAIN.fullmatch(text.strip())
     if match and match.group(2) in units:

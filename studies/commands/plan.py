@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import click
-from click.core import ParameterSource
 from rich.console import Console
 
 from ocp import CycloidPolynomial, plan_move
-from studies.commands.shared import split_options, write_plan
+from studies.commands.shared import refuse_idle, split_options, write_plan
 from studies.options import LENGTH, output_options, task_options
 
 
@@ -56,9 +55,7 @@ def plan(
     from studies.show import show_plan
 
     task, outputs = split_options(rest)
-    given = context.get_parameter_source("starts") is not ParameterSource.DEFAULT
-    if method != "ipopt" and given:
-        raise ValueError(f"--starts is for ipopt, not for {method}; leave it out")
+    refuse_idle(context, method, {"starts": ["ipopt"]})
     if method == "ipopt" and polish:
         raise ValueError("--polish is for a metaheuristic's point; give --method nsga2 or vepso")
     profile = CycloidPolynomial(terms)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import click
+from click.core import ParameterSource
 from rich.console import Console
 
 from models import Plant
@@ -53,3 +55,23 @@ def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
     for name, path in files:
         if path is not None and names.setdefault(path.resolve(), name) != name:
             raise ValueError(f"{names[path.resolve()]} and {name} are both {path}; give two files")
+
+
+def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequence[str]]) -> None:
+    """Make sure that no option was typed that does nothing here; ValueError says for what it is.
+
+    Parameters
+    ----------
+    context : click.Context
+        The command's, which knows what was typed.
+    method : str
+        What was chosen.
+    only_for : mapping of str to sequence of str
+        For each such option the choices for which it does something.
+    """
+    for name, methods in only_for.items():
+        typed = context.get_parameter_source(name) is not ParameterSource.DEFAULT
+        if typed and method not in methods:
+            *some, last = methods
+            known = f"{', '.join(some)} and {last}" if some else last
+            raise ValueError(f"--{name} is for {known}, not for {method}; leave it out")

@@ -22,6 +22,7 @@ import studies.comparison_report
 import studies.reproduce
 import studies.searching
 import studies.study
+import studies.sweeping
 from models import __version__
 from ocp import InfeasibleTaskError, Plan
 from studies.paper import ROWS
@@ -296,6 +297,7 @@ def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, fold
     monkeypatch.setattr(studies.searching, "search_many", note)
     monkeypatch.setattr(studies.comparison_report, "load_fronts", note)
     monkeypatch.setattr(studies.study, "study", note)
+    monkeypatch.setattr(studies.sweeping, "METHODS", {"epsilon": note, "weighted": note})
     monkeypatch.setattr(studies.reproduce, "reproduce", note)
     shown = examples(out)
     assert shown

@@ -6,7 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from studies.quantities import parse_angle, parse_coefficients, parse_length, parse_time
+from studies.quantities import (
+    parse_angle,
+    parse_coefficients,
+    parse_length,
+    parse_time,
+    parse_weights,
+)
 
 WHOLE = st.integers(0, 100_000)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
@@ -159,3 +165,11 @@ def test_a_bad_coefficient_is_named_with_its_place(text, position, entry):
     with pytest.raises(ValueError, match="give finite numbers separated by commas") as refused:
         parse_coefficients(text)
     assert str(refused.value).startswith(f"coefficient {position} is {entry!r}; ")
+
+
+def test_weights_are_a_pair():
+    assert parse_weights("1:3") == (1.0, 3.0)
+    assert parse_weights(" 0.5 : 2e1") == (0.5, 20.0)
+    for text in ("", "1", "1:2:3", "1:", "a:b", "1/3"):
+        with pytest.raises(ValueError, match="is no pair of weights; give those of residual"):
+            parse_weights(text)

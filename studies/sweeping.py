@@ -1,0 +1,100 @@
+"""What the commands do with the gradient's fronts: one swept, or one polished."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from ocp import (
+    CycloidPolynomial,
+    Front,
+    PointToPoint,
+    QuietarmError,
+    SolverFailedError,
+    epsilon_front,
+    weighted_front,
+)
+from studies.commands.shared import refuse_same_file
+from studies.progress import count
+from studies.sweep_report import failure_lines, show_sweep
+
+METHODS = {"epsilon": epsilon_front, "weighted": weighted_front}
+
+
+def run_sweep(
+    task: PointToPoint,
+    options: dict[str, Any],
+    output: Path | None,
+    figure: Path | None,
+    quiet: bool,
+) -> Iterator[Path]:
+    """Sweep the front by the gradient, show what was found, and write it.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    options : dict
+        ``method`` and its settings, with ``terms`` for the profile.
+    output : Path or None
+        File for the front.
+    figure : Path or None
+        File for the picture.
+    quiet : bool
+        Show no progress.
+
+    Yields
+    ------
+    Path
+        Every file, once it is written.
+
+    Raises
+    ------
+    QuietarmError
+        When it was interrupted, after what was found is written; when nothing was found.
+    """
+    refuse_same_file([("--output", output), ("--figure", figure)])
+    front = _swept(task, dict(options), quiet)
+    if not front.points:
+        reasons = (line.strip() for line in failure_lines(front)[1:])
+        raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
+    show_sweep(Console(), front)
+    if output is not None:
+        front.save(output)
+        yield output
+    if figure is not None:
+        from studies.figures import save_figure
+        from studies.sweep_figure import sweep_figure
+
+        save_figure(sweep_figure(front), figure)
+        yield figure
+    raise_if_interrupted(front)
+
+
+def _swept(task: PointToPoint, options: dict[str, Any], quiet: bool) -> Front:
+    method, errors = options.pop("method"), Console(stderr=True)
+    options["profile"] = CycloidPolynomial(options.pop("terms"))
+    weights = options.pop("weights", ())
+    if weights:
+        options["weights"] = weights
+    warn_of_workers(errors, options.get("workers", 1))
+    total = len(weights) or options["points"]
+    with count(total, "weights" if weights else "points", errors, quiet=quiet) as report:
+        return METHODS[method](task, report=report, **options)
+
+
+def warn_of_workers(console: Console, workers: int) -> None:
+    """Say where there are more workers than cores."""
+    cores = os.cpu_count() or 1
+    if workers > cores:
+        console.print(f"{workers} workers on {cores} cores: they will share them", highlight=False)
+
+
+def raise_if_interrupted(front: Front) -> None:
+    """End with the status of an interruption where the front is not whole."""
+    if not front.complete:
+        raise QuietarmError("interrupted; what was found until then is kept")
