@@ -87,7 +87,7 @@ def epsilon_front(
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = sweep.ends()
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
-    found.append(sweep.checked(ends.cheapest, {RESIDUAL_LIMIT: np.inf}))
+    found.append(sweep.checked(ends.cheapest, {RESIDUAL_LIMIT: ends.cheapest.peaks[RESIDUAL]}))
     report(2, points)
     iterations, complete = 0, True
     try:

@@ -150,7 +150,11 @@ class Sweep:
         if still is None:
             least = least_peaks(self.program, self.profile, free, bound, self.guesses)
             if RESIDUAL not in least:
-                return Ends(cheapest, self.checked(cheapest, {RESIDUAL_LIMIT: np.inf}), cheapest)
+                return Ends(
+                    cheapest,
+                    self.checked(cheapest, {RESIDUAL_LIMIT: cheapest.peaks[RESIDUAL]}),
+                    cheapest,
+                )
             limit = least[RESIDUAL].peaks[RESIDUAL] * (1 + _SAMPLING)
             found = self.solve(least[RESIDUAL].coefficients, limit)
             found = found if found.status.solved else least[RESIDUAL]

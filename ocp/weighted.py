@@ -174,7 +174,10 @@ class _Sums:
     def checked(self) -> list[FrontPoint | FailedPoint]:
         """Every point by the independent integrator, and what failed."""
         one = self.ends.cheapest
-        points = [self.sweep.checked(one, {RESIDUAL_LIMIT: np.inf}), self.ends.still_point]
+        points = [
+            self.sweep.checked(one, {RESIDUAL_LIMIT: one.peaks[RESIDUAL]}),
+            self.ends.still_point,
+        ]
         points += [
             self.sweep.checked(found, {RESIDUAL_LIMIT: _residual(found)}) for found in self.found
         ]
