@@ -13,8 +13,9 @@ from ocp.floor import energy_floor
 from studies.comparison import Comparison
 from studies.comparison_figure import comparison_figure
 from studies.comparison_paper import paper_points, title_of
-from studies.comparison_tables import how_to_read, runs_table, tables
+from studies.comparison_tables import how_to_read, runs_table, tables, units
 from studies.figures import save_figure
+from studies.tables import print_table
 
 FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
 """What `write` writes to a folder."""
@@ -45,8 +46,8 @@ def show(console: Console, comparison: Comparison) -> None:
     """Print the tables and how to read them."""
     console.print(title_of(comparison.task), style="bold", highlight=False)
     for table in tables(comparison).values():
-        console.print(table.for_screen())
-    for line in how_to_read(comparison):
+        print_table(console, table)
+    for line in (*how_to_read(comparison), *units(comparison)):
         console.print(f"- {line}", highlight=False, style="dim")
 
 
@@ -57,8 +58,9 @@ def write(folder: Path, comparison: Comparison) -> list[Path]:
     shown = tables(comparison)
     title = title_of(comparison.task)
     paper = paper_points(comparison.task, terms_of(comparison))
+    lines = (*how_to_read(comparison), *units(comparison))
     parts = [f"# Fronts compared: {title}\n", *(table.markdown() for table in shown.values())]
-    parts += ["**How to read it**\n", *(f"- {line}" for line in how_to_read(comparison))]
+    parts += ["**How to read it**\n", *(f"- {line}" for line in lines)]
     save_figure(comparison_figure(comparison, paper, title), picture)
     write_whole(runs, runs_table(comparison).csv())
     write_whole(coverage, shown["coverage"].csv())

@@ -11,7 +11,6 @@ from studies.tables import Cell, Column, Table
 
 _ENERGY, _SHARE, _PERCENT = "{:.5g}".format, "{:.4f}".format, "{:.2f}".format
 _MISS = "{:.2g}".format
-_QUARTILES = "  quartiles over seeds"
 
 
 def tables(comparison: Comparison) -> dict[str, Table]:
@@ -26,18 +25,18 @@ def tables(comparison: Comparison) -> dict[str, Table]:
 def _fronts(comparison: Comparison) -> Table:
     columns = (
         Column("method"),
-        Column("bound on the coefficients", "{:g}".format),
+        Column("bound on coefficients", "{:g}".format),
         Column("coefficients"),
         Column("seeds"),
         Column("points", "{:.0f}".format),
-        Column("hypervolume (large is good)", _SHARE),
-        Column(_QUARTILES),
+        Column("hypervolume (more is better)", _SHARE),
+        *_quartile_columns(_SHARE),
         Column("  as found", _SHARE),
-        Column("IGD+ (small is good)", _MISS),
-        Column(_QUARTILES),
-        Column("additive epsilon (small is good)", _MISS),
-        Column(_QUARTILES),
-        Column("candidates, or iterations of the gradient", "{:.0f}".format),
+        Column("IGD+ (less is better)", _MISS),
+        *_quartile_columns(_MISS),
+        Column("epsilon (less is better)", _MISS),
+        *_quartile_columns(_MISS),
+        Column("candidates, or solver iterations", "{:.0f}".format),
         Column("time of a run [s]", "{:.1f}".format),
     )
     rows: list[list[Cell]] = []
@@ -47,9 +46,8 @@ def _fronts(comparison: Comparison) -> Table:
         bound, several = front.settings.get("bound"), len(group.runs) > 1
         row: list[Cell] = [group.label, "none" if bound is None else bound, front.profile.size]
         row += [len(group.runs) if several else None, _points(group)]
-        for figure, show in (("hypervolume", _SHARE), ("igd_plus", _MISS), ("epsilon", _MISS)):
-            spread = group.spread(figure)
-            row += [spread.median, _quartiles(spread, show) if several else None]
+        for figure in ("hypervolume", "igd_plus", "epsilon"):
+            row += _quartiles(group.spread(figure), several)
             if figure == "hypervolume":
                 row.append(group.spread("hypervolume_found").median if filling else None)
         row += [group.spread(figure).median for figure in ("evaluations", "seconds")]
@@ -67,7 +65,7 @@ def _energies(comparison: Comparison) -> Table:
         where = f"at {millimetres(level)}"
         columns += [
             Column(f"energy {where} [J]", _ENERGY),
-            Column(_QUARTILES),
+            *_quartile_columns(_ENERGY),
             Column(f"  above the best {where} [%]", _PERCENT),
             Column("  with motions between its points", _PERCENT),
             Column("  seeds that reach it"),
@@ -84,12 +82,11 @@ def _energies(comparison: Comparison) -> Table:
 def _at_level(group: Group, level: int, filling: bool) -> list[Cell]:
     reached, runs = group.reached(level), len(group.runs)
     if not reached:
-        return ["not reached", None, None, None, None]
+        return ["not reached", None, None, None, None, None]
     energy = group.spread("energies", level)
     gap = 100 * group.spread("gaps", level).median
     return [
-        energy.median,
-        _quartiles(energy, _ENERGY) if reached > 1 else None,
+        *_quartiles(energy, reached > 1),
         gap,
         100 * group.spread("gaps_between", level).median if filling else None,
         f"{reached} of {runs}" if reached < runs else None,
@@ -99,8 +96,8 @@ def _at_level(group: Group, level: int, filling: bool) -> list[Cell]:
 def _coverage(comparison: Comparison) -> Table:
     labels = [group.label for group in comparison.groups]
     columns = [
-        Column("share [%] of the points of"),
-        *(Column(f"beaten or equalled by {label}", "{:.0f}".format) for label in labels),
+        Column("points beaten or equalled [%]"),
+        *(Column(f"  by {label}", "{:.0f}".format) for label in labels),
     ]
     rows: list[list[Cell]] = [
         [label, *(100 * share if isfinite(share) else None for share in shares)]
@@ -132,32 +129,42 @@ def runs_table(comparison: Comparison) -> Table:
 
 
 def how_to_read(comparison: Comparison) -> list[str]:
-    """What the figures mean, a sentence or two each."""
-    (residual, energy), (length, joules) = comparison.corner, comparison.extent
+    """What the figures of any comparison mean, a sentence or two each."""
     lines = [
         "A front is a staircase: within a residual only those motions count that were found with "
         "that residual or less."
-        + (
+    ]
+    if comparison.fill:
+        lines[0] += (
             " A front of few points would lose by its steps alone. So fronts are filled, all "
             "alike: motions with coefficients between those of neighbours are evaluated, until "
             f"there are about {comparison.fill}. Indicators, and the best that energies are "
             "measured against, are those of filled fronts."
-            if comparison.fill
-            else " Motions between them do not count: fronts of few points lose by their steps."
-        ),
-        f"Hypervolume: share of the box up to {millimetres(residual)} and {energy:.4g} J, the same "
-        "for all, that a front dominates.",
-        f"IGD+ and additive epsilon are against {comparison.reference}, thinned to even distances. "
-        f"Both objectives weigh alike: 1 is the extent of that front, {millimetres(length)} or "
-        f"{joules:.4g} J. IGD+ is the mean distance by which a front misses it, epsilon the least "
-        "shift in both objectives that makes up for the worst miss.",
-        "Coverage: share of the points found that the other front, filled, dominates or equals.",
-    ]
+        )
+    else:
+        lines[0] += " Motions between them do not count: fronts of few points lose by their steps."
+    lines.append(
+        "Coverage: share of the points found that the other front, filled, dominates or equals."
+    )
     if any(len(group.runs) > 1 for group in comparison.groups):
         lines.append("Of several seeds the median is shown, over those that reach the residual.")
+    return lines
+
+
+def units(comparison: Comparison) -> list[str]:
+    """What this comparison's figures are measured in and against, a sentence or two each."""
+    (residual, energy), (length, joules) = comparison.corner, comparison.extent
+    lines = [
+        f"Hypervolume: share of the box up to {millimetres(residual)} and {energy:.4g} J, the same "
+        "for all, that a front dominates.",
+        f"IGD+ and (additive) epsilon are against {comparison.reference}, thinned to even "
+        "distances. Both objectives weigh alike: 1 is the extent of that front, "
+        f"{millimetres(length)} or {joules:.4g} J. IGD+ is the mean distance by which a front "
+        "misses it, epsilon the least shift in both objectives that makes up for the worst miss.",
+    ]
     if comparison.floor is not None:
         lines.append(
-            f"Floor: the least energy found over all joint motions that arrive at rest, not of "
+            "Floor: the least energy found over all joint motions that arrive at rest, not of "
             f"polynomials only, is {comparison.floor:.4g} J. A front may go below it where it "
             "leaves a residual."
         )
@@ -169,5 +176,10 @@ def millimetres(length: float) -> str:
     return f"{length * 1e3:.3g} mm"
 
 
-def _quartiles(spread: Spread, show: Callable[[float], str]) -> str:
-    return f"{show(spread.lower)} to {show(spread.upper)}"
+def _quartile_columns(show: Callable[[float], str]) -> tuple[Column, Column]:
+    return Column("  lower quartile of the seeds", show), Column("  upper quartile", show)
+
+
+def _quartiles(spread: Spread, several: bool) -> list[Cell]:
+    """The median, and the quartiles where there are several seeds."""
+    return [spread.median, *([spread.lower, spread.upper] if several else [None, None])]

@@ -8,11 +8,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from ocp.documents import versions
 from studies.comparison_figure import BANDS, PANELS, looks, panel_figure
 from studies.comparison_groups import method_name
 from studies.comparison_paper import title_of
-from studies.comparison_tables import how_to_read, millimetres, tables
+from studies.comparison_tables import how_to_read, millimetres, tables, units
 from studies.html_page import Markup, bullets, element, joined, page, picture, table_element
 from studies.study import CaseStudy, Study
 from studies.study_findings import STILL_LEVEL, at_rest, case_findings, findings, gap
@@ -69,8 +68,8 @@ def _findings(lines: list[str]) -> Markup:
 def _overview(study: Study) -> Markup:
     level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
     words = (
-        f"Energy above the best of all fronts at {level}, a row a task and a mark a method; bars: "
-        "quartiles over the seeds."
+        f"Energy above the best of all fronts at {level}, motions between points counted: a row a "
+        "task and a mark a method. Bars: quartiles over the seeds."
     )
     overview = picture(gap_figure(study), words, words)
     return joined(
@@ -103,32 +102,26 @@ def _section(found: CaseStudy, name: str) -> Markup:
         _findings(case_findings(found)),
         element("div", *pictures, class_="pictures"),
         *(table_element(shown[table]) for table in ("energies", "fronts", "coverage")),
-        element("p", *_boxes(found), class_="soft"),
+        element("p", " ".join(units(found.comparison)), class_="soft"),
         id=name,
     )
 
 
-def _boxes(found: CaseStudy) -> list[str]:
-    lines = how_to_read(found.comparison)
-    return [" ".join(line for line in lines if line.startswith(("Hypervolume", "IGD+", "Floor")))]
-
-
 def _reading(study: Study) -> Markup:
     settings = study.settings
+    fronts = [run.front for found in study.cases for run in found.comparison.runs]
+    versions = {name: version for front in fronts for name, version in front.versions.items()}
     asked = (
         f"Fronts of {settings.points} points by gradient, {settings.runs} seeds from "
-        f"{settings.seed}, polynomials of {settings.terms} terms; "
-        f"{study.seconds:.0f} s in all. "
+        f"{settings.seed}, polynomials of {settings.terms} terms; {study.seconds:.0f} s in all. "
+        f"Computed with {', '.join(f'{name} {version}' for name, version in versions.items())}."
     )
-    found = ", ".join(f"{name} {version}" for name, version in versions().items())
-    lines = [line for line in how_to_read(study.cases[0].comparison)
-             if not line.startswith(("Hypervolume", "IGD+", "Floor"))]  # fmt: skip
     return element(
         "section",
         element("h2", "Methods, and how to read it"),
         bullets(_METHODS),
-        bullets(lines),
-        element("p", f"{asked}Computed with {found}.", class_="soft"),
+        bullets(how_to_read(study.cases[0].comparison)),
+        element("p", asked, class_="soft"),
     )
 
 
@@ -148,7 +141,11 @@ def overview_table(study: Study) -> Table:
     ratios = [at_rest(found) / floor for found, floor in zip(study.cases, floors, strict=True)]
     rows.append([f"best at {level}", *best])
     rows.append(["best at rest, times the floor", *(r if isfinite(r) else None for r in ratios)])
-    return Table(f"Energy above the best at {level} [%], median of the seeds", columns, rows)
+    return Table(
+        f"Energy above the best at {level} [%], motions between points counted",
+        columns,
+        rows,
+    )
 
 
 def _methods(study: Study) -> list[str]:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rich import box
+from rich.console import Console
 from rich.table import Table as ScreenTable
 from rich.text import Text
 
 Cell = str | int | float | None
+_WIDEST = 10_000
 
 
 @dataclass(frozen=True)
@@ -41,13 +43,15 @@ class Table:
     columns: Sequence[Column]
     rows: Sequence[Sequence[Cell]]
 
-    def for_screen(self) -> ScreenTable:
-        """The table for rich's console."""
+    def for_screen(self, *, narrow: bool = False) -> ScreenTable:
+        """The table for rich's console; a narrow one breaks headings between all words."""
         table = ScreenTable(title=self.title, title_justify="left", box=box.SIMPLE_HEAD)
         heading, *lines = self.upright()
         table.add_column(Text(heading[0]), no_wrap=True)
-        for name in heading[1:]:
-            table.add_column(Text(name), justify="right")
+        for i, name in enumerate(heading[1:], start=1):
+            words = [word for line in (heading, *lines) for word in line[i].split()]
+            width = max(map(len, words), default=1) if narrow else None
+            table.add_column(Text(name), justify="right", width=width)
         for line in lines:
             table.add_row(*(Text(cell) for cell in line))  # Text: a unit in brackets is no markup
         return table
@@ -74,6 +78,31 @@ class Table:
             for i, column in enumerate(self.columns)
             if any(row[i] is not None for row in self.rows)
         ]
+
+
+def print_table(console: Console, table: Table) -> None:
+    """Print a table, in pieces below each other where the console is too narrow for it.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    table : Table
+        The table; no word of it is cut as long as one row and the headings fit.
+    """
+    wide = console.options.update(max_width=_WIDEST)
+    if console.measure(table.for_screen(), options=wide).maximum <= console.width:
+        console.print(table.for_screen())
+        return
+    rows = list(table.rows)
+    while rows:
+        count = len(rows)
+        piece = replace(table, rows=rows).for_screen(narrow=True)
+        while console.measure(piece, options=wide).maximum > console.width and count > 1:
+            count -= 1
+            piece = replace(table, rows=rows[:count]).for_screen(narrow=True)
+        console.print(piece)
+        rows = rows[count:]
 
 
 def _line(cells: Sequence[str]) -> str:

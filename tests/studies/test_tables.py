@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from studies.tables import Column, Table
+from studies.tables import Column, Table, print_table
 
 TABLE = Table(
     "Two moves",
@@ -104,3 +104,17 @@ def test_a_unit_in_brackets_is_no_markup():
 
 def test_a_table_without_rows_still_names_its_columns():
     assert Table("none", TABLE.columns, []).csv() == "move,terms N,F2 [J],time [s]\n"
+
+
+@pytest.mark.parametrize("width", [60, 80, 200])
+def test_a_table_too_wide_for_the_screen_stands_in_pieces(width):
+    """No figure is cut, and every row stands once."""
+    rows = [[f"method {i}", 0.123456 + i, f"{i}.00001"] for i in range(8)]
+    table = Table("Wide", [Column("method"), Column("energy within 1 mm [J]"), Column("c")], rows)
+    console = Console(file=io.StringIO(), width=width)
+    print_table(console, table)
+    text = console.file.getvalue()
+    assert "\u2026" not in text
+    assert [text.count(f"{i}.00001") for i in range(8)] == [1] * 8
+    assert max(len(line.rstrip()) for line in text.splitlines()) <= width
+    assert text.count("Wide") == {60: 3, 80: 2, 200: 1}[width]
