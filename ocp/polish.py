@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ocp.checks import finite
 from ocp.front import FailedPoint, Front, FrontPoint
 from ocp.plan import SolveSettings
 from ocp.sweep import RESIDUAL_LIMIT, Report, Sweep, no_report
@@ -22,11 +23,14 @@ class Gain:
         Residual of the point, which the improved one keeps [m].
     before, after : float
         Energy [J]; the same where nothing better was found.
+    tried : bool
+        False where Ctrl-C came before.
     """
 
     residual: float
     before: float
     after: float
+    tried: bool = True
 
     @property
     def share(self) -> float:
@@ -77,7 +81,10 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     front.stillest()  # refuses an empty front
     bound = front.settings.get("bound")
     settings = SolveSettings(
-        bound=None if bound is None else float(bound), starts=1, seed=front.seed or 0, steps=steps
+        bound=None if bound is None else finite("bound", bound),
+        starts=1,
+        seed=front.seed or 0,
+        steps=steps,
     )
     sweep = Sweep(front.task, front.profile, settings)
     found: list[FrontPoint | FailedPoint] = []
@@ -90,7 +97,7 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     except KeyboardInterrupt:
         complete = False
     left = front.points[len(gains) :]
-    gains += [Gain(point.residual, point.energy, point.energy) for point in left]
+    gains += [Gain(point.residual, point.energy, point.energy, tried=False) for point in left]
     polished = sweep.front(
         f"{front.method}, polished", [*found, *left], len(front.points),
         iterations=front.evaluations, complete=complete, seconds=front.seconds,

@@ -17,6 +17,7 @@ COMMANDS = (
     "plan",
     "evaluate",
     "front",
+    "polish",
     "compare",
     "floor",
     "study",

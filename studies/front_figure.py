@@ -67,7 +67,7 @@ def _draw_fronts(axis: Axes, fronts: Sequence[Front], colours: dict[int | None, 
                 drawstyle="steps-post",  # between two points the stiller one is the best there is
                 label=f"seed {front.seed}{'' if front.complete else ', interrupted'}",
             )  # fmt: skip
-    _scale_residuals(axis, [point.residual * 1e3 for front in fronts for point in front.points])
+    scale_residuals(axis, [point.residual * 1e3 for front in fronts for point in front.points])
     axis.set_title("fronts" if len(fronts) > 1 else "front")
     axis.set_xlabel("residual F1 [mm]")
     axis.set_ylabel("energy F2 [J]")
@@ -75,8 +75,16 @@ def _draw_fronts(axis: Axes, fronts: Sequence[Front], colours: dict[int | None, 
         axis.legend(fontsize=8)
 
 
-def _scale_residuals(axis: Axes, residuals: Sequence[float]) -> None:
-    """A logarithmic axis whose labels stay apart, or a linear one where the range is narrow."""
+def scale_residuals(axis: Axes, residuals: Sequence[float]) -> None:
+    """A logarithmic axis whose labels stay apart, or a linear one where the range is narrow.
+
+    Parameters
+    ----------
+    axis : matplotlib.axes.Axes
+        The axes; residuals go to the right.
+    residuals : sequence of float
+        All that is drawn [mm].
+    """
     positive = [residual for residual in residuals if residual > 0]
     span = max(positive) / min(positive) if positive else 1.0
     if not positive:

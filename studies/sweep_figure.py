@@ -1,4 +1,4 @@
-"""The gradient's fronts on paper: what was found, what failed, what no weight reaches."""
+"""The gradient's fronts on paper: what was found, what failed, what polish gained."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ocp import Front
+from ocp import Front, Polish
 from ocp.sweep import RESIDUAL_LIMIT
+from studies.front_figure import scale_residuals
 
 _STAIRS = "steps-post"  # between two points the stiller one is the best there is
 
@@ -27,7 +28,7 @@ def sweep_figure(front: Front) -> Figure:
     matplotlib.figure.Figure
         Energy against residual.
     """
-    figure, axis = _panel(front)
+    figure, (axis,) = _panels(front, 1)
     _draw_gaps(axis, front)
     axis.plot(
         *_broken_at_gaps(front), ".-" if front.complete else ".--", color="tab:blue",
@@ -45,20 +46,57 @@ def sweep_figure(front: Front) -> Figure:
     return figure
 
 
-def _panel(front: Front) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+def polish_figure(before: Front, polish: Polish) -> Figure:
+    """Draw a front before and after polishing, and the share of the energy that was saved.
+
+    Parameters
+    ----------
+    before : Front
+        The front that was given.
+    polish : Polish
+        What became of it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Energy, and energy saved [%], against residual.
+    """
+    figure, (fronts, saved) = _panels(polish.front, 2)
+    styles = {"before": (before, "tab:orange"), "after": (polish.front, "tab:blue")}
+    for label, (front, colour) in styles.items():
+        fronts.plot(
+            front.residuals * 1e3, front.energies, ".-", color=colour, markersize=4,
+            linewidth=0.8, drawstyle=_STAIRS, label=label,
+        )  # fmt: skip
+    _draw_failures(fronts, polish.front)
+    fronts.legend(fontsize=8)
+    gains = [(1e3 * gain.residual, 100 * gain.share) for gain in polish.gains if gain.tried]
+    saved.plot(*zip(*gains, strict=True), ".", color="tab:blue", markersize=4)
+    saved.set_xlabel("residual F1 [mm]")
+    saved.set_ylabel("energy saved [%]")
+    saved.set_ylim(bottom=0)
+    residuals = 1e3 * np.concatenate([before.residuals, polish.front.residuals])
+    for axis in (fronts, saved):
+        scale_residuals(axis, residuals.tolist())
+    return figure
+
+
+def _panels(front: Front, panels: int) -> tuple[Figure, list[Axes]]:
+    """Panels beside each other, the first for energy against residual."""
+    figure = Figure(figsize=(1.6 + 4.8 * panels, 4.4), layout="constrained")
     FigureCanvasAgg(figure)
-    axis = figure.subplots()
+    axes: list[Axes] = list(figure.subplots(1, panels, squeeze=False).flat)
     task = front.task
-    axis.set_title(
+    figure.suptitle(
         f"{front.method}, {task.plant.name}, {np.degrees(task.start):.4g} to "
         f"{np.degrees(task.target):.4g} deg in {task.duration:g} s",
         fontsize=10,
     )
-    axis.set_xlabel("residual F1 [mm]")
-    axis.set_ylabel("energy F2 [J]")
-    axis.grid(alpha=0.25)
-    return figure, axis
+    axes[0].set_xlabel("residual F1 [mm]")
+    axes[0].set_ylabel("energy F2 [J]")
+    for axis in axes:
+        axis.grid(alpha=0.25)
+    return figure, axes
 
 
 def _broken_at_gaps(front: Front) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

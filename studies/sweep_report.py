@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from rich.console import Console
 
 from metaheuristics.ensemble import energy_at
-from ocp import FailedPoint, Front
+from ocp import FailedPoint, Front, QuietarmError
 from ocp.sweep import RESIDUAL_LIMIT
 from studies.comparison import LEVELS
 
 
-def show_sweep(console: Console, front: Front) -> None:
+def show_sweep(console: Console, front: Front, asked_for: int) -> None:
     """Print a front: how it was found, its ends and knee, energies, what could not be found.
 
     Parameters
@@ -21,13 +21,15 @@ def show_sweep(console: Console, front: Front) -> None:
         Where to.
     front : Front
         The front, with a point at least.
+    asked_for : int
+        How many points were asked for.
     """
     state = "" if front.complete else " (interrupted: what was found until then)"
     lines = [
         f"{front.method}: {len(front.points)} points, {front.evaluations} iterations of the solver "
         f"in {front.seconds:.1f} s{state}",
         *point_lines(front),
-        *failure_lines(front),
+        *failure_lines(front, asked_for),
         *gap_lines(front),
     ]
     print_lines(console, lines)
@@ -52,16 +54,15 @@ def point_lines(front: Front) -> list[str]:
     return lines
 
 
-def failure_lines(front: Front) -> list[str]:
-    """How many points failed, and why; none where none did."""
+def failure_lines(front: Front, asked_for: int) -> list[str]:
+    """How many of the points asked for failed, and why; none where none did."""
     if not front.failures:
         return []
     reasons: dict[str, list[str]] = {}
     for failure in front.failures:
         reasons.setdefault(failure.reason, []).append(_asked(failure))
-    total = front.settings["points"]
     return [
-        f"{len(front.failures)} of {total} points could not be found:",
+        f"{len(front.failures)} of {asked_for} points could not be found:",
         *(f"  {', '.join(asked)}: {reason}" for reason, asked in reasons.items()),
     ]
 
@@ -73,6 +74,11 @@ def gap_lines(front: Front) -> list[str]:
         "wrong way there"
         for begin, end in front.gaps
     ]
+
+
+def interruption() -> QuietarmError:
+    """What to end with after Ctrl-C."""
+    return QuietarmError("interrupted; what was found until then is kept")
 
 
 def length(metres: float) -> str:

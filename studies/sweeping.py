@@ -1,4 +1,4 @@
-"""What the commands do with the gradient's fronts: one swept, or one polished."""
+"""What the commands do with the gradient's fronts."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ from ocp import (
     CycloidPolynomial,
     Front,
     PointToPoint,
-    QuietarmError,
     SolverFailedError,
     epsilon_front,
     weighted_front,
 )
 from studies.commands.shared import refuse_same_file
 from studies.progress import count
-from studies.sweep_report import failure_lines, show_sweep
+from studies.sweep_report import failure_lines, interruption, show_sweep
 
 METHODS = {"epsilon": epsilon_front, "weighted": weighted_front}
 
@@ -58,11 +57,13 @@ def run_sweep(
         When it was interrupted, after what was found is written; when nothing was found.
     """
     refuse_same_file([("--output", output), ("--figure", figure)])
+    weights = options.get("weights", ())
+    asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
     front = _swept(task, dict(options), quiet)
     if not front.points:
-        reasons = (line.strip() for line in failure_lines(front)[1:])
+        reasons = (line.strip() for line in failure_lines(front, asked_for)[1:])
         raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
-    show_sweep(Console(), front)
+    show_sweep(Console(), front, asked_for)
     if output is not None:
         front.save(output)
         yield output
@@ -72,7 +73,8 @@ def run_sweep(
 
         save_figure(sweep_figure(front), figure)
         yield figure
-    raise_if_interrupted(front)
+    if not front.complete:
+        raise interruption()
 
 
 def _swept(task: PointToPoint, options: dict[str, Any], quiet: bool) -> Front:
@@ -92,9 +94,3 @@ def warn_of_workers(console: Console, workers: int) -> None:
     cores = os.cpu_count() or 1
     if workers > cores:
         console.print(f"{workers} workers on {cores} cores: they will share them", highlight=False)
-
-
-def raise_if_interrupted(front: Front) -> None:
-    """End with the status of an interruption where the front is not whole."""
-    if not front.complete:
-        raise QuietarmError("interrupted; what was found until then is kept")

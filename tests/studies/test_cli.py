@@ -19,6 +19,7 @@ import pytest
 import studies.commands.evaluate
 import studies.commands.plan
 import studies.comparison_report
+import studies.polishing
 import studies.reproduce
 import studies.searching
 import studies.study
@@ -246,7 +247,7 @@ def examples(text):
 
 
 @pytest.mark.parametrize(
-    "command", ["", "plan", "evaluate", "front", "compare", "study", "reproduce"]
+    "command", ["", "plan", "evaluate", "front", "polish", "compare", "study", "reproduce"]
 )
 @pytest.mark.parametrize("flag", ["-h", "--help"])
 def test_help_shows_examples(call, command, flag):
@@ -281,7 +282,7 @@ def test_the_installed_command_says_its_version(launcher):
 
 
 @pytest.mark.parametrize(
-    "command", ["", "plan", "evaluate", "front", "compare", "study", "reproduce"]
+    "command", ["", "plan", "evaluate", "front", "polish", "compare", "study", "reproduce"]
 )
 def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, folder, command):
     _, out, _ = call(f"{command} --help")
@@ -296,6 +297,7 @@ def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, fold
     monkeypatch.setattr(studies.searching, "search", note)
     monkeypatch.setattr(studies.searching, "search_many", note)
     monkeypatch.setattr(studies.comparison_report, "load_fronts", note)
+    monkeypatch.setattr(studies.polishing, "run_polish", note)
     monkeypatch.setattr(studies.study, "study", note)
     monkeypatch.setattr(studies.sweeping, "METHODS", {"epsilon": note, "weighted": note})
     monkeypatch.setattr(studies.reproduce, "reproduce", note)

@@ -89,8 +89,8 @@ def test_failed_points_are_told_with_their_reasons(call, answer, good):
         FailedPoint({"residual_limit": 3e-3}, "steps too long"),
         FailedPoint({"residual_weight": 0.5, "energy_weight": 1.0}, "no optimum"),
     )
-    answer(replace(good, failures=failures, settings={"points": 6}))
-    _, out, _ = call(f"front {MOVE} --method epsilon")
+    answer(replace(good, failures=failures))
+    _, out, _ = call(f"front {MOVE} --method epsilon --points 6")
     assert out.splitlines()[-3:] == [
         "3 of 6 points could not be found:",
         "  residual <= 2 mm, residual <= 3 mm: steps too long",
@@ -100,7 +100,7 @@ def test_failed_points_are_told_with_their_reasons(call, answer, good):
 
 def test_a_front_without_a_point_is_an_error_that_says_why(call, answer, good, folder):
     failure = FailedPoint({"residual_limit": 2e-3}, "no optimum")
-    answer(replace(good, points=(), failures=(failure,), settings={"points": 2}))
+    answer(replace(good, points=(), failures=(failure,)))
     code, out, err = call(f"front {MOVE} --method epsilon --output f.json")
     assert (code, out, list(folder.iterdir())) == (1, "", [])
     assert err == "quietarm: no point was found: residual <= 2 mm: no optimum\n"
