@@ -24,7 +24,7 @@ _DOUBT = 1e-4
 """Share of the energy by which sweeps must differ for random starts to join; below it lies the
 error of the fixed steps, and the better of the two is taken."""
 _SCOUTS = 12
-"""Steps along the front, about, that tell how its points are to be spaced."""
+"""Most steps along the front, about, that tell how its points are to be spaced."""
 
 
 def epsilon_front(
@@ -122,7 +122,7 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], 
     if width <= STILL or height <= SAME * ends.still.energy or points == 2:
         return [], []
     scouts, limit = [ends.cheapest], ends.cheapest.peaks[RESIDUAL]
-    stride = 2 * width / _SCOUTS  # the scaled front is between sqrt(2) and 2 long
+    stride = 2 * width / min(_SCOUTS, points)  # the scaled front is between sqrt(2) and 2 long
     while True:
         limit -= stride / np.hypot(1.0, scouts[-1].slope * width / height)
         if limit <= stillest + stride / 4:
