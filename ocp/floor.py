@@ -22,14 +22,16 @@ from ocp.solver import UNBOUNDED_SPREAD, plan_move
 from ocp.task import PointToPoint
 
 FIRST_STEPS = 80
-MOST_STEPS = 6000
-"""The grid is refined no further than this."""
+MOST_FIRST_STEPS, MOST_STEPS = 1500, 6000
+"""Intervals of the first grid, and those beyond which it is refined no further."""
+_MOST_COLD = 400
+"""Where a warm solve fails, intervals up to which a cold one is worth its time."""
 WITHIN = 0.005
 """Starts whose energy is within this share of the best one's are said to agree."""
 _LEAST_LEVELS = 3
 """As many as show whether the falls of the energy become smaller, and how fast."""
 _SAME = 1e-5
-_ROUNDS, _OVERRUN = 4, 1e-3
+_ROUNDS, _KEPT, _OVERRUN = 4, 1e-6, 1e-3
 
 
 def energy_floor(
@@ -45,6 +47,8 @@ def energy_floor(
     The acceleration of the joint is free on every interval of a grid (piecewise constant), or its
     jerk for a smooth motion (acceleration continuous, and zero at both ends). Joint and modes are
     at rest at both ends. The grid is refined until the energy falls by less than the tolerance.
+
+    Where the solver fails on a finer grid, the refinement ends there and the floor says so.
 
     Without an acceleration limit the least energy is approached by motions whose speed jumps: an
     impulse at either end, and on the single-link manipulator others on the way. The grid is finer
@@ -72,7 +76,7 @@ def energy_floor(
     Raises
     ------
     ValueError
-        When an argument is out of range.
+        When an argument is out of range, or the move takes too many periods of the fastest mode.
     InfeasibleTaskError
         When no motion meets the limits; the text says what would be feasible.
     SolverFailedError
@@ -82,7 +86,7 @@ def energy_floor(
     tolerance = positive("tolerance", tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, bool(smooth))
-    fractions = first_grid(default_steps(task, least=FIRST_STEPS))
+    fractions = first_grid(_first_steps(task))
     tried = [
         program.solve(program.along(path, fractions), task.limits)
         for path in _paths(task, starts, seed)
@@ -117,6 +121,16 @@ def energy_floor(
     )
 
 
+def _first_steps(task: PointToPoint) -> int:
+    steps = default_steps(task, least=FIRST_STEPS)
+    if steps > MOST_FIRST_STEPS:
+        raise ValueError(
+            f"duration {task.duration:g} s takes {steps} intervals of the plant's fastest mode; "
+            f"a floor begins with up to {MOST_FIRST_STEPS}: give a shorter duration"
+        )
+    return steps
+
+
 def _paths(task: PointToPoint, starts: int, seed: int) -> Iterator[JointPath]:
     """Motions to start from: plain cycloid, the plan of six terms, random ones."""
     random = np.random.default_rng(seed)
@@ -145,10 +159,12 @@ def _settled(levels: list[Level], tolerance: float) -> bool:
 
 
 def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:
-    """The solution on the next grid, warm, or cold where that fails."""
+    """The solution on the next grid, warm, or cold where that fails and the grid is coarse."""
     free, limits = finer(found.free), program.task.limits
     warm = program.solve(free, limits, warm=True)
-    return warm if warm.status.solved else program.solve(free, limits)
+    if warm.status.solved or free.steps > _MOST_COLD:
+        return warm
+    return program.solve(free, limits)
 
 
 def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[FreeSolution]:
@@ -175,7 +191,7 @@ def _within_limits(
     used, simulation = dict(limits), simulate(program.task, best.free)
     for _ in range(_ROUNDS):
         over = {name: simulation.motion.peak(name) / limit for name, limit in limits.items()}
-        if all(ratio <= 1 + 1e-9 for ratio in over.values()):
+        if all(ratio <= 1 + _KEPT for ratio in over.values()):
             break
         used = {name: limit / max(over[name], 1.0) for name, limit in used.items()}
         again = program.solve(best.free, used, warm=True)

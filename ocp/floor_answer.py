@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from pathlib import Path
 
-from ocp.checks import finite, whole
+from ocp.checks import finite, positive, whole
 from ocp.documents import (
     Document,
     numbers_of,
@@ -103,6 +103,12 @@ class Floor:
         return self.levels[-2].energy - self.levels[-1].energy
 
     @property
+    def settled(self) -> bool:
+        """Whether that is within the tolerance; else the refinement ended before."""
+        tolerance = float(self.provenance.settings["tolerance"] or 0.0)
+        return abs(self.change) <= tolerance * self.levels[-1].energy
+
+    @property
     def ratio(self) -> float | None:
         """The last fall of the energy over the one before; None where two falls are not known.
 
@@ -192,6 +198,7 @@ class Floor:
         provenance = provenance_of(document["provenance"])
         if not isinstance(provenance.settings.get("smooth"), bool):
             raise ValueError("its settings do not say whether it is smooth")
+        positive("tolerance", provenance.settings.get("tolerance"))
         return cls(
             task=task,
             free=free,

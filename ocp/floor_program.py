@@ -21,7 +21,7 @@ from ocp.status import SolveStatus
 from ocp.task import PointToPoint
 
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400}
-_WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 250}
+_WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
 """From a coarser grid's solution, which a larger barrier would let the solver leave."""
 _SCALE_STEPS = 40
 

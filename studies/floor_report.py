@@ -50,10 +50,11 @@ def show_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
     table.add_row(
         "starts",
         f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best"
-        f"{f', the worst {worst:.1%} above it' if worst > 0.005 else ''}",
+        f"{f', the worst {worst:.1%} above it' if worst > 0.005 else ''}{_unsolved(floor)}",
     )
     add_figures(table, floor.task, motion)
-    table.add_row("status", floor.status.text)
+    unsettled = "" if floor.settled else " On a finer grid it failed."
+    table.add_row("status", floor.status.text + unsettled)
     table.add_row(
         "verified",
         f"by CVODES, anew at every jump: {check.steps} intervals differ by "
@@ -73,6 +74,11 @@ def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
         lines,
         f"{task.plant.name}, {task.start:.4g} to {task.target:.4g} rad in {task.duration:g} s",
     )
+
+
+def _unsolved(floor: Floor) -> str:
+    missing = int(floor.provenance.settings["starts"] or 0) - len(floor.starts)
+    return f"; {missing} not solved" if missing > 0 else ""
 
 
 def _left(floor: Floor) -> str:

@@ -25,6 +25,7 @@ from ocp import (
     energy_floor,
 )
 from ocp.floor_answer import Level
+from ocp.floor_program import FloorProgram
 
 ROOT = Path(__file__).parents[2]
 ARM = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
@@ -199,6 +200,27 @@ def test_the_estimate_continues_the_falls_of_the_energy(floor_of, energies, rati
     assert missed > 0
 
 
+def test_a_floor_whose_refinement_failed_says_so(monkeypatch, floor_of):
+    assert floor_of(ARM, **SHORT).settled
+    solve = FloorProgram.solve
+
+    def fail_when_fine(self, free, *arguments, **settings):
+        found = solve(self, free, *arguments, **settings)
+        return replace(found, status=SolveStatus.ITERATION_LIMIT) if free.steps > 400 else found
+
+    monkeypatch.setattr(FloorProgram, "solve", fail_when_fine)
+    stopped = energy_floor(ARM, tolerance=1e-3, **SHORT)
+    assert not stopped.settled
+    assert stopped.levels == floor_of(ARM, **SHORT).levels[:2]
+    assert stopped.status is SolveStatus.OPTIMAL
+    assert stopped.left > 1e-3 * stopped.energy
+
+
+def test_a_move_of_too_many_periods_is_refused():
+    with pytest.raises(ValueError, match=r"duration 200 s takes .* intervals .* shorter"):
+        energy_floor(replace(ARM, duration=200.0))
+
+
 def test_starts_that_agree_are_counted(floor_of):
     floor = replace(floor_of(ARM, **SHORT), starts=(1.0, 1.004, 1.006, 2.0))
     assert floor.agreeing() == 2
@@ -238,6 +260,7 @@ def test_a_saved_floor_is_equal(floor_of, tmp_path):
         lambda d: d.update(duration=0.9),
         lambda d: d.update(status="fine"),
         lambda d: d["provenance"]["settings"].pop("smooth"),
+        lambda d: d["provenance"]["settings"].pop("tolerance"),
         lambda d: d.update(format="quietarm-plan"),
         lambda d: d.update(version=99),
     ],

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models import ArmOnFlexibleLink
-from ocp import Floor, PointToPoint, energy_floor
+from ocp import Floor, PointToPoint, SolverFailedError, energy_floor
 from studies.cli import main
 from studies.figures import Line, four_panels
 from studies.floor_report import floor_figure, plan_beside
@@ -59,6 +59,26 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     assert shown["plan, 6 terms"].startswith(f"{plan.energy:.6g} J")
     assert f"{plan.energy / floor.energy:.3g} times the floor" in shown["plan, 6 terms"]
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_help_shows_examples_that_are_read(call, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    code, out, _ = call("floor --help")
+    assert code == 0
+    lines = re.sub(r" \\\n +", " ", out.split("Examples:", 1)[1]).splitlines()
+    examples = [line.strip() for line in lines if line.strip().startswith("quietarm floor")]
+    asked = []
+
+    def note(task, **settings):
+        asked.append((task, settings))
+        raise SolverFailedError("enough is known")
+
+    monkeypatch.setattr("studies.commands.floor.energy_floor", note)
+    for example in examples:
+        assert call(example.removeprefix("quietarm "))[0] == 1
+    assert len(asked) == len(examples) == 2
+    assert asked[0][1] == {"smooth": False, "starts": 4, "seed": 0, "tolerance": 0.005}
+    assert asked[1][0].limits == {"acceleration": 80.0}
 
 
 def test_smooth_is_asked_for(call, tmp_path):
