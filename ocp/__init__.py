@@ -11,9 +11,10 @@ from ocp.floor import energy_floor
 from ocp.floor_answer import Floor
 from ocp.front import FailedPoint, Front, FrontPoint, Generation, non_dominated, reference_corner
 from ocp.objective import Motion
-from ocp.plan import Plan, SolveSettings, Verification, evaluate_coefficients
+from ocp.plan import Plan, evaluate_coefficients
 from ocp.polish import Gain, Polish, polish_front
 from ocp.profile import MAX_TERMS, CycloidPolynomial, JointPath, JointProfile
+from ocp.provenance import SolveSettings, Verification
 from ocp.residual import residual_matrix
 from ocp.resimulation import Trajectory, resimulate, sample_trajectory
 from ocp.rollout import Rollout, rollout, symbolic_rollout

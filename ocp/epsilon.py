@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from ocp.checks import whole
 from ocp.front import FailedPoint, Front, FrontPoint
-from ocp.plan import SolveSettings
 from ocp.profile import CycloidPolynomial, JointProfile
 from ocp.program import Solution
+from ocp.provenance import SolveSettings
 from ocp.sweep import RESIDUAL_LIMIT, SAME, Ends, Guess, Report, Sweep, better, no_report
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL

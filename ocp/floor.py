@@ -15,8 +15,8 @@ from ocp.floor_answer import Floor, Level
 from ocp.floor_grid import finer, first_grid
 from ocp.floor_motion import FreeSimulation, simulate
 from ocp.floor_program import FloorProgram, FreeSolution
-from ocp.plan import Provenance, Verification
 from ocp.profile import CycloidPolynomial, JointPath
+from ocp.provenance import Provenance, Verification
 from ocp.rollout import default_steps
 from ocp.solver import UNBOUNDED_SPREAD, plan_move
 from ocp.task import PointToPoint

@@ -5,26 +5,23 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
-from pathlib import Path
+from typing import ClassVar
 
 from ocp.checks import finite, positive, whole
 from ocp.documents import (
     Document,
     numbers_of,
-    read_document,
-    reading,
     task_from_document,
     task_to_document,
-    write_document,
 )
 from ocp.floor_motion import FreeMotion, simulate
 from ocp.objective import Motion
-from ocp.plan import Provenance, Verification, provenance_of, verification_of
+from ocp.provenance import Provenance, Verification, provenance_of, verification_of
 from ocp.resimulation import Trajectory
+from ocp.saved import Saved
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
 
-FORMAT, VERSION = "quietarm-floor", 1
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
 """Ratios of successive falls of the energy: where the error is proportional to the intervals, as
 at a jump of the speed or the torque within one, and the largest that is taken for a series."""
@@ -47,7 +44,7 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Floor:
+class Floor(Saved):
     """The least energy of a move over all joint motions, at rest on arrival.
 
     The energy is that of one motion that does the move, so that the true floor is no higher; how
@@ -72,6 +69,8 @@ class Floor:
     provenance : Provenance
         Method, settings, versions, time.
     """
+
+    kind: ClassVar[str] = "floor"
 
     task: PointToPoint
     free: FreeMotion
@@ -139,33 +138,6 @@ class Floor:
     def trajectory(self) -> Trajectory:
         """The move and the residual window by CVODES; times stand twice where the torque jumps."""
         return simulate(self.task, self.free).trajectory
-
-    def save(self, path: str | Path) -> None:
-        """Write the floor as JSON; ValueError when the file cannot be written."""
-        write_document(path, FORMAT, VERSION, self.to_document())
-
-    @classmethod
-    def load(cls, path: str | Path) -> Floor:
-        """Read a floor that `save` wrote.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Floor
-            A floor equal to the one saved.
-
-        Raises
-        ------
-        FileFormatError
-            When the file is not a floor, not whole, or of a newer version.
-        """
-        document = read_document(path, FORMAT, VERSION)
-        with reading(path, "floor"):
-            return cls.from_document(document)
 
     def to_document(self) -> Document:
         """The floor in JSON's types, SI units and radians."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,19 +15,16 @@ from ocp.documents import (
     numbers_of,
     profile_from_document,
     profile_to_document,
-    read_document,
-    reading,
     task_from_document,
     task_to_document,
     versions,
-    write_document,
 )
 from ocp.profile import CycloidPolynomial, JointProfile
 from ocp.readonly import ReadOnlyDict
 from ocp.rollout import rollout
+from ocp.saved import Saved
 from ocp.task import PointToPoint
 
-FORMAT, VERSION = "quietarm-front", 1
 LEAST_REFERENCE = 1e-3
 """Where the plain cycloid arrives nearly still, its residual is no scale for hypervolumes [m]."""
 Setting = str | int | float | None
@@ -78,7 +75,7 @@ class Generation:
 
 
 @dataclass(frozen=True)
-class Front:
+class Front(Saved):
     """Points of which none is better than another in both residual and energy.
 
     Attributes
@@ -116,6 +113,8 @@ class Front:
     seconds : float
         How long it took; not compared.
     """
+
+    kind: ClassVar[str] = "front"
 
     task: PointToPoint
     profile: JointProfile
@@ -189,17 +188,6 @@ class Front:
             return points[0]
         scaled = np.column_stack([self.residuals, self.energies]) / spans
         return points[int(np.argmin(scaled.sum(axis=1)))]
-
-    def save(self, path: str | Path) -> None:
-        """Write the front as JSON; ValueError when the file cannot be written."""
-        write_document(path, FORMAT, VERSION, self.to_document())
-
-    @classmethod
-    def load(cls, path: str | Path) -> Front:
-        """Read a front that `save` wrote; FileFormatError when the file is not one."""
-        document = read_document(path, FORMAT, VERSION)
-        with reading(path, "front"):
-            return cls.from_document(document)
 
     def to_document(self) -> Document:
         """The front in JSON's types, SI units and radians."""

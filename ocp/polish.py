@@ -9,7 +9,7 @@ import numpy as np
 
 from ocp.checks import finite
 from ocp.front import FailedPoint, Front, FrontPoint
-from ocp.plan import SolveSettings
+from ocp.provenance import SolveSettings
 from ocp.sweep import RESIDUAL_LIMIT, Report, Sweep, no_report
 
 

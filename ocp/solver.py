@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ocp.feasibility import explain, least_peaks
-from ocp.plan import Plan, Provenance, SolveSettings, Verification
+from ocp.plan import Plan
 from ocp.profile import CycloidPolynomial, JointProfile
 from ocp.program import Solution, TaskProgram
+from ocp.provenance import Provenance, SolveSettings, Verification
 from ocp.rollout import default_steps
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL

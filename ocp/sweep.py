@@ -13,9 +13,9 @@ from ocp.errors import SolverFailedError
 from ocp.feasibility import least_peaks
 from ocp.front import FailedPoint, Front, FrontPoint, non_dominated, reference_corner
 from ocp.objective import Motion
-from ocp.plan import SolveSettings
 from ocp.profile import JointProfile
 from ocp.program import LEAST_ENERGY, Solution, TaskProgram
+from ocp.provenance import SolveSettings
 from ocp.rollout import default_steps
 from ocp.solver import LEAST_STEPS, least_energy, start_coefficients
 from ocp.task import PointToPoint

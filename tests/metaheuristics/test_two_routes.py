@@ -20,7 +20,7 @@ from ocp import (
     resimulate,
     weighted_front,
 )
-from ocp.plan import SolveSettings
+from ocp.provenance import SolveSettings
 from ocp.sweep import Sweep
 
 CASES = {  # the first rows of Tables 6 and 3, in the paper's boxes

@@ -17,7 +17,7 @@ from ocp import (
     resimulate,
 )
 from ocp.epsilon import _Stretch
-from ocp.plan import SolveSettings
+from ocp.provenance import SolveSettings
 from ocp.status import SolveStatus
 from ocp.sweep import Sweep
 from ocp.verification import STILL

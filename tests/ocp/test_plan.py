@@ -23,7 +23,7 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.plan import Provenance
+from ocp.provenance import Provenance
 
 # Table 1, N = 2.
 TWO_TERMS = [3.347e-3, -1.697e-1]
