@@ -134,6 +134,27 @@ def test_no_plan_is_cheaper(solved, floor_of, limits):
         assert floor.motion.peak(name) > 0.9 * limit  # the limit is in the way
 
 
+def test_its_jolts_cost_the_kinetic_energy_of_the_inertia_felt_at_once(floor_of):
+    # Within a jolt only theta'' and W'' count: eq (13) gives W'' = -(alpha2 + alpha3 cos) theta'' /
+    # (1 + alpha1 cos), and with it eq (14) an inertia m, so that the jolt's work is m v^2/2.
+    floor, plant = floor_of(ARM, **SHORT), ARM.plant
+    run = floor.trajectory
+    moving = run.time <= ARM.duration
+    time, angle, speed, acceleration = run.time[moving], *run.joint[moving].T
+    power = run.power[moving]
+    for jolt in (time < 2e-3, time > ARM.duration - 2e-3):
+        of_jolt = jolt & (np.abs(acceleration) > 500)
+        cosine = math.cos(angle[of_jolt].mean())
+        coupling = plant.beta2 + plant.beta3 * cosine
+        inertia = plant.beta1 - coupling * (plant.alpha2 + plant.alpha3 * cosine) / (
+            1 + plant.alpha1 * cosine
+        )
+        reached = np.abs(speed[of_jolt]).max()
+        work = abs(np.trapezoid(power[of_jolt], time[of_jolt]))
+        assert reached > 1.5
+        assert work == pytest.approx(inertia * reached**2 / 2, rel=0.01)
+
+
 def test_a_smooth_motion_comes_to_the_same_floor(floor_of):
     free, smooth = floor_of(ARM, **SHORT), floor_of(ARM, smooth=True, **SHORT)
     assert smooth.energy == pytest.approx(free.energy, abs=free.left + smooth.left)
@@ -142,6 +163,14 @@ def test_a_smooth_motion_comes_to_the_same_floor(floor_of):
     h, a, jerk = smooth.free.lengths, smooth.free.acceleration, smooth.free.jerk
     assert np.append(a[1:], 0.0) == pytest.approx(a + h * jerk, abs=1e-5 * np.abs(a).max())
     assert a[0] == 0.0
+
+
+def test_a_plant_of_two_modes_has_a_floor(tasks, solved):
+    task = replace(tasks["two links"], acceleration_limit=60.0)
+    floor = energy_floor(task, **SHORT)
+    assert floor.residual < 1e-8
+    assert 0.9 * solved(task, 10, starts=1).energy < floor.energy
+    assert floor.energy < solved(task, 10, starts=1).energy
 
 
 def test_a_mirrored_move_needs_the_same():
