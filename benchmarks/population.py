@@ -22,7 +22,8 @@ trapezoid rule over samples.
 
 Equal error: each takes the fewest steps (solve_ivp: samples) of a list with which nine in ten
 candidates are within 1e-4 of F2 (relative) and 1e-6 m of W at arrival. quietarm's steps are its
-default. The reference is quietarm's rollout with 1500 steps; solve_ivp is independent of it.
+default, which serves all of the paper's conditions, and in a second row the fewest here. The
+reference is quietarm's rollout with 1500 steps; solve_ivp is independent of it.
 
 Methods take turns in every round and are called twice in a row: the first call pays for the caches
 that the others left ("cold", its median), the second is what the other columns are of. Printed are
@@ -63,6 +64,7 @@ SECOND_TASK = PointToPoint(PLANT, start=-pi / 2, target=pi / 4, duration=1.0)
 BOX, CANDIDATES, MANY = 0.5, 200, 10_000
 FEW, TUNING = 5, 40  # candidates of solve_ivp: to time, to choose its samples
 ENERGY_ERROR, ARRIVAL_ERROR, SHARE, REFERENCE_STEPS = 1e-4, 1e-6, 0.9, 1500
+FEWER_STEPS = range(14, 60, 2)
 STEPS = (20, 24, 28, 32, 36, 40, 44, 48, 52, 56, 60, 64, 70, 76, 82, 90, 100, 110, 120, 135, 150,
          170, 190, 210, 240, 270, 300, 350, 400)  # fmt: skip
 SAMPLES = (200, 300, 400, 600, 800, 1000, 1500, 2000, 4000)
@@ -386,20 +388,25 @@ def tuned(
     raise RuntimeError(f"{title}: {choices[-1][0]} are not accurate enough")
 
 
+def ours(
+    title: str, steps: int | None, population: NDArray[np.float64], reference: Values
+) -> Method:
+    """The population objective with its default or another number of steps."""
+    objective = PopulationObjective(TASK, PROFILE, steps=steps)
+    values = objective(population)
+    arrival = by_rollout(population, objective.steps)[:, 2]
+    figures = np.column_stack([values.residual, values.energy, arrival])
+    call = partial(objective, population)
+    return Method(title, f"{objective.steps} graded", errors_of(figures, reference), call)
+
+
 def methods(population: NDArray[np.float64]) -> list[Method]:
     """First quietarm, then the others with steps that make them as accurate as asked."""
     x, reference = numbers(TASK), by_rollout(population, REFERENCE_STEPS)
-    objective = PopulationObjective(TASK, PROFILE)
-    values = objective(population)
-    arrival = by_rollout(population, objective.steps)[:, 2]
-    ours = np.column_stack([values.residual, values.energy, arrival])
+    fewer = (ours("quietarm, fewest steps", n, population, reference) for n in FEWER_STEPS)
     rows = [
-        Method(
-            "quietarm, PopulationObjective",
-            f"{objective.steps} graded",
-            errors_of(ours, reference),
-            partial(objective, population),
-        )
+        ours("quietarm, PopulationObjective", None, population, reference),
+        next(method for method in fewer if accurate(method.errors)),
     ]
     for title, march, option, spacing, target in (
         ("numba loop", march_compiled, False, even, 1.0),
