@@ -24,7 +24,7 @@ from ocp.task import PointToPoint
 FIRST_STEPS = 80
 MOST_FIRST_STEPS, MOST_STEPS = 1500, 6000
 """Intervals of the first grid, and those beyond which it is refined no further."""
-_MOST_COLD = 400
+_MOST_COLD = 600
 """Where a warm solve fails, intervals up to which a cold one is worth its time."""
 WITHIN = 0.005
 """Starts whose energy is within this share of the best one's are said to agree."""

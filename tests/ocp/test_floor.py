@@ -157,7 +157,9 @@ def test_its_jolts_cost_the_kinetic_energy_of_the_inertia_felt_at_once(floor_of)
 
 def test_a_smooth_motion_comes_to_the_same_floor(floor_of):
     free, smooth = floor_of(ARM, **SHORT), floor_of(ARM, smooth=True, **SHORT)
-    assert smooth.energy == pytest.approx(free.energy, abs=free.left + smooth.left)
+    # Jolts take up to 4e-5 of the move at any level, which no level shows.
+    room = free.left + smooth.left + 1e-4 * free.energy
+    assert smooth.energy == pytest.approx(free.energy, abs=room)
     assert np.any(smooth.free.jerk)
     assert not np.any(free.free.jerk)
     h, a, jerk = smooth.free.lengths, smooth.free.acceleration, smooth.free.jerk
