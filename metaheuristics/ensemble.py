@@ -5,23 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
-from metaheuristics.search import search
-from metaheuristics.workers import ENDED, Report, Workers
+from metaheuristics.search import SearchProgress, search
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.checks import whole
+from ocp.workers import Say, Workers, remedy
 
 STILL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
 
 _KILLED_REMEDY = "where memory ran short, give fewer workers or a smaller population"
-_ENDED_REMEDY = (
-    "search under if __name__ == '__main__' in a script of your own, with a plant from a file that "
-    "can be imported, or with one worker"
-)
+
+
+class Report(Protocol):
+    """Called as searches go on."""
+
+    def __call__(self, progress: SearchProgress, seed: int) -> None:
+        """Hear where the search of this seed is."""
+        ...
 
 
 class LostSeedsError(QuietarmError):
@@ -36,10 +40,9 @@ class LostSeedsError(QuietarmError):
     def __init__(self, lost: Mapping[int, str], fronts: list[Front], runs: int) -> None:
         self.fronts = fronts
         seeds = ", ".join(f"seed {seed} ({how})" for seed, how in sorted(lost.items()))
-        ended = all(how.startswith(ENDED) for how in lost.values())
         super().__init__(
             f"the process of {seeds} died; {len(fronts)} of {runs} seeds are done; "
-            + (_ENDED_REMEDY if ended else _KILLED_REMEDY)
+            + remedy(lost.values(), _KILLED_REMEDY)
         )
 
 
@@ -137,12 +140,23 @@ def search_many(
     seeds = range(seed, seed + runs)
     if min(workers, runs) == 1:
         return _one_after_another(task, method, seeds, report, done, settings)
-    pool = Workers(task, method, settings, seeds, report, done)
+    pool = Workers(
+        partial(_search, task, method, settings),
+        {one: one for one in seeds},
+        report=lambda seed, progress: report(progress, seed),
+        done=lambda _, front: done(front) if front.complete else None,
+    )
     pool.run(min(workers, runs))
-    fronts = [pool.fronts[one] for one in seeds if one in pool.fronts]
+    fronts = [pool.answers[one] for one in seeds if one in pool.answers]
     if pool.lost:
         raise LostSeedsError(pool.lost, fronts, runs)
     return fronts
+
+
+def _search(
+    task: PointToPoint, method: str, settings: Mapping[str, Any], seed: int, say: Say
+) -> Front:
+    return search(task, method, seed=seed, report=say, **settings)
 
 
 def _one_after_another(

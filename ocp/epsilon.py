@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from multiprocessing import get_context
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +18,18 @@ from ocp.sweep import RESIDUAL_LIMIT, SAME, Ends, Guess, Report, Sweep, better, 
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 from ocp.verification import STILL
+from ocp.workers import Say, Workers, death_of_process
 
 _DOUBT = 1e-4
 """Share of the energy by which sweeps must differ for random starts to join; below it lies the
 error of the fixed steps, and the better of the two is taken."""
 _SCOUTS = 12
 """Most steps along the front, about, that tell how its points are to be spaced."""
+
+_Points = tuple[list[FrontPoint | FailedPoint], bool]
+"""Points, and whether these are all."""
+_Piece = tuple[list[float], NDArray[np.float64], NDArray[np.float64]]
+"""A stretch for a process: its limits, and coefficients above and below."""
 
 
 def epsilon_front(
@@ -71,7 +76,8 @@ def epsilon_front(
     -------
     Front
         Method ``"epsilon"``; figures by the independent integrator. Points that could not be found
-        are in its `failures`. After Ctrl-C what was found until then, with ``complete`` false.
+        are in its `failures`, those of a process that died among them. After Ctrl-C what was found
+        until then, with ``complete`` false.
 
     Raises
     ------
@@ -89,25 +95,37 @@ def epsilon_front(
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     found.append(sweep.checked(ends.cheapest, {RESIDUAL_LIMIT: ends.cheapest.peaks[RESIDUAL]}))
     report(2, points)
+    heard = _Heard(report, points)
     iterations, complete = 0, True
     try:
         limits, scouts = _spaced_limits(sweep, ends, points)
         if workers == 1:
-            stretch = _Stretch(sweep, limits)
-            complete = stretch.run(
-                ends.cheapest, ends.still.coefficients, lambda n: report(2 + n, points)
-            )
-            found += stretch.points()
+            stretch = _Stretch(sweep, limits, partial(heard, 0))
+            stretch_points, complete = stretch.run(ends.cheapest, ends.still.coefficients)
+            found += stretch_points
         else:
-            shared = _in_processes(sweep, ends, limits, scouts, workers)
-            for stretch_points, stretch_iterations, stretch_complete in shared:
-                found += stretch_points
-                iterations += stretch_iterations
-                complete = complete and stretch_complete
-                report(len(found), points)
+            shared, iterations, complete = _in_processes(
+                sweep, ends, limits, scouts, workers, heard
+            )
+            found += shared
     except KeyboardInterrupt:
         complete = False
     return sweep.front("epsilon", found, points, iterations=iterations, complete=complete)
+
+
+class _Heard:
+    """Adds up what the stretches are said to have done, and reports where that changes."""
+
+    def __init__(self, report: Report, points: int) -> None:
+        self.report, self.points, self.last = report, points, 2
+        self.done: dict[int, int] = {}
+
+    def __call__(self, stretch: int, done: int) -> None:
+        self.done[stretch] = done
+        now = 2 + sum(self.done.values())  # the ends are found
+        if now != self.last:
+            self.last = now
+            self.report(now, self.points)
 
 
 def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], list[Solution]]:
@@ -139,42 +157,50 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], 
 
 
 class _Stretch:
-    """A stretch of the front: its limits, falling, and the best solution at each."""
+    """A stretch of the front: its limits, falling, and the best solution at each.
 
-    def __init__(self, sweep: Sweep, limits: Sequence[float]) -> None:
-        self.sweep, self.limits = sweep, list(limits)
+    The report hears how many are done, after every solve; by KeyboardInterrupt it ends the sweep.
+    """
+
+    def __init__(
+        self, sweep: Sweep, limits: Sequence[float], report: Callable[[int], None]
+    ) -> None:
+        self.sweep, self.limits, self.report = sweep, list(limits), report
         self.best: list[Solution | None] = [None] * len(self.limits)
+        self.done = 0
 
-    def run(self, above: Guess, below: Guess, report: Callable[[int], None]) -> bool:
-        """Sweep down from the guess above and up from that below; False after Ctrl-C."""
+    def run(self, above: Guess, below: Guess) -> _Points:
+        """Sweep down from the guess above and up from that below; what was found, checked."""
+        complete = True
         try:
-            self._sweep(above, below, report)
+            self._sweep(above, below)
         except KeyboardInterrupt:
-            return False
-        return True
+            complete = False
+        points, all_checked = self._points(interrupted=not complete)
+        return points, complete and all_checked
 
-    def _sweep(self, above: Guess, below: Guess, report: Callable[[int], None]) -> None:
+    def _sweep(self, above: Guess, below: Guess) -> None:
         order, doubtful = range(len(self.limits)), set[int]()
         for i in order:
-            found = self._try(i, above)
+            found = self._try(i, above, done=(i + 1) // 2)
             above = found if found.status.solved else above
-            report((i + 1) // 2)
         for i in reversed(order):
             before = self.best[i]
-            found = self._try(i, below)
+            found = self._try(i, below, done=len(order) - (i + 1) // 2)
             below = found if found.status.solved else below
-            report(len(order) - (i + 1) // 2)
-            if before is None or _differ(before, found):
+            if before is None or better(before, found) or better(found, before):
                 doubtful.add(i)
         for i in sorted(doubtful):
             for guess in self.sweep.guesses:
                 self._try(i, guess)
         self._carry_on(doubtful)
 
-    def _try(self, i: int, guess: Guess) -> Solution:
+    def _try(self, i: int, guess: Guess, done: int | None = None) -> Solution:
         found, best = self.sweep.solve(guess, self.limits[i]), self.best[i]
         if best is None or better(found, best):
             self.best[i] = found
+        self.done = self.done if done is None else done
+        self.report(self.done)
         return found
 
     def _carry_on(self, changed: Iterable[int]) -> None:
@@ -190,62 +216,62 @@ class _Stretch:
                     if self.best[neighbour] is not before:
                         waiting.append(neighbour)
 
-    def points(self) -> list[FrontPoint | FailedPoint]:
-        """What was found, checked, and what was not."""
-        found: list[FrontPoint | FailedPoint] = []
-        for limit, best in zip(self.limits, self.best, strict=True):
-            asked = {RESIDUAL_LIMIT: limit}
-            if best is None:
-                continue  # interrupted before
-            if best.status.solved:
-                found.append(self.sweep.checked(best, asked))
-            else:
-                found.append(FailedPoint(asked, best.status.text))
-        return found
-
-
-def _differ(one: Solution, other: Solution) -> bool:
-    """Whether two solutions at one limit are told apart by more than the steps' own error."""
-    if not (one.status.solved and other.status.solved):
-        return True
-    return abs(one.energy - other.energy) > _DOUBT * one.energy
-
-
-_StretchResult = tuple[list[FrontPoint | FailedPoint], int, bool]
+    def _points(self, interrupted: bool) -> _Points:
+        tried = [
+            (best, {RESIDUAL_LIMIT: limit})
+            for limit, best in zip(self.limits, self.best, strict=True)
+            if best is not None  # interrupted before
+        ]
+        failed = [
+            FailedPoint(asked, best.status.text) for best, asked in tried if not best.status.solved
+        ]
+        solved = [(best, asked) for best, asked in tried if best.status.solved]
+        points, all_checked = self.sweep.all_checked(
+            solved, interrupted=interrupted, heed=lambda: self.report(self.done)
+        )
+        return [*points, *failed], all_checked
 
 
 def _in_processes(
-    sweep: Sweep, ends: Ends, limits: list[float], scouts: list[Solution], workers: int
-) -> Iterator[_StretchResult]:
-    """Share the limits among processes, each starting from what is known beside its own."""
+    sweep: Sweep,
+    ends: Ends,
+    limits: list[float],
+    scouts: list[Solution],
+    workers: int,
+    heard: Callable[[int, int], None],
+) -> tuple[list[FrontPoint | FailedPoint], int, bool]:
+    """Share the limits among processes, each starting from what is known beside its own.
+
+    Returns what was found, the iterations, and whether all was done.
+    """
     known = [*scouts, ends.still]
     residuals = np.array([one.peaks.get(RESIDUAL, 0.0) for one in known])  # falling
-    sweep.settings = replace(sweep.settings, steps=sweep.steps)
-    tasks = []
-    for chunk in np.array_split(limits, workers):
+    settings = replace(sweep.settings, steps=sweep.steps)
+    stretches = dict[int, _Piece]()
+    for i, chunk in enumerate(np.array_split(limits, workers)):
         if len(chunk):
             above = known[int(np.flatnonzero(residuals >= chunk[0])[-1])]
             below = known[int(np.flatnonzero(residuals <= chunk[-1])[0])]
-            tasks.append((chunk.tolist(), above.coefficients, below.coefficients))
-    # spawn: a fork would carry casadi's and the threads' state into the child
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        futures = [
-            pool.submit(_one_stretch, sweep.task, sweep.profile, sweep.settings, *task)
-            for task in tasks
-        ]
-        for future in as_completed(futures):
-            yield future.result()
+            stretches[i] = (chunk.tolist(), above.coefficients, below.coefficients)
+    work = partial(_one_stretch, sweep.task, sweep.profile, settings)
+    pool = Workers(work, stretches, heard)
+    pool.run(workers)
+    found: list[FrontPoint | FailedPoint] = []
+    iterations, complete = 0, not pool.interrupted
+    for i in sorted(pool.answers):
+        (points, whole_stretch), more = pool.answers[i]
+        found += points
+        iterations += more
+        complete = complete and whole_stretch
+    for i, how in sorted(pool.lost.items()):
+        reason = death_of_process(how)
+        found += [FailedPoint({RESIDUAL_LIMIT: limit}, reason) for limit in stretches[i][0]]
+    return found, iterations, complete
 
 
 def _one_stretch(
-    task: PointToPoint,
-    profile: JointProfile,
-    settings: SolveSettings,
-    limits: list[float],
-    above: NDArray[np.float64],
-    below: NDArray[np.float64],
-) -> _StretchResult:
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, piece: _Piece, say: Say
+) -> tuple[_Points, int]:
+    limits, above, below = piece
     sweep = Sweep(task, profile, settings)
-    stretch = _Stretch(sweep, limits)
-    complete = stretch.run(above, below, lambda n: None)
-    return stretch.points(), sweep.iterations, complete
+    return _Stretch(sweep, limits, say).run(above, below), sweep.iterations

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ocp.errors import SolverFailedError
 from ocp.feasibility import least_peaks
 from ocp.front import FailedPoint, Front, FrontPoint, non_dominated, reference_corner
+from ocp.interrupts import note_interrupts
 from ocp.objective import Motion
 from ocp.profile import JointProfile
 from ocp.program import LEAST_ENERGY, Solution, TaskProgram
@@ -28,6 +29,8 @@ Report = Callable[[int, int], None]
 """Called with the number of points done and asked for."""
 SAME = 1e-5
 """Energies that differ by less than this share are of one motion."""
+_PATIENCE = 0.6
+"""How long [s] points are still checked after Ctrl-C."""
 _SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""
 
@@ -199,6 +202,46 @@ class Sweep:
         except SolverFailedError as error:
             return FailedPoint(asked, str(error))
         return self._point(found, motion)
+
+    def all_checked(
+        self,
+        found: Sequence[tuple[Solution, Mapping[str, float]]],
+        *,
+        interrupted: bool = False,
+        heed: Callable[[], None] = lambda: None,
+    ) -> tuple[list[FrontPoint | FailedPoint], bool]:
+        """Check many solutions; after Ctrl-C those that there is time for, spread evenly.
+
+        Parameters
+        ----------
+        found : sequence of (Solution, mapping of str to float)
+            As for `checked`.
+        interrupted : bool
+            Whether Ctrl-C came before.
+        heed : callable, optional
+            Called before each; raises KeyboardInterrupt once it is to stop.
+
+        Returns
+        -------
+        list of FrontPoint or FailedPoint
+            In the order given.
+        bool
+            Whether these are all.
+        """
+        checked, until = dict[int, FrontPoint | FailedPoint](), np.inf
+        with note_interrupts() as came:
+            evenly = sorted(range(len(found)), key=lambda i: f"{i:032b}"[::-1])  # ever finer
+            for i in evenly:
+                try:
+                    heed()
+                except KeyboardInterrupt:
+                    interrupted = True
+                if interrupted or came:
+                    until = min(until, time.monotonic() + _PATIENCE)
+                if time.monotonic() > until:
+                    break
+                checked[i] = self.checked(*found[i])
+        return [checked[i] for i in sorted(checked)], len(checked) == len(found)
 
     def front(
         self,

@@ -92,7 +92,9 @@ def weighted_front(
             sums.by_weights(chosen, report)
     except KeyboardInterrupt:
         complete = False
-    return sweep.front("weighted", sums.checked(), points, gaps=sums.gaps, complete=complete)
+    found, all_checked = sums.checked(interrupted=not complete)
+    complete = complete and all_checked
+    return sweep.front("weighted", found, points, gaps=sums.gaps, complete=complete)
 
 
 def _checked(pair: tuple[float, float]) -> tuple[float, float]:
@@ -171,17 +173,13 @@ class _Sums:
                     self._failed(*pair, found)
             report(i, len(weights))
 
-    def checked(self) -> list[FrontPoint | FailedPoint]:
-        """Every point by the independent integrator, and what failed."""
-        one = self.ends.cheapest
-        points = [
-            self.sweep.checked(one, {RESIDUAL_LIMIT: one.peaks[RESIDUAL]}),
-            self.ends.still_point,
+    def checked(self, interrupted: bool) -> tuple[list[FrontPoint | FailedPoint], bool]:
+        """Every point by the independent integrator, and what failed; whether these are all."""
+        asked = [
+            (one, {RESIDUAL_LIMIT: _residual(one)}) for one in (self.ends.cheapest, *self.found)
         ]
-        points += [
-            self.sweep.checked(found, {RESIDUAL_LIMIT: _residual(found)}) for found in self.found
-        ]
-        return [*points, *self.failures]
+        points, whole_front = self.sweep.all_checked(asked, interrupted=interrupted)
+        return [self.ends.still_point, *points, *self.failures], whole_front
 
     def _sides(self, still: Solution, cheap: Solution) -> tuple[float, float]:
         return (

@@ -12,7 +12,7 @@ from rich.console import Console
 from ocp import Front, Gain, polish_front
 from ocp.checks import whole
 from ocp.files import write_whole
-from studies.commands.shared import refuse_same_file
+from studies.commands.shared import refuse_same_file, warn_of_workers
 from studies.progress import count
 from studies.sweep_report import failure_lines, interruption, length, print_lines
 from studies.tables import Column, Table
@@ -24,6 +24,7 @@ _ROWS = 10
 def run_polish(
     path: Path,
     points: int | None,
+    workers: int,
     output: Path | None,
     csv_file: Path | None,
     figure: Path | None,
@@ -37,6 +38,8 @@ def run_polish(
         The front.
     points : int or None
         How many of its points; None is all.
+    workers : int
+        Processes that share them.
     output, csv_file, figure : Path or None
         Files for the improved front, the gains and the picture.
     quiet : bool
@@ -60,8 +63,10 @@ def run_polish(
     refuse_same_file([("FRONT", path), *files.items()])
     whole_front = Front.load(path)
     front = whole_front if points is None else thinned(whole_front, points)
-    with count(len(front.points), "points", Console(stderr=True), quiet=quiet) as report:
-        polish = polish_front(front, report=report)
+    errors = Console(stderr=True)
+    warn_of_workers(errors, workers)
+    with count(len(front.points), "points", errors, quiet=quiet) as report:
+        polish = polish_front(front, workers=workers, report=report)
     gains = [gain for gain in polish.gains if gain.tried]
     if not gains:
         raise KeyboardInterrupt

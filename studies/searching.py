@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -24,7 +23,7 @@ from ocp import (
     plan_move,
 )
 from ocp.files import check_writable
-from studies.commands.shared import refuse_same_file
+from studies.commands.shared import refuse_same_file, warn_of_workers
 from studies.figures import save_figure
 from studies.front_figure import front_figure
 from studies.front_report import show_fronts
@@ -161,9 +160,8 @@ def _fronts(
     errors: Console, task: PointToPoint, options: Mapping[str, Any], quiet: bool
 ) -> tuple[list[Front], LostSeedsError | None]:
     """What every seed found, shown as it goes; and the error of those whose process died."""
-    runs, workers, cores = options["runs"], options["workers"], os.cpu_count() or 1
-    if min(workers, runs) > cores:
-        errors.print(f"{workers} workers on {cores} cores: they will share them", highlight=False)
+    runs = options["runs"]
+    warn_of_workers(errors, min(options["workers"], runs))
     with search_display(errors, quiet=quiet) as display:
         several = {"report": display, "done": display.finish}
         one = {"report": lambda progress, seed: display(progress)}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from ocp import (
     epsilon_front,
     weighted_front,
 )
-from studies.commands.shared import refuse_same_file
+from studies.commands.shared import refuse_same_file, warn_of_workers
 from studies.progress import count
 from studies.sweep_report import failure_lines, interruption, show_sweep
 
@@ -87,10 +86,3 @@ def _swept(task: PointToPoint, options: dict[str, Any], quiet: bool) -> Front:
     total = len(weights) or options["points"]
     with count(total, "weights" if weights else "points", errors, quiet=quiet) as report:
         return METHODS[method](task, report=report, **options)
-
-
-def warn_of_workers(console: Console, workers: int) -> None:
-    """Say where there are more workers than cores."""
-    cores = os.cpu_count() or 1
-    if workers > cores:
-        console.print(f"{workers} workers on {cores} cores: they will share them", highlight=False)

@@ -16,6 +16,9 @@ from studies.options import OUTPUT, PICTURE
     help="Only this many points, spread evenly along the front; all of them by default, which "
     "takes about 50 ms each.",
 )  # fmt: skip
+@click.option(
+    "--workers", type=int, default=1, show_default=True, help="Processes that share the points."
+)
 @click.option("--output", type=OUTPUT, help="Write the improved front to this JSON file.")
 @click.option("--csv", "csv_file", type=OUTPUT, help="Write every point's gain to this CSV file.")
 @click.option(
@@ -25,6 +28,7 @@ from studies.options import OUTPUT, PICTURE
 def polish(
     front: Path,
     points: int | None,
+    workers: int,
     output: Path | None,
     csv_file: Path | None,
     figure: Path | None,
@@ -43,5 +47,5 @@ def polish(
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.polishing import run_polish
 
-    for path in run_polish(front, points, output, csv_file, figure, quiet):
+    for path in run_polish(front, points, workers, output, csv_file, figure, quiet):
         click.echo(f"wrote {path}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -75,3 +76,10 @@ def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequ
             *some, last = methods
             known = f"{', '.join(some)} and {last}" if some else last
             raise ValueError(f"--{name} is for {known}, not for {method}; leave it out")
+
+
+def warn_of_workers(console: Console, workers: int) -> None:
+    """Say where there are more workers than cores."""
+    cores = os.cpu_count() or 1
+    if workers > cores:
+        console.print(f"{workers} workers on {cores} cores: they will share them", highlight=False)

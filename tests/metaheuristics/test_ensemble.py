@@ -234,4 +234,4 @@ def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
     )
     last = ran.stderr.splitlines()[-1]
     assert last.startswith("metaheuristics.ensemble.LostSeedsError: the process of seed 0 (status ")
-    assert "search under if __name__ == '__main__'" in last
+    assert "run it under if __name__ == '__main__'" in last

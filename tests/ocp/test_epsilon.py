@@ -1,6 +1,11 @@
 """The front by epsilon-constraint: its ends, its spacing, and that no point could be cheaper."""
 
 import math
+import multiprocessing
+import os
+import signal
+import sys
+import time
 
 import numpy as np
 import pytest
@@ -8,6 +13,7 @@ import pytest
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import (
     CycloidPolynomial,
+    FailedPoint,
     Front,
     InfeasibleTaskError,
     PointToPoint,
@@ -15,6 +21,7 @@ from ocp import (
     plan_move,
     reference_corner,
     resimulate,
+    weighted_front,
 )
 from ocp.epsilon import _Stretch
 from ocp.provenance import SolveSettings
@@ -91,6 +98,88 @@ def test_processes_find_the_same_front():
     )
     np.testing.assert_allclose(shared.energies, alone.energies, rtol=1e-5)
     np.testing.assert_allclose(shared.residuals, alone.residuals, rtol=1e-5, atol=STILL)
+
+
+def test_ctrl_c_ends_processes_soon_and_keeps_what_they_found():
+    task, bound = CASES["arm"]
+    sent = []
+
+    def interrupt(done, total):
+        if done >= 8 and not sent:
+            sent.append(time.perf_counter())
+            signal.raise_signal(signal.SIGINT)
+
+    front = epsilon_front(
+        task, CycloidPolynomial(3), bound=bound, points=5000, workers=2, report=interrupt
+    )
+    assert time.perf_counter() - sent[0] < 2
+    assert multiprocessing.active_children() == []
+    assert not front.complete
+    assert len(front.points) > 2  # more than the ends
+    for point in front.points[1:-1:5]:
+        motion = resimulate(task, front.profile, point.coefficients)
+        assert (point.residual, point.energy) == (motion.residual, motion.energy)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
+def test_a_process_that_dies_costs_its_own_stretch_only():
+    task, bound = CASES["arm"]
+    killed = []
+
+    def report(done, total):
+        children = multiprocessing.active_children()
+        if children and not killed:
+            child = min(children, key=lambda one: int(one.name.rpartition("-")[2]))
+            killed.append(child.pid)
+            os.kill(child.pid, signal.SIGKILL)
+
+    front = epsilon_front(
+        task, CycloidPolynomial(3), bound=bound, points=20, workers=2, report=report
+    )
+    assert len(killed) == 1
+    assert len(front.failures) == 9  # of 18 between the ends
+    for failure in front.failures:
+        # the first stretch begins at the cheap end
+        assert failure.asked["residual_limit"] > front.points[-2].residual
+        assert failure.reason == (
+            "its process died (killed by SIGKILL); where memory ran short, give fewer workers"
+        )
+    assert len(front.points) == 11
+
+
+def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
+    task, bound = CASES["arm"]
+    monkeypatch.setattr(Sweep, "checked", lambda self, found, asked: FailedPoint(asked, "why"))
+    for method in (epsilon_front, weighted_front):
+        front = method(task, CycloidPolynomial(3), bound=bound, points=2)
+        assert (len(front.points), len(front.failures)) == (1, 1)
+        assert front.failures[0].asked["residual_limit"] > front.points[0].residual
+        front.save(tmp_path / "front.json")
+        assert Front.load(tmp_path / "front.json") == front
+
+
+def test_ctrl_c_while_points_are_checked_keeps_what_there_is_time_for(monkeypatch):
+    task, bound = CASES["arm"]
+    checked, began = Sweep.checked, []
+
+    def slow(self, found, asked):
+        if not began:
+            began.append(time.perf_counter())
+            signal.raise_signal(signal.SIGINT)
+        time.sleep(0.25)
+        return checked(self, found, asked)
+
+    def first(self):
+        ends = whole(self)
+        monkeypatch.setattr(Sweep, "checked", slow)
+        return ends
+
+    whole = Sweep.ends
+    monkeypatch.setattr(Sweep, "ends", first)
+    front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=10)
+    assert time.perf_counter() - began[0] < 2
+    assert not front.complete
+    assert 2 < len(front.points) < 8
 
 
 def test_limits_of_the_task_are_kept_along_the_front():
@@ -181,8 +270,8 @@ def test_what_one_sweep_misses_the_other_mends(monkeypatch):
     expected = epsilon_front(task, profile, bound=bound, points=6)
     attempt, spoilt = _Stretch._try, []
 
-    def spoil(self, i, guess):
-        found = attempt(self, i, guess)
+    def spoil(self, i, guess, **rest):
+        found = attempt(self, i, guess, **rest)
         if i == 2 and not spoilt:
             spoilt.append(found)
             object.__setattr__(found, "energy", found.energy * 1.05)

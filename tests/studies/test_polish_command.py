@@ -85,13 +85,13 @@ def test_a_front_is_thinned_evenly_and_that_is_told(call, rough):
 
 
 def test_ctrl_c_keeps_what_was_polished(call, monkeypatch):
-    def interrupted(front, report):
+    def interrupted(front, report, **rest):
         def hear(done, total):
             report(done, total)
             if done == 3:
                 signal.raise_signal(signal.SIGINT)
 
-        return polish_front(front, report=hear)
+        return polish_front(front, report=hear, **rest)
 
     monkeypatch.setattr(studies.polishing, "polish_front", interrupted)
     code, out, err = call("polish f.json --quiet --output p.json --csv p.csv --figure p.png")
@@ -145,6 +145,7 @@ def without(**changes):
         (lambda: without(points=[]), "", "the front has no point"),
         (lambda: without(settings={"bound": "wide"}), "", "bound is 'wide'; give a number"),
         (without, "--points 1", "points is 1; give a whole number from 2 up"),
+        (without, "--workers 0", "workers is 0; give a whole number from 1 up"),
         (without, "--output ./bad.json", "FRONT and --output are both bad.json"),
         (without, "--csv a.png --figure a.png", "--csv and --figure are both a.png"),
         (without, "--figure a.txt", "a.txt is no picture"),
