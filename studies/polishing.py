@@ -140,7 +140,8 @@ def _show(
     ]
     beaten = number - len(polished.points)
     if beaten:
-        lines.append(f"{beaten} points are beaten by another of these now, and left out")
+        some = "1 point is" if beaten == 1 else f"{beaten} points are"
+        lines.append(f"{some} beaten by another of these now, and left out")
     print_lines(console, [*lines, *failure_lines(polished, number)])
 
 

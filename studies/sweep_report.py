@@ -43,6 +43,8 @@ def print_lines(console: Console, lines: Sequence[str]) -> None:
 def point_lines(front: Front) -> list[str]:
     """The ends, the knee, and the least energy within some residuals, a line each."""
     chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
+    if len(front.points) < 3:
+        del chosen["knee"]  # it would be an end
     lines = [
         f"  {name:15}{point.energy:.4g} J at {length(point.residual)}"
         for name, point in chosen.items()

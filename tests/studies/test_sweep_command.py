@@ -83,6 +83,18 @@ def test_what_no_weight_reaches_is_told_in_words(call, answer, good):
     )
 
 
+def test_a_front_of_its_ends_alone_has_no_knee(call, answer, front_of):
+    answer(front_of([(0, 0.8), (8, 0.4)], "epsilon"))
+    _, out, _ = call(f"front {MOVE} --method epsilon --points 2")
+    assert out.splitlines()[1:] == [
+        "  stillest       0.8 J at 0 mm",
+        "  cheapest       0.4 J at 8 mm",
+        "  within 0.1 mm  0.8 J",
+        "  within 1 mm    0.8 J",
+        "  within 5 mm    0.8 J",
+    ]
+
+
 def test_failed_points_are_told_with_their_reasons(call, answer, good):
     failures = (
         FailedPoint({"residual_limit": 2e-3}, "steps too long"),
