@@ -199,7 +199,8 @@ def _study_case(case: Case, settings: StudySettings, begin: Callable[[str], None
         found = log.fronts(method, partial(_searched, case, method, settings))
         fronts += found
         for front in found[:1]:
-            fronts += log.fronts(f"{method}, polished", partial(_polished, front, polishes))
+            polish = partial(_polished, front, settings.workers, polishes)
+            fronts += log.fronts(f"{method}, polished", polish)
     floor = log.tried("floor", partial(energy_floor, task))
     if len(fronts) < 2:
         raise SolverFailedError(f"{log.where}: no two fronts to compare; {'; '.join(log.failures)}")
@@ -245,8 +246,8 @@ def _gradient(
     return [find(task, profile, **settings)]
 
 
-def _polished(front: Front, polishes: dict[str, Polish]) -> list[Front]:
-    polishes[front.method] = polish_front(front)
+def _polished(front: Front, workers: int, polishes: dict[str, Polish]) -> list[Front]:
+    polishes[front.method] = polish_front(front, workers=workers)
     return [polishes[front.method].front]
 
 
