@@ -15,6 +15,7 @@ from rich.text import Text
 from ocp import Plan
 from ocp.files import write_whole
 from studies.claims import Claim
+from studies.comparison_groups import METHOD_NAMES
 from studies.figures import Line, four_panels, save_figure
 from studies.floor_dots import floor_dots
 from studies.floor_table import LEGEND as FLOOR_LEGEND
@@ -51,7 +52,6 @@ _TITLES = {
     6: "Table 6: against ref. [24], arm on a flexible link",
 }
 _COLOURS = {2: "tab:green", 4: "tab:red", 6: "tab:blue"}  # those of the paper's Figs 2 and 5
-_METHOD_NAMES = {"vepso": "VEPSO", "nsga2": "NSGA-II"}
 LEGEND = (
     "Printed: as in the paper; printed coefficients: the same recomputed here. Gradient: the least "
     "energy at rest on arrival, within the paper's bound on the coefficients or without one; rest "
@@ -67,7 +67,7 @@ def tables(result: Reproduction) -> list[Table]:
     found: list[Table] = []
     for number, title in _TITLES.items():
         chosen = [row for row in result.rows if row.row.table == number]
-        method = _METHOD_NAMES[chosen[0].fronts[0].method]
+        method = METHOD_NAMES[chosen[0].fronts[0].method]
         columns = [
             replace(c, heading=c.heading.format(method=method), key=c.key.format(method=method))
             for c in _COLUMNS
