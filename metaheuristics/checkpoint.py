@@ -144,10 +144,10 @@ def refuse_another_search(
 
 def _difference(theirs: Mapping[str, Any], mine: Mapping[str, Any]) -> str:
     """The first entry in which two nested tables differ, in words; empty where none does."""
-    for name, value in mine.items():
-        other = theirs.get(name)
+    for name in {**mine, **theirs}:
+        other, value = theirs.get(name), mine.get(name)
         if isinstance(value, Mapping) and isinstance(other, Mapping):
-            inner = _difference(other, value) or _difference(value, other)
+            inner = _difference(other, value)
             if inner:
                 return f"{name} {inner}"
         elif other != value:

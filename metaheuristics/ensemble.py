@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from metaheuristics.presets import PRESETS
 from metaheuristics.search import SearchProgress, search
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.checks import whole
@@ -16,6 +17,8 @@ from ocp.workers import Say, Workers, remedy
 
 STILL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
+MOST_RUNS = 10_000
+"""Fronts of more would fill the memory."""
 
 _KILLED_REMEDY = "where memory ran short, give fewer workers or a smaller population"
 
@@ -90,6 +93,14 @@ def energy_at(front: Front, residual_limit: float = STILL) -> float:
         return np.nan
 
 
+def seeds_of(seed: int, runs: int) -> range:
+    """The seeds of so many runs from the first on; ValueError when a number is out of range."""
+    seed, runs = whole("seed", seed, 0), whole("runs", runs, 1)
+    if runs > MOST_RUNS:
+        raise ValueError(f"runs is {runs}; give at most {MOST_RUNS}")
+    return range(seed, seed + runs)
+
+
 def search_many(
     task: PointToPoint,
     method: str,
@@ -131,13 +142,22 @@ def search_many(
     Raises
     ------
     ValueError
-        When `runs` or `workers` is below 1, or a setting is out of range.
+        When `runs` or `workers` is below 1, a setting is out of range, or several runs are to
+        share a checkpoint or an algorithm of your own.
     LostSeedsError
         When a process died, as where memory runs out; it holds the fronts of the other seeds.
     """
-    runs, workers = whole("runs", runs, 1), whole("workers", workers, 1)
-    seed = whole("seed", seed, 0)
-    seeds = range(seed, seed + runs)
+    seeds, workers = seeds_of(seed, runs), whole("workers", workers, 1)
+    if not isinstance(method, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise ValueError(
+            f"method is {type(method).__name__}; give {' or '.join(map(repr, PRESETS))}, or call "
+            "`search` once a seed with an algorithm of your own"
+        )
+    if runs > 1 and (settings.get("checkpoint") or settings.get("resume")):
+        raise ValueError(
+            f"a checkpoint is of one search, and there are {runs} runs; leave checkpoint and "
+            "resume out, or give 1 run"
+        )
     if min(workers, runs) == 1:
         return _one_after_another(task, method, seeds, report, done, settings)
     pool = Workers(

@@ -11,7 +11,8 @@ from pymoo.core.problem import Problem
 from metaheuristics.population import PopulationObjective
 
 UNUSABLE = 1e30
-"""Objectives of a candidate that is not finite: finite itself, so that pymoo sorts it last."""
+"""From here on a figure counts as not finite, and this stands for it: finite itself, so that pymoo
+sorts it last."""
 
 
 class MoveProblem(Problem):
@@ -46,7 +47,7 @@ class MoveProblem(Problem):
     def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
         values = self.objective(x)
         table = np.column_stack([values.residual, values.energy, values.violations])
-        bad = ~np.isfinite(table).all(axis=1)
+        bad = ~(np.abs(table) < UNUSABLE).all(axis=1)  # NaN is not less, either
         self.failed += int(bad.sum())
         self.infeasible += int((values.violations[~bad] > 0).any(axis=1).sum())
         table[bad] = UNUSABLE

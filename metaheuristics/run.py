@@ -20,6 +20,7 @@ from metaheuristics.checkpoint import load_checkpoint, refuse_another_search, sa
 from metaheuristics.nsga2 import PaperNSGA2
 from metaheuristics.population import PopulationObjective
 from metaheuristics.problem import UNUSABLE, MoveProblem
+from metaheuristics.provenance import stated
 from metaheuristics.states import array_of, count_of, number_of, part_of
 from metaheuristics.vepso import VEPSO
 from ocp import JointProfile, PointToPoint, reference_corner
@@ -105,6 +106,7 @@ class Run:
         self.before = 0.0  # seconds of the runs that this one resumes
         self.began = time.perf_counter()
         self.reference = reference_corner(task)
+        self.stated = stated(algorithm)  # before the run, which adds what is no setting
         termination = MaximumGenerationTermination(settings["generations"])
         try:
             algorithm.setup(self.problem, termination=termination, seed=seed)
@@ -126,8 +128,26 @@ class Run:
         checkpoint: str | Path | None,
         report: Callable[[SearchProgress], None],
         interrupts: list[int],
-    ) -> None:
-        """Run to the end, or to the first interrupt in the list, and write the checkpoint."""
+    ) -> str:
+        """Run to the end, or to the first interrupt in the list, and write the checkpoint.
+
+        A search is not lost with its checkpoint: where that cannot be written it goes on, and
+        tries again.
+
+        Parameters
+        ----------
+        checkpoint : path or None
+            File for the state.
+        report : callable
+            Called with a `SearchProgress` after every generation.
+        interrupts : list of int
+            Signals until now; a KeyboardInterrupt adds one.
+
+        Returns
+        -------
+        str
+            Why the last state is not in the file; empty where it is.
+        """
         saved = time.perf_counter()
         try:
             while not interrupts and self.algorithm.has_next():
@@ -135,12 +155,11 @@ class Run:
                 if progress is not None:
                     report(progress)
                 if checkpoint and time.perf_counter() - saved > CHECKPOINT_SECONDS:
-                    self.save(checkpoint)
+                    self._try_to_save(checkpoint)
                     saved = time.perf_counter()
         except KeyboardInterrupt:  # raised by a report, say
             interrupts.append(signal.SIGINT)
-        if checkpoint and self.history:
-            self.save(checkpoint)
+        return self._try_to_save(checkpoint) if checkpoint and self.history else ""
 
     def front(self) -> Front:
         """What was found until now, with figures of a finer rollout."""
@@ -162,7 +181,7 @@ class Run:
             profile=self.profile,
             points=points,
             method=self.method,
-            settings={**self.settings, **_flat(self._algorithm_settings())},
+            settings={**self.settings, **self.stated},
             seed=self.seed,
             reference=self.reference,
             evaluations=int(self.algorithm.evaluator.n_eval),
@@ -184,6 +203,13 @@ class Run:
             "seconds": self.seconds,
         }
         save_checkpoint(path, self._header(), state)
+
+    def _try_to_save(self, path: str | Path) -> str:
+        try:
+            self.save(path)
+        except ValueError as error:
+            return str(error)
+        return ""
 
     def resume(self, path: str | Path) -> None:
         """Go on from a checkpoint of the same search.
@@ -236,15 +262,12 @@ class Run:
         usable = (F < UNUSABLE).all(axis=1) & (CV.ravel() <= 0)
         return X[usable], F[usable]
 
-    def _algorithm_settings(self) -> dict[str, Any]:
-        return self.algorithm.settings if self.resumable else {}
-
     def _header(self) -> dict[str, Any]:
         return {
             "method": self.method,
             "seed": self.seed,
             "settings": self.settings,
-            "algorithm": self._algorithm_settings(),
+            "algorithm": self.algorithm.settings,
             "profile": profile_to_document(self.profile),
             **task_to_document(self.task),
             # Python's own is left out: no figure depends on it
@@ -276,11 +299,3 @@ class Run:
 
 def _versions() -> dict[str, str]:
     return {**versions(), "pymoo": pymoo.__version__}
-
-
-def _flat(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Settings with those of an inner table beside the others."""
-    flat: dict[str, Any] = {}
-    for name, value in settings.items():
-        flat.update(_flat(value) if isinstance(value, Mapping) else {name: value})
-    return flat

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -14,10 +15,15 @@ from metaheuristics.presets import PAPER_BOX, PRESETS
 from metaheuristics.run import Run, SearchProgress
 from metaheuristics.vepso import VEPSO
 from ocp import CycloidPolynomial, JointProfile, PointToPoint
-from ocp.checks import positive, whole
+from ocp.checks import whole
 from ocp.files import check_writable
 from ocp.front import Front
 from ocp.interrupts import note_interrupts
+from ocp.provenance import coefficient_bound
+
+
+def _warn(message: str) -> None:
+    warnings.warn(message, RuntimeWarning, stacklevel=3)
 
 
 def search(
@@ -33,6 +39,7 @@ def search(
     checkpoint: str | Path | None = None,
     resume: str | Path | None = None,
     report: Callable[[SearchProgress], None] = lambda progress: None,
+    warn: Callable[[str], None] = _warn,
 ) -> Front:
     """Search the trade-off between residual and energy without derivatives.
 
@@ -60,6 +67,9 @@ def search(
         Checkpoint to go on from, of the same search and the same versions.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
+    warn : callable, optional
+        Called with a line when the last checkpoint could not be written, which stops no search;
+        by default it becomes a RuntimeWarning.
 
     Returns
     -------
@@ -85,8 +95,10 @@ def search(
     # From here on Ctrl-C ends the search after the generation that it comes in, and nothing else:
     # what is kept is a whole generation, and what was found is not lost in working out the front.
     with note_interrupts() as interrupts:
-        run.go(checkpoint, report, interrupts)
+        trouble = run.go(checkpoint, report, interrupts)
         front = run.front()
+    if trouble:
+        warn(f"the end of the search is in no checkpoint: {trouble}")
     return replace(front, complete=not interrupts)
 
 
@@ -107,7 +119,7 @@ def _prepare(
         raise ValueError(
             f"{method} searches a box: give a bound on the coefficients (the paper used {papers})"
         )
-    bound = positive("bound on the coefficients", bound)
+    bound = coefficient_bound(bound)
     if isinstance(algorithm, str):
         preset = PRESETS[method]
         # a crossing takes a pair, and a swarm of one has nobody to learn from

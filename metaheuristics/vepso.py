@@ -28,6 +28,7 @@ from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.util.display.multi import MultiObjectiveOutput
 
+from metaheuristics.problem import UNUSABLE
 from metaheuristics.states import (
     POPULATION_ARRAYS,
     array_of,
@@ -39,7 +40,6 @@ from metaheuristics.states import (
 from metaheuristics.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
 
 STATE_ARRAYS = ("velocities", "best_X", "best_merit", "swarm_best")
-UNUSABLE = 1e300  # CV without finite objectives; not infinite, for pymoo subtracts and averages
 
 
 def least_crowded(F: Array, size: int) -> Array:
@@ -265,5 +265,5 @@ def _violations(candidates: Any) -> Array:
     F, CV = candidates.get("F", "CV")
     violation = np.where(np.isfinite(F).all(axis=1) & np.isfinite(CV[:, 0]), CV[:, 0], np.inf)
     for candidate in candidates[np.isinf(violation)]:
-        candidate.CV = np.array([UNUSABLE])
+        candidate.CV = np.array([UNUSABLE])  # not infinite: pymoo subtracts and averages
     return np.maximum(violation, 0.0)

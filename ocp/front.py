@@ -97,7 +97,7 @@ class Front(Saved):
     evaluations : int
         Candidates evaluated; for the gradient, iterations of its solver.
     failed : int
-        Candidates whose objectives were not finite; they never enter a front.
+        Candidates whose figures were not finite, or absurdly large; they never enter a front.
     infeasible : int
         Candidates that broke a limit of the task; nor do they.
     failures : tuple of FailedPoint
@@ -249,19 +249,21 @@ class Front(Saved):
 
     def _nonempty(self) -> Sequence[FrontPoint]:
         if len(self.points) == 0:
-            raise ValueError(f"the front has no point; {self._remedy()}")
+            raise ValueError(self.why_empty())
         return self.points
 
-    def _remedy(self) -> str:
-        """What an empty front lacks, from what became of the candidates."""
+    def why_empty(self) -> str:
+        """Why there is no point, from what became of the candidates, and what to try."""
+        none = "the front has no point;"
         if 0 < self.evaluations == self.failed:
-            return f"the motions of all {self.failed} candidates overflow; give a smaller bound"
+            return f"{none} the motions of all {self.failed} candidates overflow; narrow the bound"
         if self.infeasible == 0:
-            return "search longer or widen the bound"
+            return f"{none} search longer or widen the bound"
         limits = ", ".join(f"{name} {limit:g}" for name, limit in self.task.limits.items())
+        overflow = f" and the motions of {self.failed} overflow" if self.failed else ""
         return (
-            f"{self.infeasible} of {self.evaluations} candidates break the limits ({limits}); "
-            "widen them or the bound, or search longer"
+            f"{none} {self.infeasible} of {self.evaluations} candidates break the limits ({limits})"
+            f"{overflow}; widen them or the bound, or search longer"
         )
 
 

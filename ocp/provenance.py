@@ -10,6 +10,9 @@ from ocp.documents import Document, numbers_of, versions
 from ocp.objective import Motion
 from ocp.readonly import ReadOnlyDict
 
+MOST_BOUND = 1e6
+"""Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+
 
 @dataclass(frozen=True)
 class SolveSettings:
@@ -33,11 +36,22 @@ class SolveSettings:
             raise ValueError(f"residual limit is {limit:g} m; give 0 (at rest) or more")
         object.__setattr__(self, "residual_limit", limit)
         if self.bound is not None:
-            object.__setattr__(self, "bound", positive("bound on the coefficients", self.bound))
+            object.__setattr__(self, "bound", coefficient_bound(self.bound))
         for name, least in (("starts", 1), ("seed", 0), ("steps", 1)):
             value = getattr(self, name)
             if value is not None or name != "steps":
                 object.__setattr__(self, name, whole(name, value, least))
+
+
+def coefficient_bound(value: object) -> float:
+    """A bound on the coefficients as a float; ValueError when it is out of range."""
+    bound = positive("bound on the coefficients", value)
+    if bound > MOST_BOUND:
+        raise ValueError(
+            f"bound on the coefficients is {bound:g}; give at most {MOST_BOUND:g} (a few tenths "
+            "are usual)"
+        )
+    return bound
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import Any
 from rich.console import Console
 
 from metaheuristics import search
-from metaheuristics.ensemble import STILL, LostSeedsError, search_many
+from metaheuristics.ensemble import STILL, LostSeedsError, search_many, seeds_of
 from ocp import (
     CycloidPolynomial,
     Front,
@@ -70,7 +70,10 @@ def plan_by_search(
     with search_display(Console(stderr=True), quiet=quiet) as report:
         front = search(task, method, profile=profile, bound=bound, seed=seed, report=report)
     if not front.complete:
-        raise KeyboardInterrupt
+        raise QuietarmError(
+            "interrupted; a plan is of a whole search, and nothing was written; `quietarm front` "
+            "keeps what a search has found until Ctrl-C"
+        )
     try:
         point = front.cheapest(residual_limit or STILL)
     except ValueError as error:
@@ -127,21 +130,22 @@ def run_front(
     Raises
     ------
     QuietarmError
-        When a search was interrupted, or a process died; after what was found is written.
+        When a search was interrupted, a process died, or the checkpoint could not be written;
+        after what was found is written.
     """
     runs, profile = options["runs"], CycloidPolynomial(options.pop("terms"))
     if runs > 1 and (options["checkpoint"] or options["resume"]):
         raise ValueError("--checkpoint and --resume are for one run, not with --runs")
-    targets = _targets(output, options["seed"], runs)
+    targets = _targets(output, seeds_of(options["seed"], runs))
     _refuse_same_files(targets, options, figure)
     errors = Console(stderr=True)
-    found, lost = _fronts(errors, task, {**options, "profile": profile}, quiet)
+    found, lost, troubles = _fronts(errors, task, {**options, "profile": profile}, quiet)
     fronts = [front for front in found if front.complete or front.points]
-    stopped = None if lost else _interruption(fronts, runs)
+    stopped = "" if lost else _interruption(fronts, runs)
     if not any(front.points for front in fronts):
         if stopped:
             raise KeyboardInterrupt
-        raise lost or _nothing_found(fronts)
+        raise lost or SolverFailedError(f"{options['method']}: {fronts[0].why_empty()}")
     show_fronts(Console(), fronts)
     for front in fronts if targets else ():
         front.save(targets[front.seed or 0])
@@ -151,43 +155,34 @@ def run_front(
         title = f"{options['method']}, {task.plant.name}, {seeds}"
         save_figure(front_figure(fronts, title), figure)
         yield figure
-    problem = lost or stopped
-    if problem:
-        raise problem
+    if lost or stopped or troubles:
+        raise lost or QuietarmError("; ".join([*filter(None, [stopped]), *troubles]))
 
 
 def _fronts(
     errors: Console, task: PointToPoint, options: Mapping[str, Any], quiet: bool
-) -> tuple[list[Front], LostSeedsError | None]:
-    """What every seed found, shown as it goes; and the error of those whose process died."""
-    runs = options["runs"]
+) -> tuple[list[Front], LostSeedsError | None, list[str]]:
+    """What every seed found, shown as it goes; the error of those whose process died; warnings."""
+    runs, troubles = options["runs"], list[str]()
     warn_of_workers(errors, min(options["workers"], runs))
     with search_display(errors, quiet=quiet) as display:
         several = {"report": display, "done": display.finish}
-        one = {"report": lambda progress, seed: display(progress)}
+        one = {"report": lambda progress, seed: display(progress), "warn": troubles.append}
         try:
-            return search_many(task, **(several if runs > 1 else one), **options), None
+            return search_many(task, **(several if runs > 1 else one), **options), None, troubles
         except LostSeedsError as error:
-            return error.fronts, error
+            return error.fronts, error, troubles
 
 
-def _interruption(fronts: Sequence[Front], runs: int) -> QuietarmError | None:
-    """What to say of searches that were interrupted; None where none was."""
+def _interruption(fronts: Sequence[Front], runs: int) -> str:
+    """What to say of searches that were interrupted; nothing where none was."""
     done = sum(front.complete for front in fronts)
     if done == runs:
-        return None
+        return ""
     if runs == 1:
-        return QuietarmError("interrupted; what was found until then is kept")
+        return "interrupted; what was found until then is kept"
     part = f", {len(fronts) - done} in part" * (done < len(fronts))
-    return QuietarmError(f"interrupted: {done} of {runs} seeds are done{part}; these are kept")
-
-
-def _nothing_found(fronts: Sequence[Front]) -> SolverFailedError:
-    tried, failed = (sum(getattr(f, name) for f in fronts) for name in ("evaluations", "failed"))
-    return SolverFailedError(
-        f"{fronts[0].method} found no candidate that meets the task: of {tried}, {failed} were not "
-        "finite and the rest break a limit; widen its limits or the bound, or search longer"
-    )
+    return f"interrupted: {done} of {runs} seeds are done{part}; these are kept"
 
 
 def with_seed(path: Path, seed: int) -> Path:
@@ -204,9 +199,9 @@ def _refuse_same_files(
     refuse_same_file([*written, ("--resume", options["resume"])])
 
 
-def _targets(output: Path | None, seed: int, runs: int) -> dict[int, Path]:
+def _targets(output: Path | None, seeds: range) -> dict[int, Path]:
     if output is None:
         return {}
-    if runs == 1:
-        return {seed: output}
-    return {s: check_writable(with_seed(output, s)) for s in range(seed, seed + runs)}
+    if len(seeds) == 1:
+        return {seeds[0]: output}
+    return {seed: check_writable(with_seed(output, seed)) for seed in seeds}

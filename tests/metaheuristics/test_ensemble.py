@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pymoo.algorithms.moo.sms import SMSEMOA
 
 import metaheuristics.ensemble as ensemble
 from metaheuristics import search
@@ -235,3 +236,24 @@ def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
     last = ran.stderr.splitlines()[-1]
     assert last.startswith("metaheuristics.ensemble.LostSeedsError: the process of seed 0 (status ")
     assert "run it under if __name__ == '__main__'" in last
+
+
+@pytest.mark.parametrize("name", ["checkpoint", "resume"])
+def test_runs_cannot_share_a_checkpoint(tmp_path, name):
+    with pytest.raises(ValueError, match="a checkpoint is of one search, and there are 2 runs"):
+        search_many(TASK, "vepso", 2, **SMALL, **{name: tmp_path / "state"})
+    assert list(tmp_path.iterdir()) == []
+    search_many(TASK, "vepso", 1, **SMALL, checkpoint=tmp_path / "state")
+    assert (tmp_path / "state").exists()
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_an_algorithm_of_your_own_is_refused_with_a_remedy(workers):
+    words = "method is SMSEMOA; give 'vepso' or 'nsga2', or call `search` once a seed"
+    with pytest.raises(ValueError, match=words):
+        search_many(TASK, SMSEMOA(pop_size=8), 2, workers=workers, bound=0.2, generations=2)
+
+
+def test_absurdly_many_runs_are_refused():
+    with pytest.raises(ValueError, match="runs is 1000000000; give at most 10000"):
+        search_many(TASK, "vepso", 10**9, **SMALL)

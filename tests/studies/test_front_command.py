@@ -97,8 +97,8 @@ def test_a_search_that_finds_nothing_says_why(call, folder):
     code, out, err = call(f"{SMALL} --torque-limit 0.001 --quiet --output f.json")
     assert (code, out) == (1, "")
     assert err == (
-        "quietarm: vepso found no candidate that meets the task: of 64, 0 were not finite and the "
-        "rest break a limit; widen its limits or the bound, or search longer\n"
+        "quietarm: vepso: the front has no point; 64 of 64 candidates break the limits (torque "
+        "0.001); widen them or the bound, or search longer\n"
     )
     assert list(folder.iterdir()) == []
 
@@ -248,6 +248,25 @@ def test_more_workers_than_cores_are_warned_of(call, monkeypatch, front_of, work
     assert ("2 workers on 1 cores: they will share them\n" in err) == warned
 
 
+def test_a_checkpoint_that_is_lost_on_the_way_is_told_at_the_end(call, folder, monkeypatch):
+    (folder / "lost").mkdir()
+    shown = SearchDisplay.__call__
+
+    def remove(self, progress, seed=None):
+        if progress.generation == 2:
+            (folder / "lost").rmdir()
+        shown(self, progress, seed)
+
+    monkeypatch.setattr(SearchDisplay, "__call__", remove)
+    code, out, err = call(f"{SMALL} --quiet --checkpoint lost/state --output f.json")
+    assert (code, out.splitlines()[-1]) == (1, "wrote f.json")
+    assert err == (
+        "quietarm: the end of the search is in no checkpoint: folder lost does not exist; make it "
+        "first\n"
+    )
+    assert Front.load("f.json") == directly()
+
+
 # What is refused
 
 
@@ -255,6 +274,10 @@ def test_more_workers_than_cores_are_warned_of(call, monkeypatch, front_of, work
     ("line", "words"),
     [
         (f"{SMALL} --runs 2 --checkpoint state", "are for one run, not with --runs"),
+        (f"{SMALL} --runs 1000000000 --output f.json", "runs is 1000000000; give at most 10000"),
+        (f"front {MOVE} --method vepso --bound 1e308", "is 1e+308; give at most 1e+06"),
+        (f"front {MOVE} --method epsilon --bound 1e308", "is 1e+308; give at most 1e+06"),
+        (f"plan {MOVE} --bound 1e308", "is 1e+308; give at most 1e+06"),
         (f"{SMALL} --runs 2 --output nowhere/f.json", "folder nowhere does not exist"),
         (f"{SMALL} --output a --checkpoint ./a", "--output and --checkpoint are both a"),
         (f"{SMALL} --output a --resume a", "--output and --resume are both a"),
@@ -300,6 +323,13 @@ def test_a_plan_by_search_says_what_a_limit_of_zero_stands_for(call, quick):
     _, out, _ = call(f"plan {MOVE} --method vepso --polish --output polished.json")
     assert "stands for" not in out
     assert Plan.load("polished.json").residual < 1e-8 < Plan.load("plan.json").residual <= 1e-3
+
+
+def test_an_interrupted_search_makes_no_plan_and_says_what_keeps_it(call, quick, interrupted_at):
+    interrupted_at(3)
+    code, out, err = call(f"plan {MOVE} --method vepso --quiet --output plan.json")
+    assert (code, out, Path("plan.json").exists()) == (1, "", False)
+    assert "nothing was written; `quietarm front` keeps what a search has found" in err
 
 
 def test_a_broken_limit_is_shown_with_what_is_reached(call):

@@ -1,0 +1,150 @@
+"""Any algorithm of pymoo in a search."""
+
+import dataclasses
+import math
+
+import pytest
+from pymoo.algorithms.moo.moead import MOEAD
+from pymoo.algorithms.moo.mopso_cd import MOPSO_CD
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.algorithms.moo.sms import SMSEMOA
+from pymoo.algorithms.soo.nonconvex.de import DE
+from pymoo.algorithms.soo.nonconvex.ga import GA
+from pymoo.algorithms.soo.nonconvex.nelder import NelderMead
+from pymoo.algorithms.soo.nonconvex.pattern import PatternSearch
+from pymoo.algorithms.soo.nonconvex.pso import PSO
+from pymoo.operators.mutation.pm import PM
+from pymoo.util.ref_dirs import get_reference_directions
+from small_searches import HALF, LIMITED, assert_is_a_front, exactly, failing, one_line
+
+from metaheuristics import INERTIA_2002, VEPSO, MoveProblem, PopulationObjective, search
+from ocp import CycloidPolynomial, Front, rollout
+
+
+def _moead():
+    return MOEAD(get_reference_directions("uniform", 2, n_partitions=9), n_neighbors=4)
+
+
+OTHERS = {
+    "SMSEMOA": lambda: SMSEMOA(pop_size=10),
+    "MOEAD": _moead,
+    "MOPSO_CD": lambda: MOPSO_CD(pop_size=10),
+    "NSGA2": lambda: NSGA2(pop_size=10),
+    "VEPSO": lambda: VEPSO(particles=5, rule=INERTIA_2002, boundary="reflect"),
+}
+OTHER = pytest.mark.parametrize("name", OTHERS)
+
+
+@OTHER
+def test_any_algorithm_of_pymoo(tmp_path, name):
+    seen = []
+    front = search(HALF, OTHERS[name](), bound=0.5, generations=5, seed=2, report=seen.append)
+    assert front.method == name
+    assert front.complete
+    assert len(front.points) > 0
+    assert_is_a_front(front)
+    assert front.evaluations >= 50  # pymoo's MOPSO-CD evaluates a second population at its start
+    assert seen[-1].evaluations == front.evaluations == front.history[-1].evaluations
+    front.save(tmp_path / "front.json")
+    assert Front.load(tmp_path / "front.json") == front
+
+
+def test_the_settings_of_any_algorithm_are_in_the_front():
+    def settings(algorithm):
+        return dict(search(HALF, algorithm, bound=0.5, generations=2).settings)
+
+    small, large = settings(SMSEMOA(pop_size=10)), settings(SMSEMOA(pop_size=12, n_offsprings=3))
+    assert (small["population"], small["offspring"]) == (10, 10)
+    assert (large["population"], large["offspring"]) == (12, 3)
+    # pymoo's defaults for SMS-EMOA, from its source
+    assert small["sampling"] == "FloatRandomSampling"
+    assert small["selection"] == "TournamentSelection(pressure=2)"
+    assert small["crossover"].startswith("SBX(eta=15, ")
+    assert small["mutation"] == "PM(at_least_once=False, eta=20, prob=0.9)"
+    assert small["survival"].startswith("LeastHypervolumeContributionSurvival(")
+    steep = SMSEMOA(pop_size=10, mutation=PM(eta=30))
+    assert settings(steep)["mutation"] == "PM(at_least_once=False, eta=30, prob=0.9)"
+    moead = settings(_moead())
+    assert (moead["n_neighbors"], moead["population"]) == (4, 10)
+    other = MOEAD(0.9 * get_reference_directions("uniform", 2, n_partitions=9), n_neighbors=4)
+    assert moead["reference_directions"].startswith("10, sha256 ")
+    assert moead["reference_directions"] != settings(other)["reference_directions"]
+    assert settings(MOPSO_CD(pop_size=10))["c1"] == 2.0
+
+
+@OTHER
+def test_generations_of_any_algorithm_are_counted_as_asked_for(name):
+    # 'history: hypervolume by generation'; a report is one 'after every generation'
+    seen = []
+    front = search(HALF, OTHERS[name](), bound=0.5, generations=5, seed=2, report=seen.append)
+    assert [progress.generation for progress in seen] == [1, 2, 3, 4, 5]
+    assert len(front.history) == 5
+
+
+@OTHER
+def test_the_seed_decides_for_any_algorithm(name):
+    fronts = [search(HALF, OTHERS[name](), bound=0.5, generations=4, seed=s) for s in (2, 2, 3)]
+    assert exactly(fronts[0]) == exactly(fronts[1])
+    assert fronts[0].points != fronts[2].points
+
+
+@OTHER
+def test_an_algorithm_may_be_given_twice(name):
+    algorithm = OTHERS[name]()
+    first, second = (search(HALF, algorithm, bound=0.5, generations=4, seed=2) for _ in range(2))
+    assert exactly(first) == exactly(second)
+
+
+@pytest.mark.parametrize("name", ["SMSEMOA", "MOPSO_CD", "NSGA2", "VEPSO"])
+def test_any_algorithm_keeps_the_limits(name):
+    task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5)
+    front = search(task, OTHERS[name](), bound=0.5, generations=6, seed=2)
+    assert len(front.points) > 0
+    for point in front.points:
+        motion = rollout(task, front.profile, point.coefficients).motion
+        assert motion.peak_acceleration <= 75.0 * (1 + 1e-6)
+        assert motion.peak_torque <= 0.5 * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("make", [GA, DE, PSO, NelderMead, PatternSearch])
+def test_an_algorithm_for_one_objective_is_refused_before_the_work(make):
+    seen = []
+    with pytest.raises(ValueError, match=f"{make.__name__} minimises one objective") as caught:
+        search(HALF, make(), bound=0.5, generations=3, report=seen.append)
+    one_line(caught)
+    assert seen == []
+
+
+@OTHER
+@pytest.mark.parametrize("steps", [0, 2])
+def test_an_algorithm_that_was_set_up_or_run_is_refused(name, steps):
+    problem = MoveProblem(PopulationObjective(HALF, CycloidPolynomial(6)), 0.5)
+    algorithm = OTHERS[name]().setup(problem, termination=("n_gen", 9), seed=1)
+    for _ in range(steps):
+        algorithm.next()
+    with pytest.raises(ValueError, match=f"this {name} was set up or run before; give a new one"):
+        search(HALF, algorithm, bound=0.5, generations=3)
+
+
+def test_an_algorithm_that_cannot_keep_limits_is_refused():
+    task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5)
+    with pytest.raises(ValueError, match=r"MOEAD|constraint|limit") as caught:
+        search(task, _moead(), bound=0.5, generations=3)
+    one_line(caught)
+
+
+@pytest.mark.parametrize("name", ["SMSEMOA", "MOEAD", "MOPSO_CD", "NSGA2"])
+@pytest.mark.parametrize("option", ["checkpoint", "resume"])
+def test_checkpoints_are_for_the_two_that_have_a_state(tmp_path, name, option):
+    with pytest.raises(ValueError, match=f"checkpoints are for nsga2 and vepso, not for {name}"):
+        search(HALF, OTHERS[name](), bound=0.5, generations=2, **{option: tmp_path / "file"})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_failed_candidates_never_enter_the_front_of_any_algorithm(monkeypatch):
+    counts = failing(monkeypatch, math.nan)
+    for make in OTHERS.values():
+        counts.clear()
+        front = search(HALF, make(), bound=0.5, generations=4, seed=2)
+        assert front.failed == sum(counts) > 0
+        assert all(point.coefficients[0] <= 0 for point in front.points)
