@@ -52,6 +52,14 @@ def positive(name: str, value: object, unit: str = "") -> float:
     return number
 
 
+def not_negative(name: str, value: object, unit: str = "") -> float:
+    """A finite number of 0 or more as a float; arguments and errors as for `finite`."""
+    number = finite(name, value, unit)
+    if number < 0:
+        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give 0 or more")
+    return number
+
+
 def whole(name: str, value: object, least: int) -> int:
     """A whole number of at least `least` as an int; ValueError otherwise."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:

@@ -2,76 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.checks import finite, whole
-from ocp.documents import (
-    Document,
-    numbers_of,
-    profile_from_document,
-    profile_to_document,
-    task_from_document,
-    task_to_document,
-    versions,
-)
+from ocp.documents import Document, versions
+from ocp.front_document import front_from_document, front_to_document
+from ocp.front_points import FailedPoint, FrontPoint, Generation, Setting, non_dominated
 from ocp.profile import CycloidPolynomial, JointProfile
 from ocp.readonly import ReadOnlyDict
 from ocp.rollout import rollout
 from ocp.saved import Saved
 from ocp.task import PointToPoint
 
+__all__ = [
+    "FailedPoint",
+    "Front",
+    "FrontPoint",
+    "Generation",
+    "non_dominated",
+    "reference_corner",
+]
+
 LEAST_REFERENCE = 1e-3
 """Where the plain cycloid arrives nearly still, its residual is no scale for hypervolumes [m]."""
-Setting = str | int | float | None
-
-
-@dataclass(frozen=True)
-class FrontPoint:
-    """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J]."""
-
-    coefficients: tuple[float, ...]
-    residual: float
-    energy: float
-
-
-@dataclass(frozen=True)
-class FailedPoint:
-    """A point that a sweep asked for and did not get.
-
-    Attributes
-    ----------
-    asked : mapping of str to float
-        What was asked for: a residual limit [m], or the weights of the objectives.
-    reason : str
-        Why there is none.
-    """
-
-    asked: Mapping[str, float]
-    reason: str
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "asked", ReadOnlyDict(self.asked))
-
-
-@dataclass(frozen=True)
-class Generation:
-    """The state of a search after one generation.
-
-    Attributes
-    ----------
-    evaluations : int
-        Candidates evaluated so far.
-    hypervolume : float
-        Share of the reference box (`Front.reference`) that the points found dominate.
-    """
-
-    evaluations: int
-    hypervolume: float
 
 
 @dataclass(frozen=True)
@@ -191,61 +148,12 @@ class Front(Saved):
 
     def to_document(self) -> Document:
         """The front in JSON's types, SI units and radians."""
-        return {
-            **task_to_document(self.task),
-            "profile": profile_to_document(self.profile),
-            "method": self.method,
-            "settings": dict(self.settings),
-            "seed": self.seed,
-            "points": [asdict(point) for point in self.points],
-            "reference": list(self.reference),
-            "evaluations": self.evaluations,
-            "failed": self.failed,
-            "infeasible": self.infeasible,
-            "failures": [asdict(failure) for failure in self.failures],
-            "gaps": [list(gap) for gap in self.gaps],
-            "history": [asdict(generation) for generation in self.history],
-            "complete": self.complete,
-            "versions": dict(self.versions),
-            "seconds": self.seconds,
-        }
+        return front_to_document(self)
 
     @classmethod
     def from_document(cls, document: Document) -> Front:
         """The front of a document; KeyError, TypeError or ValueError where it is not one."""
-        profile = profile_from_document(document["profile"])
-        points = tuple(
-            FrontPoint(
-                profile.checked(point["coefficients"]),
-                **numbers_of(point, ("residual", "energy")),
-            )
-            for point in document["points"]
-        )
-        if points != non_dominated(points):
-            raise ValueError("its points are out of order, or one is better than another")
-        for name, kind in (("method", str), ("complete", bool), ("settings", dict),
-                           ("versions", dict)):  # fmt: skip
-            if not isinstance(document[name], kind):
-                raise ValueError(f"{name} is {document[name]!r}, not of the kind it should be")
-        residual, energy = document["reference"]
-        return cls(
-            task=task_from_document(document),
-            profile=profile,
-            points=points,
-            method=document["method"],
-            settings=document["settings"],
-            seed=document["seed"],
-            reference=(finite("reference", residual), finite("reference", energy)),
-            evaluations=whole("evaluations", document["evaluations"], 0),
-            failed=whole("failed", document["failed"], 0),
-            infeasible=whole("infeasible", document["infeasible"], 0),
-            failures=tuple(_failure(entry) for entry in document["failures"]),
-            gaps=tuple(_gap(entry) for entry in document["gaps"]),
-            history=tuple(Generation(**entry) for entry in document["history"]),
-            complete=document["complete"],
-            versions=document["versions"],
-            seconds=finite("seconds", document["seconds"], "s"),
-        )
+        return cls(**front_from_document(document))
 
     def _nonempty(self) -> Sequence[FrontPoint]:
         if len(self.points) == 0:
@@ -267,18 +175,6 @@ class Front(Saved):
         )
 
 
-def _failure(entry: Document) -> FailedPoint:
-    asked = {str(name): finite("asked", value) for name, value in entry["asked"].items()}
-    if not isinstance(entry["reason"], str):
-        raise ValueError(f"reason is {entry['reason']!r}, not a text")
-    return FailedPoint(asked, entry["reason"])
-
-
-def _gap(entry: Sequence[float]) -> tuple[float, float]:
-    begin, end = entry
-    return finite("gap", begin, "m"), finite("gap", end, "m")
-
-
 def reference_corner(task: PointToPoint) -> tuple[float, float]:
     """The corner that hypervolumes of a task's fronts are measured from.
 
@@ -294,24 +190,3 @@ def reference_corner(task: PointToPoint) -> tuple[float, float]:
     """
     cycloid = rollout(task, CycloidPolynomial(0), []).motion
     return max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy
-
-
-def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
-    """The points that no other beats in both objectives, stillest first.
-
-    Parameters
-    ----------
-    points : iterable of FrontPoint
-        Any points; those that are not finite are left out, of equal ones the first is kept.
-
-    Returns
-    -------
-    tuple of FrontPoint
-        Sorted by residual; energies fall.
-    """
-    finite = [p for p in points if np.isfinite(p.residual) and np.isfinite(p.energy)]
-    kept: list[FrontPoint] = []
-    for point in sorted(finite, key=lambda p: (p.residual, p.energy)):
-        if not kept or point.energy < kept[-1].energy:
-            kept.append(point)
-    return tuple(kept)

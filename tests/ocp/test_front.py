@@ -225,7 +225,7 @@ def test_equality_is_of_everything_but_the_time():
 
 # -- files --
 
-figures = st.floats(allow_nan=False, allow_infinity=False)
+figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energies
 
 
 @given(
@@ -268,9 +268,10 @@ def test_the_file_is_what_the_issue_says(tmp_path):
         {"coefficients": [1.0, -0.5], "residual": 2e-4, "energy": 0.2},
         {"coefficients": [2.0, -0.5], "residual": 8e-4, "energy": 0.1},
     ]
-    assert (document["plant"], document["target"]) == ("arm-on-flexible-link", math.pi / 2)
-    assert (document["start"], document["duration"]) == (0.0, 0.8)
-    assert document["limits"] == {"torque": 0.4}
+    task = document["task"]
+    assert (task["plant"], task["target"]) == ("arm-on-flexible-link", math.pi / 2)
+    assert (task["start"], task["duration"]) == (0.0, 0.8)
+    assert task["limits"] == {"torque": 0.4}
     assert (document["method"], document["seed"]) == ("nsga2", 3)
     assert document["settings"] == {"bound": 0.5, "population": 20, "generations": None}
     assert document["versions"] == versions()
@@ -392,6 +393,8 @@ ODD = {
     "a point of a number": (["points", 0], 3),
     "a point of a list": (["points", 0], [1, 2]),
     "a point without a residual": (["points", 0], {"coefficients": [0, 0], "energy": 1.0}),
+    "a residual below zero": (["points", 0, "residual"], -1.0),
+    "an energy below zero": (["points", 2, "energy"], -1.0),
     "a residual of nothing": (["points", 0, "residual"], None),
     "a residual of text": (["points", 0, "residual"], "much"),
     "a residual of the text nan": (["points", 0, "residual"], "nan"),
@@ -401,17 +404,23 @@ ODD = {
     "a coefficient too many": (["points", 1, "coefficients"], [0.5, 0.5, 0.5]),
     "a coefficient of text": (["points", 1, "coefficients", 0], "a"),
     "coefficients of nothing": (["points", 1, "coefficients"], None),
-    "an unknown plant": (["plant"], "crane"),
-    "a plant of a number": (["plant"], 3),
-    "a plant's parameter too many": (["plant_parameters", "mass"], 1.0),
-    "a plant's parameter of text": (["plant_parameters", "omega"], "fast"),
+    "an unknown plant": (["task", "plant"], "crane"),
+    "a plant of a number": (["task", "plant"], 3),
+    "a plant's parameter too many": (["task", "plant_parameters", "mass"], 1.0),
+    "a plant's parameter of text": (["task", "plant_parameters", "omega"], "fast"),
     "an unknown profile": (["profile", "name"], "spline"),
     "a profile of text": (["profile"], "cycloid-polynomial"),
     "a profile of 99 terms": (["profile", "terms"], 99),
-    "an unknown limit": (["limits", "jerk"], 1.0),
-    "a limit below zero": (["limits", "torque"], -1.0),
-    "a duration below zero": (["duration"], -0.8),
-    "a target of nothing": (["target"], None),
+    "an unknown limit": (["task", "limits", "jerk"], 1.0),
+    "a limit below zero": (["task", "limits", "torque"], -1.0),
+    "a duration below zero": (["task", "duration"], -0.8),
+    "a target of nothing": (["task", "target"], None),
+    "a task of text": (["task"], "crane"),
+    "a seed of text": (["seed"], "a"),
+    "a seed of a list": (["seed"], [1]),
+    "a seed below zero": (["seed"], -1),
+    "a reference below zero": (["reference"], [-1, 0]),
+    "a reference of zero": (["reference"], [1.0, 0]),
     "a reference of one": (["reference"], [1.0]),
     "a reference of three": (["reference"], [1.0, 2.0, 3.0]),
     "a reference of nothing": (["reference"], None),
@@ -419,6 +428,14 @@ ODD = {
     "a history of numbers": (["history"], [1, 2]),
     "a generation with more": (["history", 0, "more"], 1),
     "a generation with less": (["history", 0], {"evaluations": 3}),
+    "a generation of text": (["history", 0, "evaluations"], "x"),
+    "a generation of nothing": (["history", 0, "hypervolume"], None),
+    "a hypervolume above one": (["history", 0, "hypervolume"], 1.5),
+    "a gap of text": (["gaps"], [["a", "b"]]),
+    "nested settings": (["settings", "bound"], {"lower": 0.1}),
+    "settings of lists": (["settings", "bound"], [0.1]),
+    "a version of a number": (["versions", "numpy"], 2),
+    "a time below zero": (["seconds"], -5),
     "settings of nothing": (["settings"], None),
     "versions of a list": (["versions"], ["1"]),
     "a method of nothing": (["method"], None),
