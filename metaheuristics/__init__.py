@@ -3,6 +3,7 @@
 # ruff: noqa: I001  # ocp first: it finds a user's file that shadows models
 import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]
 
+from metaheuristics.ensemble import LostSeedsError, Spread, search_many
 from metaheuristics.nsga2 import PaperNSGA2
 from metaheuristics.population import PopulationObjective, PopulationValues
 from metaheuristics.presets import PAPER_BOX, PRESETS, Preset
@@ -19,12 +20,15 @@ __all__ = [
     "PAPER_GROUP",
     "PRESETS",
     "VEPSO",
+    "LostSeedsError",
     "MoveProblem",
     "PaperNSGA2",
     "PopulationObjective",
     "PopulationValues",
     "Preset",
     "SearchProgress",
+    "Spread",
     "VelocityRule",
     "search",
+    "search_many",
 ]

@@ -113,6 +113,10 @@ def _prepare(
     threads: int,
 ) -> Run:
     """Check the arguments of `search`."""
+    if not isinstance(task, PointToPoint):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise ValueError(f"task is {task!r}; give a PointToPoint")
+    if not isinstance(profile, JointProfile):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise ValueError(f"profile is {profile!r}; give a JointProfile, as CycloidPolynomial(6)")
     method = _checked_name(algorithm)
     if bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())

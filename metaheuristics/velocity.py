@@ -8,10 +8,11 @@ References
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, dataclass
 
 import numpy as np
+
+from ocp.checks import not_negative, positive
 
 Array = np.ndarray
 
@@ -36,8 +37,8 @@ class VelocityRule:
 
     def __post_init__(self) -> None:
         for name, value in asdict(self).items():
-            if not 0 <= value < math.inf or (value == 0 and name == "constriction"):
-                raise ValueError(f"{name} is {value}; give a finite number above zero")
+            check = positive if name == "constriction" else not_negative
+            object.__setattr__(self, name, check(name, value))
 
 
 INERTIA_2002 = VelocityRule(1.0, 0.4, 1.0, 0.5, 0.5)  # [1]; needs the number of iterations

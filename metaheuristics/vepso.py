@@ -38,6 +38,7 @@ from metaheuristics.states import (
     restore_generator,
 )
 from metaheuristics.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
+from ocp.checks import positive, whole
 
 STATE_ARRAYS = ("velocities", "best_X", "best_merit", "swarm_best")
 
@@ -111,20 +112,16 @@ class VEPSO(Algorithm):
             raise TypeError(f"VEPSO has no option {', '.join(sorted(unknown))}")
         options.setdefault("output", MultiObjectiveOutput())
         super().__init__(**options)
-        self.particles, self.archive_size, self.iterations = particles, archive_size, iterations
-        self.rule, self.boundary, self.velocity_limit = rule, boundary, velocity_limit
+        self.particles = whole("particles", particles, 2)
+        self.archive_size = _count_or_none("archive_size", archive_size, 2)
+        self.iterations = _count_or_none("iterations", iterations, 1)
+        self.rule, self.boundary = rule, boundary
+        self.velocity_limit = positive("velocity_limit", velocity_limit)
         self.sampling = FloatRandomSampling() if sampling is None else sampling
-        for name, least in (("particles", 2), ("archive_size", 2), ("iterations", 1)):
-            count = getattr(self, name)
-            default = count is None and name != "particles"
-            if not default and (not isinstance(count, int | np.integer) or count < least):
-                raise ValueError(f"{name} is {count!r}; give a whole number of at least {least}")
         if not isinstance(rule, VelocityRule):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise ValueError(f"rule is {rule!r}; give a VelocityRule, as CONSTRICTION")
-        if boundary not in BOUNDARIES:
+        if boundary not in tuple(BOUNDARIES):
             raise ValueError(f"boundary is {boundary!r}; give one of {', '.join(BOUNDARIES)}")
-        if not 0 < velocity_limit < math.inf:
-            raise ValueError(f"velocity_limit is {velocity_limit}; give a positive finite number")
 
     def _setup(self, problem: Any, **kwargs: Any) -> None:
         if not (problem.has_bounds() and np.isfinite([problem.xl, problem.xu]).all()):
@@ -258,6 +255,10 @@ class VEPSO(Algorithm):
         self._set_optimum()
         self.termination.update(self)
         self.n_iter += 1
+
+
+def _count_or_none(name: str, value: object, least: int) -> int | None:
+    return None if value is None else whole(name, value, least)
 
 
 def _violations(candidates: Any) -> Array:

@@ -65,12 +65,19 @@ def _is_folder(text: str) -> Path:
     return folder
 
 
+def _is_input(text: str) -> Path:
+    if not text:
+        raise ValueError("the name of the file is empty; give one")
+    return Path(text)
+
+
 PLANT = Parsed("plant", parse_plant)
 ANGLE = Parsed("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
 COEFFICIENTS = Parsed("numbers", parse_coefficients)
 WEIGHTS = Parsed("weights", parse_weights)
+INPUT = Parsed("file", _is_input)
 OUTPUT = Parsed("file", _is_output)
 PICTURE = Parsed("picture", check_figure)
 FOLDER = Parsed("folder", _is_folder)

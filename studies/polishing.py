@@ -64,7 +64,7 @@ def run_polish(
     whole_front = Front.load(path)
     front = whole_front if points is None else thinned(whole_front, points)
     errors = Console(stderr=True)
-    warn_of_workers(errors, workers)
+    warn_of_workers(errors, workers, len(front.points))
     with count(len(front.points), "points", errors, quiet=quiet) as report:
         polish = polish_front(front, workers=workers, report=report)
     gains = [gain for gain in polish.gains if gain.tried]

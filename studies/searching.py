@@ -164,7 +164,7 @@ def _fronts(
 ) -> tuple[list[Front], LostSeedsError | None, list[str]]:
     """What every seed found, shown as it goes; the error of those whose process died; warnings."""
     runs, troubles = options["runs"], list[str]()
-    warn_of_workers(errors, min(options["workers"], runs))
+    warn_of_workers(errors, options["workers"], runs)
     with search_display(errors, quiet=quiet) as display:
         several = {"report": display, "done": display.finish}
         one = {"report": lambda progress, seed: display(progress), "warn": troubles.append}

@@ -82,7 +82,7 @@ def _swept(task: PointToPoint, options: dict[str, Any], quiet: bool) -> Front:
     weights = options.pop("weights", ())
     if weights:
         options["weights"] = weights
-    warn_of_workers(errors, options.get("workers", 1))
+    warn_of_workers(errors, options.get("workers", 1), options["points"] - 2)  # less the ends
     total = len(weights) or options["points"]
     with count(total, "weights" if weights else "points", errors, quiet=quiet) as report:
         return METHODS[method](task, report=report, **options)

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from studies.commands.shared import refuse_idle, task_of
-from studies.options import OUTPUT, PICTURE, WEIGHTS, task_options
+from studies.options import INPUT, OUTPUT, PICTURE, WEIGHTS, task_options
 
 GRADIENT, METAHEURISTICS = ("epsilon", "weighted"), ("nsga2", "vepso")
 _ONLY_FOR = {
@@ -60,7 +60,10 @@ _ONLY_FOR = {
     "--checkpoint", type=OUTPUT, help="Metaheuristic: write the state here every few seconds."
 )
 @click.option(
-    "--resume", type=click.Path(path_type=Path), help="Metaheuristic: go on from this checkpoint."
+    "--resume",
+    type=INPUT,
+    help="Metaheuristic: go on from this checkpoint; what is found further is saved only with "
+    "--checkpoint, which may name the same file.",
 )
 @click.option(
     "--output", type=OUTPUT,

@@ -78,8 +78,8 @@ def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequ
             raise ValueError(f"--{name} is for {known}, not for {method}; leave it out")
 
 
-def warn_of_workers(console: Console, workers: int) -> None:
-    """Say where there are more workers than cores."""
-    cores = os.cpu_count() or 1
+def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
+    """Say where more workers will start than there are cores; never more than pieces of work."""
+    cores, workers = os.cpu_count() or 1, min(workers, pieces)
     if workers > cores:
         console.print(f"{workers} workers on {cores} cores: they will share them", highlight=False)

@@ -92,13 +92,16 @@ def step(algorithm):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"particles": 1}, "particles is 1; give a whole number of at least 2"),
+        ({"particles": 1}, "particles is 1; give a whole number from 2 up"),
         ({"particles": 10.5}, "particles is 10.5"),
         ({"particles": None}, "particles is None"),
-        ({"archive_size": 1}, "archive_size is 1; give a whole number of at least 2"),
-        ({"iterations": 0}, "iterations is 0; give a whole number of at least 1"),
+        ({"archive_size": 1}, "archive_size is 1; give a whole number from 2 up"),
+        ({"iterations": 0}, "iterations is 0; give a whole number from 1 up"),
+        ({"iterations": True}, "iterations is True"),
+        ({"boundary": ["clip"]}, "boundary is .'clip'.; give one of clip, reflect"),
+        ({"velocity_limit": "a"}, "velocity_limit is 'a'; give a number"),
         ({"boundary": "wrap"}, "boundary is 'wrap'; give one of clip, reflect"),
-        ({"velocity_limit": 0.0}, "velocity_limit is 0.0; give a positive"),
+        ({"velocity_limit": 0.0}, "velocity_limit is 0; give a positive"),
         ({"velocity_limit": float("nan")}, "velocity_limit is nan"),
         ({"rule": "constriction"}, "rule is 'constriction'; give a VelocityRule"),
     ],
@@ -110,13 +113,16 @@ def test_wrong_arguments_are_named_with_the_remedy(arguments, message):
 
 
 @pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(VelocityRule)])
-@pytest.mark.parametrize("value", [-0.1, float("nan"), float("inf")])
+@pytest.mark.parametrize("value", [-0.1, float("nan"), float("inf"), "a"])
 def test_constants_of_the_velocity_are_checked(field, value):
-    with pytest.raises(ValueError, match=f"{field} is {value}; give"):
+    with pytest.raises(ValueError, match=f"{field} is {value!r}; give"):
         dataclasses.replace(CONSTRICTION, **{field: value})
 
 
-def test_zero_constriction_is_refused():
+def test_of_the_constants_only_the_constriction_may_not_be_zero():
+    VelocityRule(0, 0, 1.0, 0, 0)
+    with pytest.raises(ValueError, match=r"cognitive is -1; give 0 or more"):
+        VelocityRule(1.0, 1.0, 0.7, -1, 2.0)
     with pytest.raises(ValueError, match="constriction is 0"):
         VelocityRule(1.0, 1.0, 0.0, 2.0, 2.0)
 

@@ -240,7 +240,7 @@ def test_what_is_found_beside_a_process_that_died_is_written(call, monkeypatch, 
     assert Front.load("f-seed0.json").seed == 0
 
 
-@pytest.mark.parametrize(("workers", "warned"), [(2, True), (1, False)])
+@pytest.mark.parametrize(("workers", "warned"), [(2, True), (8, True), (1, False)])
 def test_more_workers_than_cores_are_warned_of(call, monkeypatch, front_of, workers, warned):
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
     monkeypatch.setattr(studies.searching, "search_many", lambda *_, **__: [front_of([(1, 0.2)])])
@@ -273,6 +273,7 @@ def test_a_checkpoint_that_is_lost_on_the_way_is_told_at_the_end(call, folder, m
 @pytest.mark.parametrize(
     ("line", "words"),
     [
+        (f'{SMALL} --resume ""', "'--resume': the name of the file is empty; give one"),
         (f"{SMALL} --runs 2 --checkpoint state", "are for one run, not with --runs"),
         (f"{SMALL} --runs 1000000000 --output f.json", "runs is 1000000000; give at most 10000"),
         (f"front {MOVE} --method vepso --bound 1e308", "is 1e+308; give at most 1e+06"),

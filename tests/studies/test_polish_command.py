@@ -140,7 +140,7 @@ def without(**changes):
     [
         (lambda: "{}", "", "bad.json is not a front"),
         (lambda: "a,b\n", "", "bad.json is not a front"),
-        (lambda: without(plant="crane"), "", "crane"),
+        (lambda: without(task={"plant": "crane"}), "", "crane"),
         (lambda: without(profile={"kind": "spline"}), "", "bad.json"),
         (lambda: without(points=[]), "", "the front has no point"),
         (lambda: without(settings={"bound": "wide"}), "", "bound is 'wide'; give a number"),

@@ -208,3 +208,5 @@ def test_more_workers_than_cores_are_warned_of(call, answer, good, monkeypatch):
     answer(good)
     _, _, err = call(f"front {MOVE} --method epsilon --workers 2")
     assert err == "2 workers on 1 cores: they will share them\n"
+    _, _, err = call(f"front {MOVE} --method epsilon --workers 2 --points 3")
+    assert err == ""  # two of the points are the ends, found before: one worker starts
