@@ -24,9 +24,9 @@ def load_plugins() -> None:
 
 
 def forget_compiled() -> None:
-    """Empty every cache of ocp, so that the next plan builds all of its functions anew."""
+    """Empty every cache, so that the next plan or search builds all of its functions anew."""
     for name, module in list(sys.modules.items()):
-        if name.startswith("ocp."):
+        if name.startswith(("ocp.", "metaheuristics.")):
             for value in vars(module).values():
                 if hasattr(value, "cache_clear"):
                     value.cache_clear()

@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TextColumn,
+    TimeRemainingColumn,
+)
 
-_PLAIN_SECONDS = 2.0
+Display = TypeVar("Display")
+
+PLAIN_SECONDS = 2.0
+"""Between the plain lines of work whose pieces are too many for a line each."""
 _COLUMNS = (
     BarColumn(),
     MofNCompleteColumn(),
@@ -25,6 +35,49 @@ class Advance(Protocol):
     def __call__(self, name: str) -> None:
         """Begin the piece of work of this name."""
         ...
+
+
+@contextmanager
+def shown(
+    console: Console,
+    quiet: bool,
+    columns: Sequence[ProgressColumn],
+    nothing: Display,
+    lines: Display,
+    bar: Callable[[Progress], Display],
+) -> Iterator[Display]:
+    """Choose how work is shown.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    quiet : bool
+        Whether it is to be shown at all.
+    columns : sequence of ProgressColumn
+        Of the bars.
+    nothing, lines : Display
+        What shows nothing, and what prints plain lines elsewhere than on a terminal.
+    bar : callable
+        Makes of a terminal's bars what draws in them.
+
+    Yields
+    ------
+    Display
+        One of the three.
+    """
+    if quiet:
+        yield nothing
+    elif not console.is_terminal:
+        yield lines
+    else:
+        with Progress(*columns, console=console, transient=True) as bars:
+            yield bar(bars)
+
+
+def print_line(console: Console, line: str) -> None:
+    """Print a line as it is, however narrow the console."""
+    console.print(line, markup=False, highlight=False, soft_wrap=True)
 
 
 @contextmanager
@@ -45,29 +98,25 @@ def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[A
     Advance
         Call it with the name of every piece when the piece begins.
     """
-    if quiet:
-        yield lambda name: None
-    elif not console.is_terminal:
-        begun = 0
+    begun = 0
 
-        def line(name: str) -> None:
+    def line(name: str) -> None:
+        nonlocal begun
+        begun += 1
+        print_line(console, f"[{begun}/{total}] {name}")
+
+    def bar(bars: Progress) -> Advance:
+        task = bars.add_task("", total=total)
+
+        def advance(name: str) -> None:
             nonlocal begun
+            bars.update(task, completed=begun, description=name)
             begun += 1
-            text = f"[{begun}/{total}] {name}"
-            console.print(text, markup=False, highlight=False, soft_wrap=True)
 
-        yield line
-    else:
-        with Progress(*_COLUMNS, console=console, transient=True) as bar:
-            task = bar.add_task("", total=total)
-            begun = 0
+        return advance
 
-            def advance(name: str) -> None:
-                nonlocal begun
-                bar.update(task, completed=begun, description=name)
-                begun += 1
-
-            yield advance
+    with shown(console, quiet, _COLUMNS, lambda name: None, line, bar) as advance:
+        yield advance
 
 
 @contextmanager
@@ -93,19 +142,17 @@ def count(
         To be called with the number of pieces done and of all; on no terminal that is a line every
         two seconds.
     """
-    if quiet:
-        yield lambda done, total: None
-    elif not console.is_terminal:
-        said = time.monotonic()
+    said = time.monotonic()
 
-        def line(done: int, total: int) -> None:
-            nonlocal said
-            if done == total or time.monotonic() - said >= _PLAIN_SECONDS:
-                said = time.monotonic()
-                console.print(f"{done} of {total} {what}", highlight=False, soft_wrap=True)
+    def line(done: int, total: int) -> None:
+        nonlocal said
+        if done == total or time.monotonic() - said >= PLAIN_SECONDS:
+            said = time.monotonic()
+            print_line(console, f"{done} of {total} {what}")
 
-        yield line
-    else:
-        with Progress(*_COLUMNS, console=console, transient=True) as bar:
-            task = bar.add_task(what, total=total)
-            yield lambda done, total: bar.update(task, completed=done, total=total)
+    def bar(bars: Progress) -> Callable[[int, int], None]:
+        task = bars.add_task(what, total=total)
+        return lambda done, total: bars.update(task, completed=done, total=total)
+
+    with shown(console, quiet, _COLUMNS, lambda done, total: None, line, bar) as report:
+        yield report

@@ -12,8 +12,8 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from metaheuristics import SearchProgress
 from ocp import Front
+from studies.progress import PLAIN_SECONDS, print_line, shown
 
-_PLAIN_SECONDS = 2.0
 _WIDE = 120
 """Columns of a terminal from which every figure has its name."""
 
@@ -44,14 +44,9 @@ def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchD
     SearchDisplay
         To be called with a `SearchProgress` after every generation.
     """
-    if quiet:
-        yield SearchDisplay()
-    elif not console.is_terminal:
-        yield _Lines(console)
-    else:
-        columns = (BarColumn(bar_width=12), TextColumn("{task.description}", markup=False))
-        with Progress(*columns, console=console, transient=True) as bars:
-            yield _Bars(bars)
+    columns = (BarColumn(bar_width=12), TextColumn("{task.description}", markup=False))
+    with shown(console, quiet, columns, SearchDisplay(), _Lines(console), _Bars) as display:
+        yield display
 
 
 class _Bars(SearchDisplay):
@@ -74,7 +69,7 @@ class _Bars(SearchDisplay):
     def finish(self, front: Front) -> None:
         if front.seed in self._tasks:
             self._bars.remove_task(self._tasks.pop(front.seed))
-        _print(self._bars.console, _found(front))
+        print_line(self._bars.console, _found(front))
 
 
 class _Lines(SearchDisplay):
@@ -86,17 +81,13 @@ class _Lines(SearchDisplay):
 
     def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
         now = time.perf_counter()
-        due = now - self._last.setdefault(seed, now) >= _PLAIN_SECONDS
+        due = now - self._last.setdefault(seed, now) >= PLAIN_SECONDS
         if due or progress.generation == progress.generations:
             self._last[seed] = now
-            _print(self._console, _figures(progress, seed))
+            print_line(self._console, _figures(progress, seed))
 
     def finish(self, front: Front) -> None:
-        _print(self._console, _found(front))
-
-
-def _print(console: Console, line: str) -> None:
-    console.print(line, markup=False, highlight=False, soft_wrap=True)
+        print_line(self._console, _found(front))
 
 
 def _found(front: Front) -> str:
