@@ -30,7 +30,10 @@ _STILLEST = 1e-6
 _TALLEST = 1.6
 """Panels end at this multiple of the energy of the best nearly still motion."""
 
-BANDS = "Of several seeds: the median,\nin a band from the best to the worst"
+BANDS = (
+    "Of several seeds: what half of them reach (of two,\n"
+    "the better one), in a band from the best to the worst"
+)
 
 Array = NDArray[np.float64]
 Dash = str | tuple[int, tuple[int, ...]]

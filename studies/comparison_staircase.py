@@ -52,7 +52,7 @@ def filled(front: Front, points: int) -> Array:
     corners = np.array([point.coefficients for point in front.points])
     share = (np.arange(1, between + 1) / (between + 1))[:, None]
     inner = corners[:-1, None] * (1 - share) + corners[1:, None] * share
-    values = _objective(front.task, front.profile)(inner.reshape(-1, front.profile.size))
+    values = objective_of(front.task, front.profile)(inner.reshape(-1, front.profile.size))
     table = np.column_stack([values.residual, values.energy])
     kept = np.isfinite(table).all(axis=1) & (values.violations <= _KEPT).all(axis=1)
     return best_of([own, table[kept]])
@@ -94,5 +94,6 @@ def evenly_spaced(points: Array, stations: int = _STATIONS) -> Array:
 
 
 @lru_cache(maxsize=4)
-def _objective(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
+def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
+    """The objective at the steps that fronts are verified with; made once for a task."""
     return PopulationObjective(task, profile, steps=default_steps(task))

@@ -147,7 +147,11 @@ def how_to_read(comparison: Comparison) -> list[str]:
         "Coverage: share of the points found that the other front, filled, dominates or equals."
     )
     if any(len(group.runs) > 1 for group in comparison.groups):
-        lines.append("Of several seeds the median is shown, over those that reach the residual.")
+        lines.append(
+            "Of several seeds the tables show the median, over those that reach the residual (of "
+            "two the middle between them); the picture shows what at least half of them reach (of "
+            "two the better one)."
+        )
     return lines
 
 

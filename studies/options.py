@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -56,12 +57,19 @@ def _is_output(text: str) -> Path:
 
 def _is_folder(text: str) -> Path:
     folder = Path(text)
+    place = folder
     if folder.is_dir():
         check_writable(folder / "any")
     elif folder.exists():
         raise ValueError(f"{folder} is a file; give a folder")
     else:
         check_writable(folder)  # it will be made; the folder around it must be there
+        place = folder.parent
+    try:  # permissions do not tell of all places, such as /proc, that nothing can be made there
+        tempfile.TemporaryDirectory(dir=place, prefix=".quietarm-").cleanup()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ValueError(f"{folder} cannot be written: {reason}; choose another place") from None
     return folder
 
 

@@ -13,6 +13,7 @@ from metaheuristics.ensemble import search_many
 from ocp import (
     CycloidPolynomial,
     Front,
+    InfeasibleTaskError,
     PointToPoint,
     Polish,
     QuietarmError,
@@ -73,9 +74,9 @@ class StudySettings:
         least = {"terms": 1, "points": 2, "runs": 1, "seed": 0, "workers": 1}
         for name, value in least.items():
             whole(name, getattr(self, name), value)
-        for name in ("population", "generations"):
+        for name, value in {"population": 2, "generations": 1}.items():
             if getattr(self, name) is not None:
-                whole(name, getattr(self, name), 1)
+                whole(name, getattr(self, name), value)
 
 
 @dataclass(frozen=True)
@@ -194,7 +195,10 @@ def _study_case(case: Case, settings: StudySettings, begin: Callable[[str], None
     gradient = partial(_gradient, task, profile, bound=case.bound, points=settings.points)
     log, polishes = _Log(title_of(task), begin), dict[str, Polish]()
     fronts = log.fronts("epsilon", partial(gradient, epsilon_front, workers=settings.workers))
-    fronts += log.fronts("weighted", partial(gradient, weighted_front))
+    if log.infeasible:  # the weighted method begins with the same end, and would fail alike
+        log.failures.append("weighted: not tried, as epsilon found no motion within the limits")
+    else:
+        fronts += log.fronts("weighted", partial(gradient, weighted_front))
     for method in SEARCHES:
         found = log.fronts(method, partial(_searched, case, method, settings))
         fronts += found
@@ -219,6 +223,7 @@ class _Log:
 
     def __init__(self, where: str, begin: Callable[[str], None]) -> None:
         self.where, self.failures, self.begin = where, list[str](), begin
+        self.infeasible = False
 
     def tried(self, name: str, work: Callable[[], Answer]) -> Answer | None:
         """The answer of a piece of work; None where it fails."""
@@ -227,6 +232,7 @@ class _Log:
             return work()
         except QuietarmError as error:
             self.failures.append(f"{name}: {error}")
+            self.infeasible |= isinstance(error, InfeasibleTaskError)
             return None
 
     def fronts(self, name: str, work: Callable[[], list[Front]]) -> list[Front]:

@@ -42,9 +42,12 @@ def compare(
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.comparison import FILL
     from studies.comparison import compare as measure
+    from studies.comparison_check import check_figures
     from studies.comparison_report import load_fronts, show, with_floor, write
 
     loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
+    for front, name in zip(loaded, names, strict=True):
+        check_figures(front, name)
     named = None if reference is None else loaded.pop()
     comparison = measure(
         loaded, names[: len(loaded)], reference=named, reference_name=str(reference),

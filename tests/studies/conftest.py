@@ -1,6 +1,8 @@
 """What the tests of `studies` share: one reproduction of the paper, one plan."""
 
+import errno
 import math
+import os
 import shlex
 
 import numpy as np
@@ -56,6 +58,16 @@ def call(capfd):
         return ended.value.code, out, err
 
     return run_here
+
+
+@pytest.fixture
+def no_place(monkeypatch):
+    """Nothing can be made in any folder, whatever permissions say, as in /proc."""
+
+    def fail(*given, **settings):
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+
+    monkeypatch.setattr("tempfile.mkdtemp", fail)
 
 
 @pytest.fixture(scope="session")

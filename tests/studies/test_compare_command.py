@@ -11,9 +11,11 @@ import pytest
 from matplotlib.colors import to_rgba
 
 import studies.comparison
+import studies.comparison_check
 import studies.comparison_report
 from models import ArmOnFlexibleLink
-from ocp import PointToPoint, SolverFailedError
+from ocp import FrontPoint, PointToPoint, SolverFailedError, evaluate_coefficients
+from studies.comparison_check import check_figures
 from studies.comparison_figure import BANDS, PANELS, comparison_figure, looks, panel_figure
 from studies.comparison_paper import condition_of, paper_points, title_of
 from studies.comparison_report import FILES, write
@@ -40,6 +42,7 @@ def files(good, poor, tmp_path, monkeypatch):
     """Two files, in the folder of the test."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setattr(studies.comparison_check, "check_figures", lambda front, name: None)
     good.save("good.json")
     poor.save("poor.json")
     return tmp_path
@@ -98,6 +101,13 @@ def test_the_picture_holds_the_fronts_as_staircases(comparison):
     assert (heights.min(), heights.max()) == (0.75, 0.97)
     assert still.get_xscale() == gaps.get_xscale() == "log"
     assert picture.axes[3].get_legend().get_title().get_text() == BANDS
+
+
+def test_of_two_seeds_the_picture_shows_what_the_better_reaches_and_says_so(good, seeds):
+    two = compare([good, *seeds[:2]])
+    np.testing.assert_allclose(drawn(comparison_figure(two).axes[0], "NSGA-II")[0], [1, 0.95])
+    assert cells(tables(two)["energies"])["energy at 1 mm [J]"][1] == "0.96"  # the middle
+    assert "of two,\nthe better one" in BANDS
 
 
 def test_points_are_held_against_the_best_within_their_residual(comparison):
@@ -253,6 +263,47 @@ def test_an_empty_front_is_refused_by_its_file(call, files, front_of):
     code, _, err = call("compare good.json empty.json")
     assert (code, err.count("\n")) == (2, 1)
     assert "empty.json has no finite point" in err
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_the_work(call, files, no_place):
+    code, out, err = call("compare good.json missing.json --output compared")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "compared cannot be written: no such file or directory; choose another place" in err
+
+
+@pytest.fixture
+def moved(task):
+    """Three motions of the plant, with the figures that CVODES gives them."""
+    points = []
+    for a in (0.0, 0.02, 0.04):
+        plan = evaluate_coefficients(task, [a, 0.0])
+        points.append(FrontPoint((a, 0.0), plan.residual, plan.energy))
+    return points
+
+
+def test_figures_that_are_those_of_the_motions_pass(front_of, moved):
+    for point in moved:
+        check_figures(of_points(front_of, [point]), "a.json")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"energy": 0.002}, "states energy 0.002 J, but its coefficients give 0.0"),
+        ({"residual": 0.5}, "states residual 0.5 m, but its coefficients give 0.0"),
+    ],
+)
+def test_edited_figures_are_refused_in_a_line(call, front_of, moved, tmp_path, change, words):
+    edited = dataclasses.replace(moved[1], **change)
+    of_points(front_of, moved[:1]).save(tmp_path / "a.json")
+    of_points(front_of, [edited]).save(tmp_path / "b.json")
+    code, out, err = call(f"compare {tmp_path / 'a.json'} {tmp_path / 'b.json'} --no-floor")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert f"b.json: point 1 of 1 {words}" in err
+
+
+def of_points(front_of, points):
+    return dataclasses.replace(front_of([(1, 1)]), points=tuple(points))
 
 
 def test_nothing_is_half_written(comparison, tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 import studies.study as study_module
-from ocp import Front, PointToPoint, SolverFailedError
+from ocp import Front, InfeasibleTaskError, PointToPoint, SolverFailedError
 from studies.paper import ARM_HALF, SINGLE_LINK_SIXTH
 from studies.study import PAPER_CASES, Case, StudySettings, amount_of_work, study
 from studies.study_files import _file_name, write
@@ -94,8 +94,10 @@ def test_a_plant_of_ones_own_needs_a_bound(two_links):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"points": 1}, {"runs": 0}, {"terms": 0}, {"workers": 0}, {"generations": 0}]
-)
+    "wrong",
+    [{"points": 1}, {"runs": 0}, {"terms": 0}, {"workers": 0}, {"population": 1},
+     {"generations": 0}],
+)  # fmt: skip
 def test_settings_out_of_range_are_refused(wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         StudySettings(**wrong)
@@ -112,6 +114,25 @@ def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch):
     assert found.failures == ("weighted: it would not", "floor: it would not")
     assert found.floor is None
     assert set(found.failures) <= set(case_findings(found))
+
+
+def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(monkeypatch, small):
+    def infeasible(*arguments, **settings):
+        raise InfeasibleTaskError("found no motion")
+
+    found = [run.front for run in small.cases[0].comparison.runs if run.front.seed is not None]
+    monkeypatch.setattr(study_module, "epsilon_front", infeasible)
+    monkeypatch.setattr(study_module, "weighted_front", lambda *given, **_: pytest.fail("asked"))
+    monkeypatch.setattr(
+        study_module, "search_many", lambda task, method, *given, **settings: [
+            front for front in found if front.method == method
+        ],
+    )  # fmt: skip
+    (case,) = study(CASES[:1], QUICK).cases
+    assert case.failures == (
+        "epsilon: found no motion",
+        "weighted: not tried, as epsilon found no motion within the limits",
+    )
 
 
 def test_a_search_that_is_interrupted_interrupts_the_study(monkeypatch, small):
@@ -318,6 +339,7 @@ def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkey
         (f"{MOVE} --bound 0", "bound on the coefficients is 0"),
         (f"{MOVE} --points 1", "points is 1; give a whole number from 2 up"),
         (f"{MOVE} --runs 0", "runs is 0"),
+        (f"{MOVE} --population 1", "population is 1; give a whole number from 2 up"),
         (f"{MOVE} --terms 0", "terms is 0"),
         (f"{MOVE} --output nowhere/a.html", "folder nowhere does not exist"),
         ("study singel-link --target 1 --duration 1", "did you mean 'single-link'?"),
@@ -328,6 +350,13 @@ def test_bad_input_is_refused_in_a_line_before_any_work(call, folder, monkeypatc
     code, out, err = call(line)
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert words in err
+    assert list(folder.iterdir()) == []
+
+
+def test_a_folder_for_the_fronts_that_cannot_be_made_is_refused_first(call, folder, no_place):
+    code, out, err = call(f"{MOVE} --fronts fronts")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "fronts cannot be written: no such file or directory; choose another place" in err
     assert list(folder.iterdir()) == []
 
 
