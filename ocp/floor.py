@@ -46,14 +46,16 @@ def energy_floor(
 
     The acceleration of the joint is free on every interval of a grid (piecewise constant), or its
     jerk for a smooth motion (acceleration continuous, and zero at both ends). Joint and modes are
-    at rest at both ends. The grid is refined until the energy falls by less than the tolerance.
+    at rest at both ends. The grid is refined until the energy changes by less than the tolerance.
 
-    Where the solver fails on a finer grid, the refinement ends there and the floor says so.
+    Where the solver fails on a finer grid, the refinement ends there and the floor says so. Where
+    the energy rises on a finer grid, having gone to another minimum, the motion of the grid whose
+    energy is least by the independent integrator is returned.
 
     Without an acceleration limit the least energy is approached by motions whose speed jumps: an
     impulse at either end, and on the single-link manipulator others on the way. The grid is finer
     where it finds them; the estimate of what is left says how far off the limit is. A smooth motion
-    approaches the same limit, from further above.
+    approaches the same limit; on as many intervals its energy may be slightly higher or lower.
 
     Parameters
     ----------
@@ -94,22 +96,19 @@ def energy_floor(
     solved = [found for found in tried if found.status.solved]
     if not solved:
         solved = _rescued(program, tried)
-    levels = [_level(min(solved, key=_energy))]
     improved = _refined_once(program, solved)
-    best = min(improved, key=_energy)
-    levels.append(_level(best))
-    while not _settled(levels, tolerance) and 2 * best.free.steps <= MOST_STEPS:
-        following = _refined(program, best)
+    grids = [min(solved, key=_energy), min(improved, key=_energy)]
+    while not _settled(grids, tolerance) and 2 * grids[-1].free.steps <= MOST_STEPS:
+        following = _refined(program, grids[-1])
         if not following.status.solved:
             break
-        best = following
-        levels.append(_level(best))
-    best, simulation = _within_limits(program, best)
+        grids.append(following)
+    best, simulation = _least_verified(program, grids)
     return Floor(
         task=task,
         free=best.free,
         motion=simulation.motion,
-        levels=tuple(levels),
+        levels=tuple(Level(found.free.steps, found.energy) for found in grids),
         starts=tuple(found.energy for found in improved),
         status=best.status,
         verification=Verification.between(best.free.steps, best.energy, 0.0, simulation.motion),
@@ -149,13 +148,9 @@ def _energy(found: FreeSolution) -> float:
     return found.energy
 
 
-def _level(found: FreeSolution) -> Level:
-    return Level(found.free.steps, found.energy)
-
-
-def _settled(levels: list[Level], tolerance: float) -> bool:
-    before, after = levels[-2].energy, levels[-1].energy
-    return len(levels) >= _LEAST_LEVELS and abs(before - after) <= tolerance * after
+def _settled(grids: list[FreeSolution], tolerance: float) -> bool:
+    before, after = grids[-2].energy, grids[-1].energy
+    return len(grids) >= _LEAST_LEVELS and abs(before - after) <= tolerance * after
 
 
 def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:
@@ -181,6 +176,22 @@ def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[Fre
         after if after.status.solved else before
         for before, after in zip(solved, results, strict=True)
     ]
+
+
+def _least_verified(
+    program: FloorProgram, grids: list[FreeSolution]
+) -> tuple[FreeSolution, FreeSimulation]:
+    """The last grid's motion, or that of a coarser grid where it is verified to need less."""
+    least = _within_limits(program, grids[-1])
+    for found in grids[:-1]:
+        if found.energy < grids[-1].energy:
+            with suppress(SolverFailedError):  # a coarse grid may not keep the limits in between
+                least = min(least, _within_limits(program, found), key=_verified)
+    return least
+
+
+def _verified(found: tuple[FreeSolution, FreeSimulation]) -> float:
+    return found[1].motion.energy
 
 
 def _within_limits(

@@ -59,7 +59,8 @@ class Floor(Saved):
     motion : Motion
         Residual, energy and diagnostics, by the independent integrator.
     levels : tuple of Level
-        The grids, coarse to fine, with their energies.
+        The grids, coarse to fine, with their energies. The motion is that of the last, or where
+        the energy rose on the way, of a coarser one that needs less.
     starts : tuple of float
         Energy [J] at which each solved start ended, all on the second grid.
     status : SolveStatus
@@ -126,10 +127,19 @@ class Floor(Saved):
         The ratio of the series is that of the last two falls, but at least 1/2: grids that begin
         coarse gain faster at first than they go on to. An estimate, no bound; it leaves out that
         a jolt takes up to 4e-5 of the move on every grid, about 1e-4 of the energy.
+
+        Where a coarser grid needs less than the last, the falls are no series: the energy went to
+        another minimum, and a better one may be missed. Then the estimate is the fall down to the
+        lowest grid, or the rise since, whichever is more: the order of what is unknown, no more.
         """
-        ratio = min(max(self.ratio or 0.0, _FIRST_ORDER), _MOST_RATIO)
+        energies = [level.energy for level in self.levels]
+        lowest = energies.index(min(energies))
         missed = max(-self.verification.energy_difference, 0.0)
-        return abs(self.change) * ratio / (1 - ratio) + missed
+        if energies[lowest] < energies[-1]:
+            fall = energies[lowest - 1] - energies[lowest] if lowest else 0.0
+            return max(fall, max(energies[lowest:]) - energies[lowest]) + missed
+        ratio = min(max(self.ratio or 0.0, _FIRST_ORDER), _MOST_RATIO)
+        return self.change * ratio / (1 - ratio) + missed
 
     def agreeing(self, share: float = 0.005) -> int:
         """How many starts ended within a share of the best of them."""

@@ -107,16 +107,16 @@ def _sampled(motion: Plan | Floor) -> Trajectory:
 
 def _leave_out_jolts(axis: Axes, lines: Sequence[Line]) -> None:
     """Let a floor's jolts, a thousand times its other torque for a moment, leave the panel."""
-    peaks = [0.0]
+    peaks, usual = [0.0], [0.0]
     for line in lines:
         sampled = _sampled(line.plan)
         torque, held = np.abs(sampled.torque), np.gradient(sampled.time)
         order = np.argsort(torque)
         most_of_the_time = np.searchsorted(np.cumsum(held[order]), _SHOWN * held.sum())
-        peaks.append(float(torque[order][min(most_of_the_time, len(order) - 1)]))
-    highest = _ABOVE * max(peaks)
-    lower, upper = axis.get_ylim()
-    if max(-lower, upper) > highest and any(isinstance(line.plan, Floor) for line in lines):
+        peaks.append(float(torque.max()))
+        usual.append(float(torque[order][min(most_of_the_time, len(order) - 1)]))
+    highest = _ABOVE * max(usual)
+    if max(peaks) > highest and any(isinstance(line.plan, Floor) for line in lines):
         axis.set_ylim(-highest, highest)
         axis.set_title(f"{axis.get_title(loc='left')}, jolts left out", fontsize=10, loc="left")
 

@@ -82,9 +82,11 @@ def _unsolved(floor: Floor) -> str:
 
 
 def _left(floor: Floor) -> str:
-    falls = (
-        "" if floor.ratio is None else f"; the last grid gained {floor.ratio:.2f} of the one before"
-    )
+    falls = ""
+    if floor.change < 0:
+        falls = "; on the last grid the energy rose"
+    elif floor.ratio is not None:
+        falls = f"; the last grid gained {floor.ratio:.2f} of the one before"
     return (
         f"about {floor.left:.2g} J ({floor.left / floor.energy:.2%}) to be gained by ever finer "
         f"grids{falls}"

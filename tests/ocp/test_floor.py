@@ -219,7 +219,10 @@ def test_what_is_left_is_what_finer_grids_gain(floor_of):
         ([1.0, 0.7, 0.5], 2 / 3, 0.4),
         ([1.0, 0.5, 0.49], 0.02, 0.01),  # no better than first order is believed
         ([1.0, 0.9, 0.8], 1.0, 0.4),  # nor a series that does not end
-        ([1.0, 0.9, 0.95], None, 0.05),  # the energy rose: another minimum
+        ([1.0, 0.9, 0.95], None, 0.1),  # the energy rose: no less than the fall before
+        ([1.0, 0.9, 1.2, 1.19], None, 0.3),  # nor than the rise
+        ([1.0, 1.1], None, 0.1),
+        ([1.0, 0.9, 0.95, 0.8], None, 0.15),  # lower again: its own fall once more
     ],
 )
 def test_the_estimate_continues_the_falls_of_the_energy(floor_of, energies, ratio, left):
@@ -229,6 +232,28 @@ def test_the_estimate_continues_the_falls_of_the_energy(floor_of, energies, rati
     missed = -floor.verification.energy_difference
     assert floor.left == pytest.approx(left + missed)
     assert missed > 0
+
+
+def test_where_a_finer_grid_needs_more_the_coarser_motion_is_kept(monkeypatch, floor_of):
+    usual, solve = floor_of(ARM, **SHORT), FloorProgram.solve
+    first, second = usual.levels[:2]
+    fastest = usual.motion.peak_speed
+
+    def worse_when_fine(self, free, limits, **settings):
+        # Slower than the best motion: it arrives at rest too, and needs more.
+        fine = free.steps > second.steps
+        return solve(self, free, {"speed": 0.8 * fastest} if fine else limits, **settings)
+
+    monkeypatch.setattr(FloorProgram, "solve", worse_when_fine)
+    floor = energy_floor(replace(ARM, speed_limit=2 * fastest), tolerance=0.5, **SHORT)
+    assert [level.energy for level in floor.levels[:2]] == pytest.approx(
+        [first.energy, second.energy], rel=1e-4
+    )
+    assert len(floor.levels) == 3
+    assert floor.levels[2].energy > 1.001 * second.energy
+    assert floor.free.steps == floor.verification.steps == second.steps
+    assert floor.energy == pytest.approx(second.energy, rel=1e-3)
+    assert floor.left > max(first.energy - second.energy, -floor.change)
 
 
 def test_a_floor_whose_refinement_failed_says_so(monkeypatch, floor_of):

@@ -121,6 +121,17 @@ def test_the_picture_holds_the_floor_over_the_plan(floor):
     plt.close("all")
 
 
+def test_a_picture_that_cuts_nothing_says_nothing_of_jolts():
+    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, acceleration_limit=200.0)
+    floor = energy_floor(task, starts=1)
+    torque = floor_figure(floor, plan_beside(floor)).axes[3]
+    (lowest, highest), drawn = torque.get_ylim(), floor.trajectory.torque
+    assert lowest < drawn.min() < -1.0
+    assert 0.9 < drawn.max() < highest
+    assert torque.get_title(loc="left") == "(d) motor torque [N m]"
+    plt.close("all")
+
+
 def test_a_plan_s_picture_leaves_nothing_out(plan):
     figure = four_panels([Line(plan, "plan", "black")])
     torque = figure.axes[3]
