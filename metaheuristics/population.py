@@ -72,6 +72,7 @@ class PopulationObjective:
         When `threads` is below 1.
     """
 
+    @keep_interrupts()  # casadi loses a Ctrl-C
     def __init__(
         self,
         task: PointToPoint,
@@ -88,7 +89,7 @@ class PopulationObjective:
         self._idle: list[_Workspace] = []
         self._function = _compiled(task.plant, profile, self.steps, tuple(task.limits))
 
-    @keep_interrupts()  # casadi loses a Ctrl-C
+    @keep_interrupts()
     def __call__(self, coefficients: ArrayLike) -> PopulationValues:
         """Evaluate a population.
 

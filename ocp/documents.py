@@ -55,7 +55,7 @@ def write_document(path: str | Path, kind: str, version: int, content: Mapping[s
     write_whole(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
 
 
-def read_document(path: str | Path, kind: str, version: int) -> Document:
+def read_document(path: str | Path, kind: str, version: int, oldest: int = 1) -> Document:
     """Read a document of one kind, of this version or older.
 
     Parameters
@@ -64,8 +64,8 @@ def read_document(path: str | Path, kind: str, version: int) -> Document:
         The file.
     kind : str
         Format name that it must have.
-    version : int
-        Newest version that can be read.
+    version, oldest : int
+        Newest and oldest version that can be read.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def read_document(path: str | Path, kind: str, version: int) -> Document:
     Raises
     ------
     FileFormatError
-        When the file cannot be read, is not of this kind, or is newer.
+        When the file cannot be read, is not of this kind, or is newer or too old.
     """
     name = kind.removeprefix("quietarm-")
     try:
@@ -98,6 +98,11 @@ def read_document(path: str | Path, kind: str, version: int) -> Document:
         raise FileFormatError(
             f"{path} has version {found} of the {name} format and this quietarm reads up to "
             f"{version}; install a newer quietarm"
+        )
+    if found < oldest:
+        raise FileFormatError(
+            f"{path} has version {found} of the {name} format and this quietarm reads {oldest} to "
+            f"{version}; find the {name} again"
         )
     return document
 

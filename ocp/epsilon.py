@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,6 +157,13 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], 
     return spaced.tolist(), scouts
 
 
+def _differ(one: Solution, other: Solution) -> bool:
+    """Whether two solutions at one limit are told apart by more than the steps' own error."""
+    if not (one.status.solved and other.status.solved):
+        return True
+    return abs(one.energy - other.energy) > _DOUBT * one.energy
+
+
 class _Stretch:
     """A stretch of the front: its limits, falling, and the best solution at each.
 
@@ -181,6 +189,7 @@ class _Stretch:
 
     def _sweep(self, above: Guess, below: Guess) -> None:
         order, doubtful = range(len(self.limits)), set[int]()
+        before_sweeps = self.sweep.iterations
         for i in order:
             found = self._try(i, above, done=(i + 1) // 2)
             above = found if found.status.solved else above
@@ -188,12 +197,14 @@ class _Stretch:
             before = self.best[i]
             found = self._try(i, below, done=len(order) - (i + 1) // 2)
             below = found if found.status.solved else below
-            if before is None or better(before, found) or better(found, before):
+            if before is None or _differ(before, found):
                 doubtful.add(i)
-        for i in sorted(doubtful):
-            for guess in self.sweep.guesses:
+        # many terms have many minima that differ by a hair: at most double the sweeps' work
+        most = 2 * self.sweep.iterations - before_sweeps
+        for i, guess in product(sorted(doubtful), self.sweep.guesses):
+            if self.sweep.iterations < most:
                 self._try(i, guess)
-        self._carry_on(doubtful)
+        self._carry_on(doubtful, most)
 
     def _try(self, i: int, guess: Guess, done: int | None = None) -> Solution:
         found, best = self.sweep.solve(guess, self.limits[i]), self.best[i]
@@ -203,10 +214,10 @@ class _Stretch:
         self.report(self.done)
         return found
 
-    def _carry_on(self, changed: Iterable[int]) -> None:
+    def _carry_on(self, changed: Iterable[int], most: int) -> None:
         """Start the neighbours of what changed from there, and theirs where that helps."""
         waiting = list(changed)
-        while waiting:
+        while waiting and self.sweep.iterations < most:
             i = waiting.pop()
             for neighbour in (i - 1, i + 1):
                 start = self.best[i]

@@ -72,6 +72,8 @@ class Front(Saved):
     """
 
     kind: ClassVar[str] = "front"
+    version: ClassVar[int] = 2  # 1, before any release, had the task's entries among the rest
+    oldest: ClassVar[int] = 2
 
     task: PointToPoint
     profile: JointProfile

@@ -15,10 +15,16 @@ _deferring = False
 def keep_interrupts() -> Iterator[None]:
     """Raise KeyboardInterrupt after the block when Ctrl-C came during it.
 
-    casadi's solver stops at Ctrl-C, but returns as if the solve had merely failed.
+    casadi's solver stops at Ctrl-C, but returns as if the solve had merely failed; where Ctrl-C
+    comes while casadi takes an array, a value is missing afterwards and any error may follow.
     """
     with _noting(at_once=True) as came:
-        yield
+        try:
+            yield
+        except Exception as error:
+            if came:
+                raise KeyboardInterrupt from error
+            raise
     if came:
         raise KeyboardInterrupt
 

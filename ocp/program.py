@@ -132,6 +132,7 @@ class TaskProgram:
             self.reference[RESIDUAL] = float(np.abs(self.matrix).max())
             self.matrix = self.matrix / self.reference[RESIDUAL]
 
+    @keep_interrupts()
     def solve(
         self,
         guess: NDArray[np.float64] | Solution,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from models import JointMotion, Plant
 from ocp.collocation import NODES, modal_system, step
+from ocp.interrupts import keep_interrupts
 from ocp.task import PointToPoint
 
 MOST_SAMPLES = 200_000
@@ -24,6 +25,7 @@ def fastest_mode(task: PointToPoint) -> float:
 
 
 @lru_cache(maxsize=256)
+@keep_interrupts()  # casadi loses a Ctrl-C
 def _fastest(plant: Plant, angle: float) -> float:
     system = modal_system(plant, JointMotion(angle, 0.0, 0.0))
     modes = plant.modes
@@ -67,6 +69,7 @@ def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[n
 
 
 @lru_cache(maxsize=256)
+@keep_interrupts()  # casadi loses a Ctrl-C
 def _residual_matrix(
     plant: Plant, target: float, window: float, samples: int
 ) -> NDArray[np.float64]:

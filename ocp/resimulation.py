@@ -134,6 +134,7 @@ class _Resimulation:
         return np.zeros(2 * self.modes + 1)
 
 
+@keep_interrupts()  # casadi loses a Ctrl-C
 def sample_trajectory(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, times: ArrayLike
 ) -> Trajectory:
@@ -226,6 +227,7 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     )
 
 
+@keep_interrupts()
 def rest_of(task: PointToPoint, arrival: ArrayLike) -> Trajectory:
     """What happens in the residual window, from W (m) and then W' (m/s) at arrival, by CVODES."""
     flow = _Resimulation(task, CycloidPolynomial(0), ())

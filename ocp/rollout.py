@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from models import Expression, JointMotion, Plant
 from ocp.checks import whole
 from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NodeState, Step, mesh, step
+from ocp.interrupts import keep_interrupts
 from ocp.objective import Motion, beyond_quadratic, resolved_energy
 from ocp.profile import JointProfile
 from ocp.residual import fastest_mode, residual_matrix
@@ -192,6 +193,7 @@ class Rollout:
     steps: int
 
 
+@keep_interrupts()  # casadi loses a Ctrl-C
 def rollout(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, steps: int | None = None
 ) -> Rollout:

@@ -16,6 +16,8 @@ class Saved(ABC):
     """What it is, in a word; its format is called quietarm- and this."""
     version: ClassVar[int] = 1
     """Version of its format; files of later ones are refused."""
+    oldest: ClassVar[int] = 1
+    """Oldest version that is read."""
 
     def save(self, path: str | Path) -> None:
         """Write the answer as JSON, whole or not at all.
@@ -51,7 +53,7 @@ class Saved(ABC):
         FileFormatError
             When the file holds something else, is not whole, or of a newer version.
         """
-        document = read_document(path, f"quietarm-{cls.kind}", cls.version)
+        document = read_document(path, f"quietarm-{cls.kind}", cls.version, cls.oldest)
         with reading(path, cls.kind):
             return cls.from_document(document)
 

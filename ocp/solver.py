@@ -17,7 +17,7 @@ from ocp.provenance import Provenance, SolveSettings, Verification
 from ocp.rollout import default_steps
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
-from ocp.verification import verified
+from ocp.verification import MOST_STEPS, verified
 
 LEAST_STEPS = 80
 UNBOUNDED_SPREAD = 0.2
@@ -79,7 +79,7 @@ def plan_move(
     program = TaskProgram(
         task,
         profile,
-        settings.steps or default_steps(task, least=LEAST_STEPS),
+        first_steps(task, settings),
         with_residual=residual_limit > 0,
     )
     guesses, asked = start_coefficients(profile.size, settings), asdict(settings)
@@ -100,6 +100,35 @@ def plan_move(
         ),
         provenance=Provenance("ipopt", asked, seconds=time.perf_counter() - began),
     )
+
+
+def first_steps(task: PointToPoint, settings: SolveSettings) -> int:
+    """Steps of the solver's discretisation to begin with.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    settings : SolveSettings
+        Its steps count where they are given.
+
+    Returns
+    -------
+    int
+        Number of steps.
+
+    Raises
+    ------
+    ValueError
+        When the move takes too many periods of the plant's fastest mode.
+    """
+    steps = settings.steps or default_steps(task, least=LEAST_STEPS)
+    if steps > MOST_STEPS and settings.steps is None:
+        raise ValueError(
+            f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
+            f"mode; the solver resolves up to {MOST_STEPS // 2}: give a shorter duration"
+        )
+    return steps
 
 
 def start_coefficients(size: int, settings: SolveSettings) -> list[NDArray[np.float64]]:

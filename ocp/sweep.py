@@ -17,8 +17,7 @@ from ocp.objective import Motion
 from ocp.profile import JointProfile
 from ocp.program import LEAST_ENERGY, Solution, TaskProgram
 from ocp.provenance import SolveSettings
-from ocp.rollout import default_steps
-from ocp.solver import LEAST_STEPS, least_energy, start_coefficients
+from ocp.solver import first_steps, least_energy, start_coefficients
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 from ocp.verification import STILL, verified
@@ -31,6 +30,8 @@ SAME = 1e-5
 """Energies that differ by less than this share are of one motion."""
 _PATIENCE = 0.6
 """How long [s] points are still checked after Ctrl-C."""
+_MORE_STEPS = 4
+"""How many times the sweep's steps a point may take whose figures disagree."""
 _SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""
 
@@ -88,7 +89,7 @@ class Sweep:
     def __post_init__(self) -> None:
         if self.profile.size == 0:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
-        self.steps = self.settings.steps or default_steps(self.task, least=LEAST_STEPS)
+        self.steps = first_steps(self.task, self.settings)
         self.guesses = start_coefficients(self.profile.size, self.settings)
         self._program: TaskProgram | None = None
 
@@ -197,8 +198,9 @@ class Sweep:
         limits = {**self.task.limits, RESIDUAL: limit}
         try:
             found, motion, _ = verified(
-                self.program, self.profile, found, limits, self.settings.bound
-            )
+                self.program, self.profile, found, limits, self.settings.bound,
+                most_steps=_MORE_STEPS * self.steps,
+            )  # fmt: skip
         except SolverFailedError as error:
             return FailedPoint(asked, str(error))
         return self._point(found, motion)

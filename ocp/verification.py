@@ -29,6 +29,7 @@ def verified(
     best: Solution,
     limits: Mapping[str, float],
     bound: float | None,
+    most_steps: int = MOST_STEPS,
 ) -> tuple[Solution, Motion, int]:
     """Verify; double the steps while the integrators disagree, tighten limits that are passed.
 
@@ -47,6 +48,8 @@ def verified(
         Largest residual [m] and peaks [SI units].
     bound : float or None
         Largest absolute coefficient.
+    most_steps : int
+        Steps up to which they are doubled.
 
     Returns
     -------
@@ -68,7 +71,7 @@ def verified(
             or residual_gap > STILL + _RESIDUAL_AGREEMENT * limits[RESIDUAL]
         )
         guess: NDArray[np.float64] | Solution = best
-        if disagree and 2 * program.steps <= MOST_STEPS:
+        if disagree and 2 * program.steps <= most_steps:
             guess = best.coefficients
             program = TaskProgram(
                 program.task, profile, 2 * program.steps, with_residual=limits[RESIDUAL] > 0

@@ -226,6 +226,12 @@ def test_bad_input_is_refused(arguments, text):
         epsilon_front(CASES["arm"][0], **arguments)
 
 
+def test_a_move_of_too_many_periods_is_refused():
+    task = PointToPoint(ArmOnFlexibleLink(), 1.0, 1000.0)
+    with pytest.raises(ValueError, match=r"duration is 1000 s, .* radians .* give a shorter"):
+        epsilon_front(task, points=3)
+
+
 def test_a_solve_that_fails_does_not_end_the_sweep(monkeypatch):
     task, bound = CASES["arm"]
     profile, whole = CycloidPolynomial(3), Sweep.solve

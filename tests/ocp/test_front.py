@@ -262,7 +262,7 @@ def test_the_file_is_what_the_issue_says(tmp_path):
     # method, settings, seed, versions.
     front().save(tmp_path / "front.json")
     document = json.loads((tmp_path / "front.json").read_text())
-    assert (document["format"], document["version"]) == ("quietarm-front", 1)
+    assert (document["format"], document["version"]) == ("quietarm-front", 2)
     assert document["points"] == [
         {"coefficients": [0.0, -0.5], "residual": 1e-4, "energy": 0.5},
         {"coefficients": [1.0, -0.5], "residual": 2e-4, "energy": 0.2},
@@ -349,13 +349,21 @@ def test_a_plan_is_not_a_front(path):
 
 
 def test_a_newer_front_says_so(path, text):
-    path.write_text(text.replace('"version": 1', '"version": 2', 1))
-    refused(path, "version 2 of the front format .* up to 1; install a newer quietarm")
+    path.write_text(text.replace('"version": 2', '"version": 3', 1))
+    refused(path, "version 3 of the front format .* up to 2; install a newer quietarm")
+
+
+def test_a_front_from_before_the_first_release_is_refused(tmp_path):
+    path = tmp_path / "front.json"
+    front().save(path)
+    path.write_text(path.read_text().replace('"version": 2', '"version": 1', 1))
+    with pytest.raises(FileFormatError, match=r"version 1 .* reads 2 to 2; find the front again"):
+        Front.load(path)
 
 
 @pytest.mark.parametrize("version", ['"1"', "null", "0", "-1", "1.5", "true", "[1]"])
 def test_an_odd_version_is_refused(path, text, version):
-    path.write_text(text.replace('"version": 1', f'"version": {version}', 1))
+    path.write_text(text.replace('"version": 2', f'"version": {version}', 1))
     refused(path, "is not a front: its version is")
 
 

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from models import ArmOnFlexibleLink
+from ocp import CycloidPolynomial, PointToPoint, collocation, residual, rollout
 from ocp.interrupts import defer_interrupts, keep_interrupts, note_interrupts
 
 ROOT = Path(__file__).parents[2]
@@ -34,6 +36,33 @@ def test_a_swallowed_ctrl_c_comes_after_the_block():
     with pytest.raises(KeyboardInterrupt):
         work()
     assert reached
+
+
+def test_an_error_that_a_swallowed_ctrl_c_causes_is_not_what_one_sees():
+    # casadi returns nothing where a value should be, and an AttributeError follows
+    def work():
+        with keep_interrupts():
+            _swallow_ctrl_c()
+            raise AttributeError("'NoneType' object has no attribute 'T'")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    with pytest.raises(AttributeError), keep_interrupts():
+        raise AttributeError
+
+
+def test_ctrl_c_while_a_rollout_is_built_is_not_lost(monkeypatch):
+    built = collocation.modal_system
+
+    def interrupted(*arguments):
+        _swallow_ctrl_c()
+        return built(*arguments)
+
+    monkeypatch.setattr(collocation, "modal_system", interrupted)
+    monkeypatch.setattr(residual, "modal_system", interrupted)
+    task = PointToPoint(ArmOnFlexibleLink(), 1.2345, 0.8)  # a target of no other test
+    with pytest.raises(KeyboardInterrupt):
+        rollout(task, CycloidPolynomial(3), [0.1, 0.0, 0.0])
 
 
 def test_the_users_handler_is_back_after_the_block():
