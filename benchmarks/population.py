@@ -425,7 +425,7 @@ def ours(
 
 
 def methods(population: NDArray[np.float64]) -> list[Method]:
-    """First quietarm (with its default steps, too), then the others with steps that make them as accurate as asked."""
+    """First quietarm, then the others, with steps that make them as accurate as asked."""
     x, reference = numbers(TASK), by_rollout(population, REFERENCE_STEPS)
     fewer = (ours("quietarm, PopulationObjective", n, population, reference) for n in FEWER_STEPS)
     rows = [
