@@ -15,10 +15,8 @@ from ocp.front import FailedPoint, Front, FrontPoint
 from ocp.profile import CycloidPolynomial, JointProfile
 from ocp.program import Solution
 from ocp.provenance import SolveSettings
-from ocp.sweep import RESIDUAL_LIMIT, SAME, Ends, Guess, Report, Sweep, better, no_report
+from ocp.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, better, no_report
 from ocp.task import PointToPoint
-from ocp.transcription import RESIDUAL
-from ocp.verification import STILL
 from ocp.workers import Say, Workers, death_of_process
 
 _DOUBT = 1e-4
@@ -94,7 +92,7 @@ def epsilon_front(
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = sweep.ends()
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
-    found.append(sweep.checked(ends.cheapest, {RESIDUAL_LIMIT: ends.cheapest.peaks[RESIDUAL]}))
+    found.append(sweep.checked(ends.cheapest, {RESIDUAL_LIMIT: ends.cheapest.residual}))
     report(2, points)
     heard = _Heard(report, points)
     iterations, complete = 0, True
@@ -135,12 +133,10 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], 
     Scouts go along the front from its cheap end in steps of about equal length, both objectives
     scaled to the ends, by the slope that the solver's multiplier gives.
     """
-    stillest = ends.still.peaks.get(RESIDUAL, 0.0)
-    width = ends.cheapest.peaks[RESIDUAL] - stillest
-    height = ends.still.energy - ends.cheapest.energy
-    if width <= STILL or height <= SAME * ends.still.energy or points == 2:
+    if ends.are_one or points == 2:
         return [], []
-    scouts, limit = [ends.cheapest], ends.cheapest.peaks[RESIDUAL]
+    stillest, width, height = ends.still.residual, ends.width, ends.height
+    scouts, limit = [ends.cheapest], ends.cheapest.residual
     stride = 2 * width / min(_SCOUTS, points)  # the scaled front is between sqrt(2) and 2 long
     while True:
         limit -= stride / np.hypot(1.0, scouts[-1].slope * width / height)
@@ -149,7 +145,7 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], 
         found = sweep.solve(scouts[-1], limit)
         if found.status.solved:
             scouts.append(found)
-    residuals = np.array([*(one.peaks[RESIDUAL] for one in scouts), stillest])
+    residuals = np.array([*(one.residual for one in scouts), stillest])
     energies = np.array([*(one.energy for one in scouts), ends.still.energy])
     along = np.hypot(np.diff(residuals) / width, np.diff(energies) / height).cumsum()
     along = np.concatenate([[0.0], along])
@@ -256,7 +252,7 @@ def _in_processes(
     Returns what was found, the iterations, and whether all was done.
     """
     known = [*scouts, ends.still]
-    residuals = np.array([one.peaks.get(RESIDUAL, 0.0) for one in known])  # falling
+    residuals = np.array([one.residual for one in known])  # falling
     settings = replace(sweep.settings, steps=sweep.steps)
     stretches = dict[int, _Piece]()
     for i, chunk in enumerate(np.array_split(limits, workers)):

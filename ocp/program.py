@@ -76,7 +76,7 @@ class Solution:
     slope : float
         Change of the least energy with the residual limit [J/m], at most 0; 0 without a limit.
     iterations : int
-        Iterations of the solver.
+        Iterations of the solver that it took, those of other starts included.
     point : Point
         Where the solver stopped, to start a neighbouring solve from.
     """
@@ -88,6 +88,11 @@ class Solution:
     slope: float
     iterations: int
     point: Point
+
+    @property
+    def residual(self) -> float:
+        """F1 [m]; 0 where the program asks for rest."""
+        return self.peaks.get(RESIDUAL, 0.0)
 
 
 class TaskProgram:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -183,4 +183,5 @@ def least_energy(
         solved = [solution for solution in solutions if solution.status.solved]
         if not solved:
             raise explain(profile, limits, bound, solutions, least)
-    return min(solved, key=lambda solution: solution.energy)
+    best = min(solved, key=lambda solution: solution.energy)
+    return replace(best, iterations=sum(solution.iterations for solution in solutions))

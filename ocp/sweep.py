@@ -58,6 +58,21 @@ class Ends:
     still_point: FrontPoint | FailedPoint
     cheapest: Solution
 
+    @property
+    def width(self) -> float:
+        """How far apart they are in the residual [m]."""
+        return self.cheapest.residual - self.still.residual
+
+    @property
+    def height(self) -> float:
+        """How far apart they are in the energy [J]."""
+        return self.still.energy - self.cheapest.energy
+
+    @property
+    def are_one(self) -> bool:
+        """Whether the cheapest motion is the still one, and there is no front between."""
+        return self.width <= STILL or self.height <= SAME * self.still.energy
+
 
 def better(one: Solution, other: Solution) -> bool:
     """Whether one solution is cheaper than another by more than the solver's tolerance."""
@@ -170,10 +185,10 @@ class Sweep:
         program = TaskProgram(self.task, self.profile, self.steps, with_residual=False)
         try:
             found = least_energy(program, self.profile, limits, bound, self.guesses)
-            self.iterations += found.iterations
             found, motion, self.steps = verified(program, self.profile, found, limits, bound)
         except SolverFailedError:
             return None
+        self.iterations += found.iterations
         return found, self._point(found, motion)
 
     def _point(self, found: Solution, motion: Motion) -> FrontPoint:
@@ -197,13 +212,14 @@ class Sweep:
         limit = max(found.peaks[RESIDUAL], STILL) * (1 + _SAMPLING)
         limits = {**self.task.limits, RESIDUAL: limit}
         try:
-            found, motion, _ = verified(
+            kept, motion, _ = verified(
                 self.program, self.profile, found, limits, self.settings.bound,
                 most_steps=_MORE_STEPS * self.steps,
             )  # fmt: skip
         except SolverFailedError as error:
             return FailedPoint(asked, str(error))
-        return self._point(found, motion)
+        self.iterations += kept.iterations - found.iterations  # more steps, or tighter limits
+        return self._point(kept, motion)
 
     def all_checked(
         self,

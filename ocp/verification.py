@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +84,8 @@ def verified(
         again = program.solve(guess, used, bound)
         if not again.status.solved:
             break
-        best, motion = again, resimulate(program.task, profile, again.coefficients)
+        best = replace(again, iterations=best.iterations + again.iterations)
+        motion = resimulate(program.task, profile, best.coefficients)
     for name, limit in limits.items():
         if motion.peak(name) > max(limit * (1 + _OVERRUN), STILL):
             raise SolverFailedError(

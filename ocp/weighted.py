@@ -11,10 +11,9 @@ from ocp.front import FailedPoint, Front, FrontPoint
 from ocp.profile import CycloidPolynomial, JointProfile
 from ocp.program import ENERGY, Solution
 from ocp.provenance import SolveSettings
-from ocp.sweep import RESIDUAL_LIMIT, SAME, Ends, Guess, Report, Sweep, no_report
+from ocp.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, no_report
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
-from ocp.verification import STILL
 
 _FLAT = 1e-5
 """A minimum nearer to its chord than this share of the chord's length is an end of it."""
@@ -111,32 +110,25 @@ class _Sums:
 
     def __init__(self, sweep: Sweep, ends: Ends) -> None:
         self.sweep, self.ends = sweep, ends
-        self.width = ends.cheapest.peaks[RESIDUAL] - _residual(ends.still)
-        self.height = ends.still.energy - ends.cheapest.energy
         self.found: list[Solution] = []
         self.failures: list[FailedPoint] = []
         self.gaps: list[tuple[float, float]] = []
 
-    @property
-    def one_point(self) -> bool:
-        """Whether the ends are the same."""
-        return self.width <= STILL or self.height <= SAME * self.ends.still.energy
-
     def solve(self, of_residual: float, of_energy: float, guesses: Sequence[Guess]) -> Solution:
         """The best minimum of one weighted sum, weights of the scaled objectives."""
-        minimise = {RESIDUAL: of_residual / self.width, ENERGY: of_energy / self.height}
+        minimise = {RESIDUAL: of_residual / self.ends.width, ENERGY: of_energy / self.ends.height}
         tried = [self.sweep.solve(guess, minimise=minimise) for guess in guesses]
 
         def value(one: Solution) -> float:
             if not one.status.solved:
                 return np.inf
-            return minimise[RESIDUAL] * _residual(one) + minimise[ENERGY] * one.energy
+            return minimise[RESIDUAL] * one.residual + minimise[ENERGY] * one.energy
 
         return min(tried, key=value)
 
     def by_chords(self, points: int, report: Report) -> None:
         """Weights from the chords between neighbours, the longest first."""
-        if self.one_point:
+        if self.ends.are_one:
             return
         chords: list[tuple[Solution, Solution]] = [(self.ends.still, self.ends.cheapest)]
         while chords and 2 + len(self.found) < points:
@@ -153,13 +145,13 @@ class _Sums:
                 self.found.append(found)
                 chords += [(still, found), (found, cheap)]
             elif np.hypot(wide, high) > 2 * _DIAGONAL / (points - 1):
-                self.gaps.append((_residual(still), _residual(cheap)))
+                self.gaps.append((still.residual, cheap.residual))
             report(2 + len(self.found), points)
         self.gaps.sort()
 
     def by_weights(self, weights: Sequence[tuple[float, float]], report: Report) -> None:
         """Given weights, from the most for the energy to the most for the residual."""
-        if self.one_point:
+        if self.ends.are_one:
             return
         beside: Guess = self.ends.cheapest
         still = self.ends.still.coefficients
@@ -175,16 +167,14 @@ class _Sums:
 
     def checked(self, interrupted: bool) -> tuple[list[FrontPoint | FailedPoint], bool]:
         """Every point by the independent integrator, and what failed; whether these are all."""
-        asked = [
-            (one, {RESIDUAL_LIMIT: _residual(one)}) for one in (self.ends.cheapest, *self.found)
-        ]
+        asked = [(one, {RESIDUAL_LIMIT: one.residual}) for one in (self.ends.cheapest, *self.found)]
         points, whole_front = self.sweep.all_checked(asked, interrupted=interrupted)
         return [self.ends.still_point, *points, *self.failures], whole_front
 
     def _sides(self, still: Solution, cheap: Solution) -> tuple[float, float]:
         return (
-            (_residual(cheap) - _residual(still)) / self.width,
-            (still.energy - cheap.energy) / self.height,
+            (cheap.residual - still.residual) / self.ends.width,
+            (still.energy - cheap.energy) / self.ends.height,
         )
 
     def _guess(self, one: Solution) -> Guess:
@@ -193,7 +183,3 @@ class _Sums:
     def _failed(self, of_residual: float, of_energy: float, found: Solution) -> None:
         asked = {"residual_weight": of_residual, "energy_weight": of_energy}
         self.failures.append(FailedPoint(asked, found.status.text))
-
-
-def _residual(one: Solution) -> float:
-    return one.peaks.get(RESIDUAL, 0.0)

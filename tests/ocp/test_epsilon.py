@@ -27,6 +27,7 @@ from ocp.epsilon import _Stretch
 from ocp.provenance import SolveSettings
 from ocp.status import SolveStatus
 from ocp.sweep import Sweep
+from ocp.transcription import NonlinearProgram
 from ocp.verification import STILL
 
 POINTS = 12
@@ -88,6 +89,20 @@ def test_a_front_says_where_it_comes_from(case, tmp_path):
     assert front.evaluations > POINTS  # iterations: several a point
     front.save(tmp_path / "front.json")
     assert Front.load(tmp_path / "front.json") == front
+
+
+def test_its_evaluations_are_all_iterations_of_the_solver(monkeypatch):
+    # counted where the solver is run: the ends' four starts each, scouts, sweeps, verification
+    counted, solve = [], NonlinearProgram.solve
+
+    def counting(self, *arguments):
+        stopped = solve(self, *arguments)
+        counted.append(stopped[2])
+        return stopped
+
+    monkeypatch.setattr(NonlinearProgram, "solve", counting)
+    front = epsilon_front(CASES["arm"][0], CycloidPolynomial(3), bound=0.5, points=4)
+    assert front.evaluations == sum(counted)
 
 
 def test_processes_find_the_same_front():
