@@ -48,10 +48,8 @@ def least_peaks(
     """
     best: dict[str, Solution] = {}
     for name in limits:
-        with_residual = name == RESIDUAL or limits[RESIDUAL] > 0
-        relaxed = TaskProgram(program.task, profile, program.steps, with_residual=with_residual)
         others = {key: value for key, value in limits.items() if key != name}
-        found = [relaxed.solve(guess, others, bound, minimise={name: 1.0}) for guess in guesses]
+        found = [program.solve(guess, others, bound, minimise={name: 1.0}) for guess in guesses]
         solved = [solution for solution in found if solution.status.solved]
         if solved:
             best[name] = min(solved, key=lambda solution: solution.peaks[name])

@@ -16,7 +16,7 @@ from ocp.floor_motion import FreeMotion
 from ocp.floor_transcription import FreePoint, FreeProgram
 from ocp.interrupts import keep_interrupts
 from ocp.profile import CycloidPolynomial, JointPath
-from ocp.program import ENERGY, OPTIONS, SLACK_ROOM
+from ocp.program import ENERGY, OPTIONS
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
 
@@ -24,6 +24,8 @@ _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400}
 _WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
 """From a coarser grid's solution, which a larger barrier would let the solver leave."""
 _SCALE_STEPS = 40
+_SLACK_ROOM = 1e-2
+"""How far the slacks of |power| start inside their constraints, as a share of the peak power."""
 
 
 @lru_cache(maxsize=16)
@@ -182,7 +184,7 @@ class FloorProgram:
         return FreePoint(
             peaks=np.array([np.abs(values[name]).max() for name in program.peaks]),
             intervals=unknowns,
-            slack=np.abs(values["power"].ravel(order="F")) + SLACK_ROOM,
+            slack=np.abs(values["power"].ravel(order="F")) + _SLACK_ROOM,
         )
 
     def _bounds(

@@ -1,8 +1,7 @@
 """From a task to a nonlinear program over all joint motions.
 
-As in `ocp.transcription`, with no profile: on every interval the acceleration (or the jerk) is an
-unknown of its own beside the joint's angle and speed and the modes before the interval, so that
-nothing is dense. Intervals and limits are numbers of the compiled program. The power has a slack at
+With no profile: on every interval the acceleration (or the jerk) is an unknown of its own beside
+the joint's angle and speed and the modes before the interval, so that nothing is dense. Intervals and limits are numbers of the compiled program. The power has a slack at
 the three Gauss nodes of every interval, where it is smooth: sampled only at the grid, the solver
 would hide energy between the samples.
 """
@@ -23,7 +22,7 @@ from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from ocp.floor_motion import joint_after
 from ocp.interrupts import keep_interrupts
 from ocp.step_model import LiftedStep, groups_of
-from ocp.transcription import block_diagonal, offsets, unit_column
+from ocp.symbols import split
 
 _AT_NODES = ("torque", "deflection")
 _OF_JOINT = {"speed": 1, "acceleration": 2}
@@ -116,10 +115,8 @@ class FreeProgram:
         sizes = [len(quantities), model.unknowns * (steps + 1), NODES * steps]
         x = ca.MX.sym("x", sum(sizes))
         p = ca.MX.sym("p", steps + model.scales + 1 + len(quantities))
-        peak, flat, slack = ca.vertsplit(x, offsets(sizes))
-        lengths, scale, weights = ca.vertsplit(
-            p, offsets([steps, model.scales, 1 + len(quantities)])
-        )
+        peak, flat, slack = split(x, sizes)
+        lengths, scale, weights = split(p, [steps, model.scales, 1 + len(quantities)])
         unknowns = ca.reshape(flat, model.unknowns, steps + 1)
         arguments = (unknowns[:, :-1], lengths.T, scale)
         outputs = self._mapped(model.value)(*arguments)
@@ -231,7 +228,7 @@ class FreeProgram:
         blocks = self._mapped(model.first)(*arguments)
 
         def along(rows: slice, count: int) -> ca.MX:
-            inner = block_diagonal(blocks[rows, :], count, model.unknowns, steps)
+            inner = _block_diagonal(blocks[rows, :], count, model.unknowns, steps)
             return ca.horzcat(inner, ca.MX(count * steps, model.unknowns))
 
         size = len(model.after)
@@ -250,7 +247,7 @@ class FreeProgram:
             if name == "power":
                 of_slack = ca.MX(ca.DM.eye(count))
             else:
-                of_peak = ca.MX(unit_column(count, n_peaks, self.peaks.index(name)))
+                of_peak = ca.MX(_unit_column(count, n_peaks, self.peaks.index(name)))
             rows.extend(ca.horzcat(of_peak, sign * of_value, of_slack) for sign in (-1, 1))
 
         first = size
@@ -272,13 +269,13 @@ class FreeProgram:
         sizes = [size * steps]
         for count in model.outputs.values():
             sizes += [count * steps] * 2
-        *parts, _ = ca.vertsplit(multipliers, offsets([*sizes, constraints - sum(sizes)]))
+        *parts, _ = split(multipliers, [*sizes, constraints - sum(sizes)])
         rows = [ca.reshape(parts[0], size, steps)[model.joint - 1 :, :]]
         for i, count in enumerate(model.outputs.values()):
             below, above = parts[1 + 2 * i], parts[2 + 2 * i]
             rows.append(ca.reshape(above - below, count, steps))
         blocks = self._mapped(model.second)(*arguments, ca.vertcat(*rows))
-        inner = block_diagonal(blocks, model.unknowns, model.unknowns, steps)
+        inner = _block_diagonal(blocks, model.unknowns, model.unknowns, steps)
         rest = model.unknowns + n_slack
         hessian = ca.diagcat(ca.MX(n_peaks, n_peaks), inner, ca.MX(rest, rest))
         return ca.Function(
@@ -293,3 +290,14 @@ class FreeProgram:
 def _rows_of(after: list[int], unknowns: int, steps: int) -> list[int]:
     """Where the values after each interval stand among the intervals' unknowns."""
     return [(k + 1) * unknowns + i for k in range(steps) for i in after]
+
+
+def _block_diagonal(dense: ca.MX, rows: int, columns: int, blocks: int) -> ca.MX:
+    """Lay blocks that stand side by side along the diagonal; the entries stay where they are."""
+    pattern = ca.diagcat(*[ca.Sparsity.dense(rows, columns)] * blocks)
+    return ca.sparsity_cast(dense, pattern)
+
+
+def _unit_column(rows: int, columns: int, column: int) -> ca.DM:
+    """Zeros but for ones in one column."""
+    return ca.horzcat(ca.DM(rows, column), ca.DM.ones(rows, 1), ca.DM(rows, columns - column - 1))

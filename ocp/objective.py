@@ -18,6 +18,8 @@ _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
 ).tolist()
 _TINY = 1e-300
+_LEAST_SHARE = 1e-5
+"""The exact gradient trusts slopes down to this share of the least slope that curvature does."""
 
 
 def resolved_energy(
@@ -45,20 +47,76 @@ def resolved_energy(
     Expression
         Energy [J], shape (candidates, 1).
     """
-    c0, c1, c2 = (
-        sum(weight * p for weight, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC
-    )
-    root = ca.sqrt(ca.fmax(c1 * c1 - 4 * c0 * c2, 0))
-    half = -(c1 + ca.copysign(root, c1)) / 2  # the zeros without cancellation
-    zeros = [ca.fmin(ca.fmax(r, 0), 1) for r in (half / (c2 + _TINY), c0 / (half + _TINY))]
+    c = _quadratic(power)
+    zeros = [ca.fmin(ca.fmax(zero, 0), 1) for zero in _zeros(c)]
     breaks = [ca.fmin(*zeros), ca.fmax(*zeros)]
+    return ca.sum2(h * _parted_energy(c, cubic, quartic, breaks))
+
+
+def _quadratic(power: Sequence[Expression]) -> list[Expression]:
+    """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
+    return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]
+
+
+def _zeros(c: Sequence[Expression]) -> tuple[Expression, Expression]:
+    """The zeros of a quadratic without cancellation; anything finite where there are none."""
+    root = ca.sqrt(ca.fmax(c[1] * c[1] - 4 * c[0] * c[2], 0))
+    half = -(c[1] + ca.copysign(root, c[1])) / 2
+    return half / (c[2] + _TINY), c[0] / (half + _TINY)
+
+
+def _parted_energy(
+    c: Sequence[Expression], cubic: Expression, quartic: Expression, breaks: Sequence[Expression]
+) -> Expression:
+    """Mean of |power| on a step whose work is counted separately between two breaks."""
     work = []
     for x in breaks:
         u, bump = x - 0.5, x * (1 - x)
         beyond = bump * (cubic * (bump - 0.2) / 4 - quartic * (u * u * u) / 5)
-        work.append(x * (c0 + x * (c1 / 2 + x * (c2 / 3))) + beyond)
-    pieces = ca.fabs(work[0]) + ca.fabs(work[1] - work[0]) + ca.fabs(c0 + c1 / 2 + c2 / 3 - work[1])
-    return ca.sum2(h * pieces)
+        work.append(x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3))) + beyond)
+    whole = c[0] + c[1] / 2 + c[2] / 3
+    return ca.fabs(work[0]) + ca.fabs(work[1] - work[0]) + ca.fabs(whole - work[1])
+
+
+@lru_cache(maxsize=1)
+def energy_derivatives() -> ca.Function:
+    """One step's share of `resolved_energy` with its derivatives.
+
+    The gradient is exact: that with the breaks held fixed, and the little that the terms beyond the
+    quadratic add where the breaks move. Of second derivatives it gives what the moving zeros cause,
+    2 g g' / |slope| for each with g the gradient of the power there, never negative; the rest is
+    linear in the power. Where zeros meet, that curvature is without bound, though only there: the
+    slope counts as `least_slope` at least.
+
+    Returns
+    -------
+    Function
+        (power at the nodes [3], cubic, quartic, least_slope) -> (mean |power|, its gradient by the
+        power, cubic and quartic [5], second derivatives by the power [3, 3]).
+    """
+    power, cubic, quartic = ca.SX.sym("p", NODES), ca.SX.sym("cubic"), ca.SX.sym("quartic")
+    least_slope, breaks = ca.SX.sym("least"), ca.SX.sym("x", 2)
+    c = _quadratic(ca.vertsplit(power))
+    energy = _parted_energy(c, cubic, quartic, ca.vertsplit(breaks))
+    gradient = ca.gradient(energy, ca.vertcat(power, cubic, quartic))
+    by_break = ca.gradient(energy, breaks)
+    is_zero = c[1] * c[1] > 4 * c[0] * c[2]  # else both breaks stand where the power is least
+    bends = ca.SX.zeros(NODES, NODES)
+    for i in range(2):
+        x = breaks[i]
+        at_zero = ca.gradient(c[0] + x * (c[1] + x * c[2]), power)
+        slope = c[1] + 2 * x * c[2]
+        inside = ca.logic_and(is_zero, ca.logic_and(x > 0, x < 1))
+        moved = -by_break[i] * ca.sign(slope) / ca.fmax(ca.fabs(slope), _LEAST_SHARE * least_slope)
+        gradient[:NODES] += ca.if_else(inside, moved, 0) * at_zero
+        bend = 2 / ca.fmax(ca.fabs(slope), least_slope)
+        bends += ca.if_else(inside, bend, 0) * (at_zero @ at_zero.T)
+    zeros = ca.fmin(ca.fmax(ca.vertcat(*_zeros(c)), 0), 1)
+    sorted_zeros = ca.vertcat(ca.fmin(zeros[0], zeros[1]), ca.fmax(zeros[0], zeros[1]))
+    outputs = [
+        ca.densify(ca.substitute(e, breaks, sorted_zeros)) for e in (energy, gradient, bends)
+    ]
+    return ca.Function("energy", [power, cubic, quartic, least_slope], outputs, {"cse": True})
 
 
 @lru_cache(maxsize=32)

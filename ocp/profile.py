@@ -71,6 +71,33 @@ class JointProfile(ABC):
             theta [rad], theta' [rad/s], theta'' [rad/s^2], theta''' [rad/s^3].
         """
 
+    def inner(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> Sequence[Expression]:
+        """What the coefficients enter: `outer` makes the joint's motion of these three values.
+
+        A profile whose coefficients enter linearly somewhere on the way to the joint says so by
+        these two methods; the gradient is then several times cheaper. By default it is the motion
+        itself. Arguments as in `derivatives`.
+        """
+        return self.derivatives(coefficients, fraction, start, target, duration)[:3]
+
+    def outer(
+        self,
+        inner: Sequence[Expression],
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> JointMotion:
+        """Angle, speed and acceleration of the joint from the values of `inner`."""
+        del start, target, duration
+        return JointMotion(*inner)
+
     def motion(
         self,
         coefficients: Sequence[Expression],
@@ -170,21 +197,45 @@ class CycloidPolynomial(JointProfile):
         duration: Expression,
     ) -> tuple[Expression, Expression, Expression, Expression]:
         """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended, theta''' from it."""
-        U, dU, ddU, dddU = self._input(coefficients, fraction, duration)
+        inputs = self._input(coefficients, fraction, duration)
+        _, dU, ddU, dddU = inputs
+        sine, cosine = ca.sin(math.pi * inputs[0]), ca.cos(math.pi * inputs[0])
+        pi, speed_shape = math.pi, sine * sine
+        jerk = (
+            2 * pi * pi * (cosine * cosine - speed_shape) * dU * dU * dU
+            + 6 * pi * sine * cosine * dU * ddU
+            + speed_shape * dddU
+        )
+        return (*self.outer(inputs[:3], start, target, duration), 2 * (target - start) * jerk)
+
+    def inner(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> Sequence[Expression]:
+        """U of eq (6), U', U'': linear in the coefficients."""
+        del start, target
+        return self._input(coefficients, fraction, duration)[:3]
+
+    def outer(
+        self,
+        inner: Sequence[Expression],
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> JointMotion:
+        """The cycloid of U: eqs (1), (2) and (3), the latter mended."""
+        del duration
+        U, dU, ddU = inner
         sine, cosine = ca.sin(math.pi * U), ca.cos(math.pi * U)
         span, pi = target - start, math.pi
-        speed_shape = sine * sine  # (1 - cos 2 pi U) / 2
-        return (
+        return JointMotion(
             start + span * (U - sine * cosine / pi),
-            2 * span * speed_shape * dU,
+            2 * span * (sine * sine) * dU,
             2 * span * sine * (2 * pi * cosine * dU * dU + sine * ddU),
-            2
-            * span
-            * (
-                2 * pi * pi * (cosine * cosine - speed_shape) * dU * dU * dU
-                + 6 * pi * sine * cosine * dU * ddU
-                + speed_shape * dddU
-            ),
         )
 
     @staticmethod

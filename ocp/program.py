@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from models import Plant
+from ocp.collocation import NODES
+from ocp.condensed import condensed
 from ocp.interrupts import keep_interrupts
 from ocp.profile import JointProfile
 from ocp.residual import extreme_rows, residual_matrix
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
-from ocp.transcription import RESIDUAL, NonlinearProgram, Point
+from ocp.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop
 
 ENERGY = "energy"
 LEAST_ENERGY = {ENERGY: 1.0}
@@ -35,28 +38,43 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-_WARM_PUSH = 1e-6
-_WARM_OPTIONS: dict[str, str | int | float] = {
-    "warm_start_init_point": "yes",
-    "mu_init": _WARM_PUSH,
-    "warm_start_bound_push": _WARM_PUSH,
-    "warm_start_bound_frac": _WARM_PUSH,
-    "warm_start_slack_bound_push": _WARM_PUSH,
-    "warm_start_slack_bound_frac": _WARM_PUSH,
-    "warm_start_mult_bound_push": _WARM_PUSH,
-}
+_SAMPLED = {**OPTIONS, "tol": 1e-5, "mu_oracle": "probing"}
+"""What remains of the sampled program's error is much less than its own distance to the truth."""
+
+
+def _warm_options(barrier: float) -> dict[str, str | int | float]:
+    pushes = ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac", "mult_bound_push")
+    return {
+        "warm_start_init_point": "yes",
+        "mu_init": barrier,
+        **{f"warm_start_{name}": barrier for name in pushes},
+    }
+
+
+_BESIDE = _warm_options(1e-6)
 """From the solution beside it a point of a front takes a third of the iterations with these."""
+_RESOLVED = {**OPTIONS, "tol": 1e-8}
+_FINISH = {**_warm_options(1e-8), "mu_strategy": "monotone", "max_iter": 15}
+"""From the sampled minimum; where zeros of the power meet, more iterations gain nothing."""
 _ROWS_AT_ONCE = 32
 """Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
-SLACK_ROOM = 1e-2
-"""How far the slacks of |power| start inside their constraints, as a share of the peak power."""
+_SLACK_ROOM = 1e-2
+"""How far the parts of the power start from zero, as a share of the peak power."""
+_REACHES = (0.1, 0.003)
+"""How far coefficients may move from the sampled minimum, against 1 or their own size; where zeros
+of the power meet the solver loses its way beyond the second."""
+_KEPT = 1e-7
+"""A motion that passes a scaled constraint by no more than this keeps it."""
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 def _compiled(
-    plant: Plant, profile: JointProfile, steps: int, quantities: tuple[str, ...], rows: int
+    plant: Plant, profile: JointProfile, steps: int, quantities: tuple[str, ...], form: Form
 ) -> NonlinearProgram:
-    return NonlinearProgram(plant, profile, steps, quantities, rows, OPTIONS, _WARM_OPTIONS)
+    motion = condensed(plant, profile, steps, quantities)
+    if form.sampled:
+        return NonlinearProgram(motion, form, _SAMPLED, _BESIDE)
+    return NonlinearProgram(motion, form, _RESOLVED, _FINISH)
 
 
 @dataclass(frozen=True)
@@ -70,15 +88,23 @@ class Solution:
     energy : float
         F2 [J].
     peaks : dict of str to float
-        Each limited quantity, and the residual where the program has it as a variable.
+        Residual [m] and each limited quantity [SI units], at the nodes.
     status : SolveStatus
         How it ended.
     slope : float
         Change of the least energy with the residual limit [J/m], at most 0; 0 without a limit.
     iterations : int
         Iterations of the solver that it took, those of other starts included.
+    arrival : ndarray, shape (2 * modes,)
+        W (m) and then W' (m/s) on arrival, corrected as asked.
+    form : Form
+        The program whose solution `point` is.
     point : Point
         Where the solver stopped, to start a neighbouring solve from.
+    finish : Point or None
+        Where the program of the resolved energy stopped after that.
+    settled : bool
+        Whether that ended at its minimum.
     """
 
     coefficients: NDArray[np.float64]
@@ -87,12 +113,16 @@ class Solution:
     status: SolveStatus
     slope: float
     iterations: int
+    arrival: NDArray[np.float64]
+    form: Form
     point: Point
+    finish: Point | None = None
+    settled: bool = False
 
     @property
     def residual(self) -> float:
-        """F1 [m]; 0 where the program asks for rest."""
-        return self.peaks.get(RESIDUAL, 0.0)
+        """F1 [m] at the sampled times of the residual window."""
+        return self.peaks[RESIDUAL]
 
 
 class TaskProgram:
@@ -109,33 +139,23 @@ class TaskProgram:
         How the joint moves.
     steps : int
         Number of steps.
-    with_residual : bool
-        Whether the residual is a variable, to be limited or minimised; else it is zero: the plant
-        is at rest on arrival.
     """
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
-    def __init__(
-        self, task: PointToPoint, profile: JointProfile, steps: int, with_residual: bool
-    ) -> None:
-        self.task, self.steps = task, steps
-        matrix = _residual_rows(task) if with_residual else np.zeros((0, 2 * task.plant.modes))
-        self.program = _compiled(task.plant, profile, steps, tuple(task.limits), len(matrix))
-        layout, groups = self.program.layout, self.program.model.groups
-        states, outputs = self.program.simulate(
-            np.zeros(profile.size), task.move, np.ones(self.program.model.scales)
-        )
-        peaks = [np.abs(outputs[group.where]).max() for group in groups[1:]]
+    def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
+        self.task, self.profile, self.steps = task, profile, steps
+        self.motion = motion = condensed(task.plant, profile, steps, tuple(task.limits))
+        self.scale = np.ones(motion.scales)
+        states, outputs, _ = self.figures(np.zeros(profile.size))
+        peaks = [np.abs(rows).max() for rows in self.by_group(outputs).values()]
         self.scale = np.array([*np.abs(states).max(axis=1), *peaks])
         self.scale[self.scale == 0] = 1.0
-        self.reference = {
-            group.name: float(scale)
-            for group, scale in zip(groups[1:], self.scale[layout.state :], strict=True)
-        }
-        self.matrix = matrix * self.scale[: layout.state]
-        if with_residual:
-            self.reference[RESIDUAL] = float(np.abs(self.matrix).max())
-            self.matrix = self.matrix / self.reference[RESIDUAL]
+        names = [group.name for group in motion.groups[1:]]
+        self.reference = dict(zip(names, self.scale[motion.states :].tolist(), strict=True))
+        self.reference[ENERGY] = self.reference["power"] * task.duration
+        matrix = _residual_rows(task) * self.scale[: motion.states]
+        self.reference[RESIDUAL] = float(np.abs(matrix).max())
+        self.matrix = matrix / self.reference[RESIDUAL]
 
     @keep_interrupts()
     def solve(
@@ -150,78 +170,231 @@ class TaskProgram:
         Parameters
         ----------
         guess : ndarray, shape (profile.size,), or Solution
-            Coefficients to start from, or a solution of this program with limits or weights that
-            are a little different.
+            Coefficients to start from, or a solution of this task with limits or weights that are
+            a little different.
         limits : mapping of str to float
-            Largest residual [m] and peaks [SI units]; a quantity without an entry is free.
+            Largest residual [m], 0 for rest on arrival, and peaks [SI units]; a quantity without
+            an entry is free.
         bound : float or None
             Largest absolute coefficient.
         minimise : mapping of str to float
-            Weights of the energy [1/J] and of peaks [1/m, ...], whose sum is made least.
+            Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is made least.
 
         Returns
         -------
         Solution
             The solution, whatever its status.
         """
-        layout = self.program.layout
-        units = np.array([self._energy_unit, *(self.reference[name] for name in layout.peaks)])
-        weights = units * [minimise.get(name, 0.0) for name in (ENERGY, *layout.peaks)]
-        weights /= weights.max()
-        parameters = np.concatenate(
-            [self.task.move, self.scale, weights, self.matrix.ravel(order="F")]
+        run = _Run.of(self, limits, bound, minimise)
+        if isinstance(guess, Solution) and guess.form == run.form:
+            start = guess.point
+        else:
+            start = run.start(guess.coefficients if isinstance(guess, Solution) else guess)
+        found = run.solution(run.form, run.stop(run.form, start))
+        return run.finished(found) if run.form.sampled and found.status.solved else found
+
+    @keep_interrupts()
+    def corrected(
+        self,
+        found: Solution,
+        arrival: NDArray[np.float64],
+        limits: Mapping[str, float],
+        bound: float | None,
+    ) -> Solution:
+        """Solve on from a solution of least energy, with what is known of its true arrival.
+
+        Parameters
+        ----------
+        found : Solution
+            The solution.
+        arrival : ndarray, shape (2 * modes,)
+            Its state on arrival by an exact integrator: the difference is kept while solving.
+        limits : mapping of str to float
+            As for `solve`; they may be tighter.
+        bound : float or None
+            Largest absolute coefficient.
+
+        Returns
+        -------
+        Solution
+            The solution, whatever its status.
+        """
+        states, _, _ = self.figures(found.coefficients)
+        offset = arrival / self.scale[: self.motion.states] - states[:, -1]
+        return _Run.of(self, limits, bound, LEAST_ENERGY, offset).corrected(found)
+
+    def figures(
+        self, coefficients: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+        """Scaled states after every step, outputs of every step, energy."""
+        inputs = (coefficients, self.task.move, self.scale)
+        values = self.motion.figures(*(ca.DM(value) for value in inputs))
+        states, outputs, energy = (value.full() for value in values)
+        return states, outputs, energy.item()
+
+    def by_group(self, outputs: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Outputs by the quantity's name."""
+        first = self.motion.states
+        return {
+            group.name: outputs[group.first - first : group.first - first + group.rows]
+            for group in self.motion.groups[1:]
+        }
+
+
+@dataclass(frozen=True)
+class _Run:
+    """What is asked of a program in one call, scaled."""
+
+    program: TaskProgram
+    form: Form
+    limits: Mapping[str, float]
+    bound: float
+    weights: Mapping[str, float]
+    offset: NDArray[np.float64]
+
+    @classmethod
+    def of(
+        cls,
+        program: TaskProgram,
+        limits: Mapping[str, float],
+        bound: float | None,
+        minimise: Mapping[str, float],
+        offset: NDArray[np.float64] | None = None,
+    ) -> _Run:
+        least = next((name for name in minimise if name != ENERGY), None)
+        still = limits.get(RESIDUAL, np.inf) == 0 and least != RESIDUAL
+        weights = {name: weight * program.reference[name] for name, weight in minimise.items()}
+        largest = max(weights.values())
+        return cls(
+            program=program,
+            form=Form(ENERGY in minimise, 0 if still else len(program.matrix), least),
+            limits={name: limit / program.reference[name] for name, limit in limits.items()},
+            bound=np.inf if bound is None else bound,
+            weights={name: weight / largest for name, weight in weights.items()},
+            offset=np.zeros(program.motion.states) if offset is None else offset,
         )
-        lower, upper = self._bounds(limits, bound)
-        start = guess.point if isinstance(guess, Solution) else self._start(guess)
-        point, return_status, iterations = self.program.solve(start, lower, upper, parameters)
-        x = point.unknowns
-        mean_power = self.program.node_weights @ x[layout.first_slack :]
-        peaks = dict(zip(layout.peaks, x[layout.coefficients : layout.first_state], strict=True))
+
+    def start(self, guess: NDArray[np.float64]) -> Point:
+        """Unknowns that agree with the guess: its own peak, arrival and power."""
+        states, outputs, energy = self.program.figures(guess)
+        arrival, form = states[:, -1] + self.offset, self.form
+        peak = [] if form.least is None else [self._peaks(arrival, outputs)[form.least]]
+        power = np.array([energy])
+        if form.sampled:
+            at_nodes = self.program.by_group(outputs)["power"].ravel(order="F")
+            power = np.append(np.maximum(at_nodes, 0), np.maximum(-at_nodes, 0)) + _SLACK_ROOM
+        return Point(np.concatenate([guess, peak, arrival if form.residual_rows else [], power]))
+
+    def stop(self, form: Form, start: Point, reach: float = np.inf) -> Stop:
+        """Run one form of the program, no farther than `reach` from the start."""
+        program, task = self.program, self.program.task
+        compiled = _compiled(task.plant, program.profile, program.steps, tuple(task.limits), form)
+        upper = np.full(compiled.unknowns, np.inf)
+        upper[compiled.part("coefficients")] = self.bound
+        lower = -upper
+        place = compiled.part("coefficients")
+        room = reach * np.maximum(1.0, np.abs(start.unknowns[place]))
+        lower[place] = np.maximum(lower[place], start.unknowns[place] - room)
+        upper[place] = np.minimum(upper[place], start.unknowns[place] + room)
+        if form.sampled:
+            lower[compiled.part("power")] = 0.0
+        both = [self.weights.get(ENERGY, 0.0), self.weights.get(form.least or "", 0.0)]
+        matrix = program.matrix[: form.residual_rows].ravel(order="F")
+        parameters = np.concatenate([task.move, program.scale, both, self.offset, matrix])
+        return compiled.solve(start, (lower, upper), self.limits, parameters)
+
+    def solution(self, form: Form, stop: Stop) -> Solution:
+        """The figures of where the solver stopped."""
+        program = self.program
+        coefficients = stop.point.unknowns[: program.motion.size]
+        coefficients = np.clip(coefficients, -self.bound, self.bound)  # IPOPT passes by 1e-10
+        states, outputs, energy = program.figures(coefficients)
+        arrival = states[:, -1] + self.offset
+        peaks, reference = self._peaks(arrival, outputs), program.reference
         slope = 0.0
-        if RESIDUAL in peaks:
-            # the variable may lie anywhere between the residual and a limit that is not in the way
-            at_arrival = x[layout.first_slack - layout.state : layout.first_slack]
-            peaks[RESIDUAL] = np.abs(self.matrix @ at_arrival).max()
-            multiplier = max(point.bound_multipliers[layout.coefficients], 0.0)
-            slope = -multiplier * self._energy_unit / self.reference[RESIDUAL]
+        if form.residual_rows and form.least is None:
+            slope = -float(np.abs(stop.point.multipliers[-form.residual_rows :]).sum())
         return Solution(
-            coefficients=np.clip(x, lower, upper)[: layout.coefficients],  # IPOPT passes by 1e-10
-            energy=float(mean_power * self._energy_unit),
-            peaks={name: float(peak * self.reference[name]) for name, peak in peaks.items()},
-            status=SolveStatus.from_ipopt(return_status),
-            slope=float(slope),
-            iterations=iterations,
-            point=point,
+            coefficients=coefficients,
+            energy=energy * reference[ENERGY],
+            peaks={name: peak * reference[name] for name, peak in peaks.items()},
+            status=SolveStatus.from_ipopt(stop.return_status),
+            slope=slope * reference[ENERGY] / reference[RESIDUAL],
+            iterations=stop.iterations,
+            arrival=arrival * program.scale[: program.motion.states],
+            form=form,
+            point=stop.point,
         )
+
+    def finished(self, found: Solution) -> Solution:
+        """Go on from the sampled minimum to that of the resolved energy.
+
+        What is found must keep the constraints and be better, else the given solution stands.
+        Status and point stay those of the sampled program, from which a neighbouring solve starts.
+        """
+        best = found
+        for reach in _REACHES:
+            stop = self.stop(self.resolved, best.finish or self._resolved_start(found), reach)
+            best = replace(best, iterations=best.iterations + stop.iterations)
+            after = self._after(best, stop)
+            if after is not None and self._value(after) <= self._value(best):
+                best = after
+            if best.settled:
+                break
+        return best
+
+    def corrected(self, found: Solution) -> Solution:
+        """Solve on from a solution for what is asked now, by the program that it is of."""
+        if found.finish is not None:
+            stop = self.stop(self.resolved, found.finish, _REACHES[0])
+            after = self._after(replace(found, iterations=found.iterations + stop.iterations), stop)
+            if after is not None:
+                return after
+        again = self.solution(self.form, self.stop(self.form, found.point))
+        return replace(again, iterations=found.iterations + again.iterations)
 
     @property
-    def _energy_unit(self) -> float:
-        return self.reference["power"] * self.task.duration
+    def resolved(self) -> Form:
+        """The same program with the energy resolved."""
+        return self.form._replace(sampled=False)
 
-    def _bounds(
-        self, limits: Mapping[str, float], bound: float | None
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        layout = self.program.layout
-        lower, upper = np.full(layout.unknowns, -np.inf), np.full(layout.unknowns, np.inf)
-        if bound is not None:
-            lower[: layout.coefficients], upper[: layout.coefficients] = -bound, bound
-        for i, name in enumerate(layout.peaks, start=layout.coefficients):
-            lower[i], upper[i] = 0.0, limits.get(name, np.inf) / self.reference[name]
-        at_rest = [slice(layout.first_state, layout.first_state + layout.state)]
-        if RESIDUAL not in layout.peaks:
-            at_rest.append(slice(layout.first_slack - layout.state, layout.first_slack))
-        for entries in at_rest:
-            lower[entries] = upper[entries] = 0.0
-        return lower, upper
+    def _after(self, found: Solution, stop: Stop) -> Solution | None:
+        """The solution where the resolved program stopped, None where a constraint is passed."""
+        after = self.solution(self.resolved, stop)
+        if not after.status.solved and stop.passed > _KEPT:
+            return None
+        return replace(
+            after,
+            status=found.status,
+            iterations=found.iterations,
+            form=found.form,
+            point=found.point,
+            finish=stop.point,
+            settled=after.status.solved,
+        )
 
-    def _start(self, guess: NDArray[np.float64]) -> Point:
-        """Unknowns that agree with the guess: its own states, slacks and peaks."""
-        states, outputs = self.program.simulate(guess, self.task.move, self.scale)
-        values = {group.name: outputs[group.where] for group in self.program.model.groups}
-        values[RESIDUAL] = self.matrix @ states[:, -1]
-        peaks = [float(np.abs(values[name]).max()) for name in self.program.layout.peaks]
-        slack = np.abs(values["power"].ravel(order="F")) + SLACK_ROOM
-        return Point(np.concatenate([guess, peaks, states.ravel(order="F"), slack]))
+    def _resolved_start(self, found: Solution) -> Point:
+        """The same point with one energy in the place of the power at the nodes."""
+        point, power = found.point, 2 * NODES * self.program.steps
+        return Point(
+            np.append(point.unknowns[:-power], found.energy / self.program.reference[ENERGY]),
+            np.append(point.bound_multipliers[:-power], 0.0),
+            np.append(self.weights[ENERGY], point.multipliers[power // 2 :]),
+        )
+
+    def _peaks(
+        self, arrival: NDArray[np.float64], outputs: NDArray[np.float64]
+    ) -> dict[str, float]:
+        values = {RESIDUAL: self.program.matrix @ arrival, **self.program.by_group(outputs)}
+        return {
+            name: float(np.abs(value).max()) for name, value in values.items() if name != "power"
+        }
+
+    def _value(self, found: Solution) -> float:
+        values = {ENERGY: found.energy, **found.peaks}
+        return sum(
+            w * values[name] / self.program.reference[name] for name, w in self.weights.items()
+        )
 
 
 def _residual_rows(task: PointToPoint) -> NDArray[np.float64]:

@@ -179,9 +179,19 @@ def sample_trajectory(
     return flow.trajectory(grid, rows)
 
 
-@keep_interrupts()
 def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Motion:
     """Residual, energy and diagnostics of a motion by CVODES.
+
+    Arguments and errors as for `resimulated`, whose figures it returns.
+    """
+    return resimulated(task, profile, coefficients)[0]
+
+
+@keep_interrupts()
+def resimulated(
+    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
+) -> tuple[Motion, NDArray[np.float64]]:
+    """Residual, energy and diagnostics of a motion by CVODES, and its state on arrival.
 
     The signed work is integrated along with the modes; the energy is the sum of its absolute
     changes between the power's sign changes, which are located on a fine grid first.
@@ -199,6 +209,8 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     -------
     Motion
         The figures.
+    ndarray, shape (2 * modes,)
+        W (m) and then W' (m/s) on arrival.
 
     Raises
     ------
@@ -216,7 +228,7 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     energy = _energy(flow, times, power)
 
     tip_columns = slice(3 + flow.modes, -1)
-    return Motion.from_samples(
+    motion = Motion.from_samples(
         task,
         outputs[:, :3],
         outputs[:, tip_columns],
@@ -225,6 +237,7 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
         energy=energy,
         net_work=float(states[-1, -1]),
     )
+    return motion, states[-1, :-1]
 
 
 @keep_interrupts()

@@ -19,7 +19,8 @@ from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 from ocp.verification import MOST_STEPS, verified
 
-LEAST_STEPS = 80
+LEAST_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 24, 80, 8
+"""Steps that a profile needs: more where more terms let the power change sign more often."""
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
 
@@ -76,39 +77,34 @@ def plan_move(
     if profile.size == 0:
         raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
     began = time.perf_counter()
-    program = TaskProgram(
-        task,
-        profile,
-        first_steps(task, settings),
-        with_residual=residual_limit > 0,
-    )
+    program = TaskProgram(task, profile, first_steps(task, profile, settings))
     guesses, asked = start_coefficients(profile.size, settings), asdict(settings)
     if guess is not None:
         guesses[0] = np.array(profile.checked(guess))
         asked["guess"] = ", ".join(repr(value) for value in profile.checked(guess))
     limits = {RESIDUAL: residual_limit, **task.limits}
     best = least_energy(program, profile, limits, bound, guesses)
-    best, motion, steps_used = verified(program, profile, best, limits, bound)
+    best, motion, steps_used = verified(program, best, limits, bound)
     return Plan(
         task=task,
         profile=profile,
         coefficients=profile.checked(best.coefficients),
         motion=motion,
         status=best.status,
-        verification=Verification.between(
-            steps_used, best.energy, best.peaks.get(RESIDUAL, 0.0), motion
-        ),
+        verification=Verification.between(steps_used, best.energy, best.residual, motion),
         provenance=Provenance("ipopt", asked, seconds=time.perf_counter() - began),
     )
 
 
-def first_steps(task: PointToPoint, settings: SolveSettings) -> int:
+def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> int:
     """Steps of the solver's discretisation to begin with.
 
     Parameters
     ----------
     task : PointToPoint
         The move.
+    profile : JointProfile
+        How the joint moves.
     settings : SolveSettings
         Its steps count where they are given.
 
@@ -122,7 +118,8 @@ def first_steps(task: PointToPoint, settings: SolveSettings) -> int:
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    steps = settings.steps or default_steps(task, least=LEAST_STEPS)
+    least = min(max(LEAST_STEPS, STEPS_A_TERM * (profile.size - 3)), MOST_LEAST_STEPS)
+    steps = settings.steps or default_steps(task, least=least)
     if steps > MOST_STEPS and settings.steps is None:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "

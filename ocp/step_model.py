@@ -1,4 +1,4 @@
-"""One step of the simulation with its derivatives, as small dense functions."""
+"""One step of the simulation with its derivatives, as casadi expressions."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import casadi as ca
 
 from models import JointMotion, Plant
-from ocp.collocation import GAUSS_NODES, NODES, eliminate, mesh, step
-from ocp.profile import JointProfile
+from ocp.collocation import NODES, eliminate, step
 
-_JOINT = len(JointMotion._fields)
+JOINT = len(JointMotion._fields)
+"""Numbers that say how the joint moves at one time."""
 
 
 @dataclass(frozen=True)
@@ -39,63 +39,22 @@ def groups_of(plant: Plant, quantities: Sequence[str]) -> list[Group]:
     return groups
 
 
-class StepModel:
-    """One step as a small dense casadi function with its first and second derivatives.
-
-    Inputs are the scaled state before the step, the step's index, the coefficients, the move and
-    the scales; outputs are the scaled state after it, the power and each limited quantity at the
-    Gauss nodes.
-
-    The joint's motion q and the modes' accelerations W'' at the nodes are symbols of their own
-    here, with the collocation equations between them: second derivatives are taken in these
-    symbols, where the graph is short, and carried over to coefficients and state by the chain
-    rule. That takes less than half the time of differentiating through the linear solve for W''.
-    """
-
-    def __init__(
-        self, plant: Plant, profile: JointProfile, steps: int, quantities: Sequence[str]
-    ) -> None:
-        self.size = 2 * plant.modes
-        self.groups = groups_of(plant, quantities)
-        self.scales = self.size + len(self.groups) - 1
-
-        state, index = ca.SX.sym("z", self.size), ca.SX.sym("k")
-        coefficients, move = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
-        scale = ca.SX.sym("scale", self.scales)
-        begin, length = mesh(index, steps)
-        start, target, duration = ca.vertsplit(move)
-        entries = ca.vertsplit(coefficients)
-        joint = ca.vertcat(
-            *(
-                ca.vertcat(*profile.motion(entries, begin + c * length, start, target, duration))
-                for c in GAUSS_NODES
-            )
-        )
-        lifted = LiftedStep(plant, self.groups, state, duration * length, scale)
-        inputs = [state, index, coefficients, move, scale]
-        multipliers = ca.SX.sym("lam", lifted.outputs.numel())
-        first, second = lifted.derivatives(joint, coefficients, state, multipliers)
-        n, options = profile.size, {"cse": True}
-        self.value = ca.Function("step", inputs, [lifted.of(joint, lifted.outputs)], options)
-        self.first = ca.Function("step_first", inputs, [first[:, :n], first[:, n:]], options)
-        self.second = ca.Function(
-            "step_second",
-            [*inputs, multipliers],
-            [second[:n, :n], second[:n, n:], second[n:, n:]],
-            options,
-        )
-
-
 class LiftedStep:
-    """A step's outputs and collocation equations in its joint q, state and accelerations W''."""
+    """A step's outputs and collocation equations in its joint q, state and accelerations W''.
+
+    The joint's motion q and the modes' accelerations W'' at the nodes are symbols of their own,
+    with the collocation equations between them: second derivatives are taken in these symbols,
+    where the graph is short, and carried over by the chain rule to whatever moves the joint and to
+    the state. That takes less than half the time of differentiating through the linear solve.
+    """
 
     def __init__(
         self, plant: Plant, groups: Sequence[Group], state: ca.SX, h: ca.SX, scale: ca.SX
     ) -> None:
         modes, size = plant.modes, 2 * plant.modes
-        self.joint = ca.SX.sym("q", NODES * _JOINT)
+        self.joint = ca.SX.sym("q", NODES * JOINT)
         self.accelerations = ca.SX.sym("ddW", NODES * modes)
-        joints = [JointMotion(*ca.vertsplit(q)) for q in ca.vertsplit(self.joint, _JOINT)]
+        joints = [JointMotion(*ca.vertsplit(q)) for q in ca.vertsplit(self.joint, JOINT)]
         ddW = [ca.vertsplit(at_node) for at_node in ca.vertsplit(self.accelerations, modes)]
         physical = ca.vertsplit(state * scale[:size])
         W, dW = physical[:modes], physical[modes:]
@@ -130,9 +89,11 @@ class LiftedStep:
         return ca.densify(ca.substitute(inner, self.joint, joint))
 
     def derivatives(
-        self, joint: ca.SX, coefficients: ca.SX, state: ca.SX, multipliers: ca.SX
+        self, joint: ca.SX, by: ca.SX, state: ca.SX, multipliers: ca.SX
     ) -> tuple[ca.SX, ca.SX]:
-        """Jacobian of the outputs and Hessian of multipliers . outputs, by coefficients and state.
+        """Jacobian of the outputs and Hessian of multipliers . outputs, by `by` and the state.
+
+        `joint` is q as an expression in `by`.
 
         With r(q, z, W'') = 0 the collocation equations: dW'' = -(dr/dW'')^-1 dr; multipliers mu of
         r that make the Lagrangian stationary in W'' leave its Hessian, between the directions in
@@ -147,11 +108,11 @@ class LiftedStep:
         hessian, gradient = ca.hessian(
             lagrangian + ca.dot(adjoint, self.residual), ca.vertcat(explicit, self.accelerations)
         )
-        n, size = coefficients.numel(), state.numel()
-        to_explicit = ca.diagcat(ca.jacobian(joint, coefficients), ca.SX.eye(size))
+        n, size = by.numel(), state.numel()
+        to_explicit = ca.diagcat(ca.jacobian(joint, by), ca.SX.eye(size))
         directions = ca.vertcat(to_explicit, moves @ to_explicit)
         weights = ca.SX.sym("weights", joint.numel())
-        bending = ca.hessian(ca.dot(weights, joint), coefficients)[0]
+        bending = ca.hessian(ca.dot(weights, joint), by)[0]
         second = directions.T @ hessian @ directions
         second[:n, :n] += ca.substitute(bending, weights, gradient[: joint.numel()])
         second = ca.triu2symm(ca.triu(ca.substitute(second, adjoint, stationary)))

@@ -30,7 +30,7 @@ SAME = 1e-5
 """Energies that differ by less than this share are of one motion."""
 _PATIENCE = 0.6
 """How long [s] points are still checked after Ctrl-C."""
-_MORE_STEPS = 4
+_MORE_STEPS = 2
 """How many times the sweep's steps a point may take whose figures disagree."""
 _SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""
@@ -104,7 +104,7 @@ class Sweep:
     def __post_init__(self) -> None:
         if self.profile.size == 0:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
-        self.steps = first_steps(self.task, self.settings)
+        self.steps = first_steps(self.task, self.profile, self.settings)
         self.guesses = start_coefficients(self.profile.size, self.settings)
         self._program: TaskProgram | None = None
 
@@ -112,7 +112,7 @@ class Sweep:
     def program(self) -> TaskProgram:
         """The program with the residual as a variable."""
         if self._program is None or self._program.steps != self.steps:
-            self._program = TaskProgram(self.task, self.profile, self.steps, with_residual=True)
+            self._program = TaskProgram(self.task, self.profile, self.steps)
         return self._program
 
     def solve(
@@ -182,10 +182,9 @@ class Sweep:
 
     def _at_rest(self) -> tuple[Solution, FrontPoint] | None:
         bound, limits = self.settings.bound, {**self.task.limits, RESIDUAL: 0.0}
-        program = TaskProgram(self.task, self.profile, self.steps, with_residual=False)
         try:
-            found = least_energy(program, self.profile, limits, bound, self.guesses)
-            found, motion, self.steps = verified(program, self.profile, found, limits, bound)
+            found = least_energy(self.program, self.profile, limits, bound, self.guesses)
+            found, motion, self.steps = verified(self.program, found, limits, bound)
         except SolverFailedError:
             return None
         self.iterations += found.iterations
@@ -213,7 +212,7 @@ class Sweep:
         limits = {**self.task.limits, RESIDUAL: limit}
         try:
             kept, motion, _ = verified(
-                self.program, self.profile, found, limits, self.settings.bound,
+                self.program, found, limits, self.settings.bound,
                 most_steps=_MORE_STEPS * self.steps,
             )  # fmt: skip
         except SolverFailedError as error:

@@ -1,73 +1,56 @@
-"""From a task to a nonlinear program.
+"""From a task to a nonlinear program in the profile's coefficients.
 
-Multiple shooting: the modes before every step are unknowns, and each step of the one simulation is
-a constraint. |power| is exact through slacks at the Gauss nodes (s >= p, s >= -p). Every quantity
-that may be limited has a variable for its peak, so that one program serves a limit (a bound on the
-variable), the least peak that is possible (a weight on it) and a weighted sum.
+Unknowns are the coefficients, the least peak where one is asked for, the state on arrival where a
+residual is limited (its many rows then have few entries), and what the energy is made of. This
+comes in two forms of the same program:
 
-All steps are alike, so the derivatives of one step are formed once, as small dense blocks, and
-mapped over the steps: building takes hundredths of a second whatever the number of steps, where
-casadi's own derivative of the whole graph takes half a second for a hundred.
+- sampled: the power at every Gauss node is the difference of two unknowns that are not negative,
+  and their sum is |power| there. The solver decides node by node, as in a linear program, and comes
+  to the minimum from far away in 15 to 30 iterations; but between the nodes energy can hide;
+- resolved: one unknown is the energy with its sign changes resolved. Its second derivatives are
+  exact where a solution is near, and unbounded where zeros of the power meet: a few iterations lead
+  from the sampled minimum to the true one.
+
+Limits are bounds on the quantities' values at the nodes.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass, field
-from types import MappingProxyType
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Plant
-from ocp.collocation import GAUSS_WEIGHTS, NODES, mesh
+from ocp.collocation import GAUSS_WEIGHTS, NODES
+from ocp.condensed import Condensed
 from ocp.interrupts import keep_interrupts
-from ocp.profile import JointProfile
-from ocp.step_model import StepModel
+from ocp.symbols import split
 
 RESIDUAL = "residual"
+Options = Mapping[str, str | int | float]
 
 
-@dataclass(frozen=True)
-class Layout:
-    """Where things stand in the vectors of the program.
+class Form(NamedTuple):
+    """Which program it is.
 
     Attributes
     ----------
-    coefficients, state, steps : int
-        Number of coefficients, of entries of the state, and of steps.
-    peaks : tuple of str
-        Names of the peak variables, the residual first where it has one.
-    slacks : int
-        Number of slacks of |power|.
+    sampled : bool
+        Whether |power| is taken at the nodes, or the energy with its sign changes resolved.
     residual_rows : int
-        Rows of the residual matrix, 0 where the program has no residual variable.
+        Rows of the residual matrix; 0 asks for rest on arrival.
+    least : str or None
+        The quantity whose peak is an unknown that is minimised.
     """
 
-    coefficients: int
-    state: int
-    steps: int
-    peaks: tuple[str, ...]
-    slacks: int
+    sampled: bool
     residual_rows: int
-
-    @property
-    def first_state(self) -> int:
-        """Index of the first state among the unknowns."""
-        return self.coefficients + len(self.peaks)
-
-    @property
-    def first_slack(self) -> int:
-        """Index of the first slack among the unknowns."""
-        return self.first_state + self.state * (self.steps + 1)
-
-    @property
-    def unknowns(self) -> int:
-        """Number of unknowns."""
-        return self.first_slack + self.slacks
+    least: str | None
 
 
 @dataclass(frozen=True)
@@ -77,7 +60,7 @@ class Point:
     Attributes
     ----------
     unknowns : ndarray
-        Coefficients, peaks, states, slacks, scaled.
+        Scaled unknowns.
     bound_multipliers, multipliers : ndarray, empty where unknown
         Of the bounds on the unknowns (positive at an upper one), and of the constraints.
     """
@@ -87,211 +70,231 @@ class Point:
     multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
 
 
-class NonlinearProgram:
-    """A compiled program for a plant, a profile, a number of steps and the limited quantities.
+class Stop(NamedTuple):
+    """How a run of IPOPT ended: where, its own status, iterations, and how far a bound is passed.
 
-    Start, target, duration, scales, residual matrix and the weights of the objective are its
-    parameters; limits are bounds. It holds live casadi objects: keep it out of answers.
+    `passed` is the largest amount by which a constraint is not kept, scaled.
     """
 
-    def __init__(
-        self,
-        plant: Plant,
-        profile: JointProfile,
-        steps: int,
-        quantities: tuple[str, ...],
-        residual_rows: int,
-        options: Mapping[str, str | int | float],
-        warm_options: Mapping[str, str | int | float] = MappingProxyType({}),
-    ) -> None:
-        self.model = model = StepModel(plant, profile, steps, quantities)
-        peaks = ((RESIDUAL,) if residual_rows else ()) + quantities
-        self.layout = layout = Layout(
-            profile.size, model.size, steps, peaks, NODES * steps, residual_rows
-        )
-        parameters = {
-            "move": 3,
-            "scale": model.scales,
-            "weights": 1 + len(peaks),
-            "residual": residual_rows * model.size,
-        }
-        x, p = ca.MX.sym("x", layout.unknowns), ca.MX.sym("p", sum(parameters.values()))
-        move, scale, weights, residual = ca.vertsplit(p, offsets(parameters.values()))
-        residual = ca.reshape(residual, residual_rows, model.size)
-        a, peak, flat_states, slack = ca.vertsplit(
-            x, offsets([layout.coefficients, len(peaks), model.size * (steps + 1), layout.slacks])
-        )
-        states = ca.reshape(flat_states, model.size, steps + 1)
-        arguments = (states[:, :-1], ca.MX(ca.DM(np.arange(steps)).T), a, move, scale)
+    point: Point
+    return_status: str
+    iterations: int
+    passed: float
 
-        outputs = _mapped(model.value, steps)(*arguments)
-        lengths = mesh(ca.DM(np.arange(steps)), steps)[1].full()
-        self.node_weights = np.outer(lengths, GAUSS_WEIGHTS).ravel()
-        energy = ca.dot(self.node_weights, slack)
-        objective = weights[0] * energy + (ca.dot(weights[1:], peak) if peaks else 0)
-        constraints = self._constraints(outputs, states, slack, peak, residual)
-        self.lower, self.upper = self._constraint_bounds(constraints.numel())
-        problem = {"x": x, "p": p, "f": objective, "g": constraints}
-        jacobian = self._jacobian(arguments, residual)
-        derivatives = {
-            "jac_g": ca.Function(
-                "nlp_jac_g", [x, p], [constraints, jacobian], ["x", "p"], ["g", "jac_g_x"]
-            ),
-            "hess_lag": self._hessian(x, p, arguments, constraints.numel()),
+
+class NonlinearProgram:
+    """One form of the program for a plant, a profile, a number of steps and limited quantities.
+
+    Move, scales, weights, residual matrix and a correction of the state on arrival are its
+    parameters; limits are bounds. It holds live
+    casadi objects: keep it out of answers.
+    """
+
+    @keep_interrupts()  # building, too, loses a Ctrl-C
+    def __init__(self, motion: Condensed, form: Form, options: Options, warm_options: Options):
+        self.motion, self.form = motion, form
+        self.sizes = {
+            "coefficients": motion.size,
+            "peak": 0 if form.least is None else 1,
+            "arrival": motion.states if form.residual_rows else 0,
+            "power": 2 * NODES * motion.steps if form.sampled else 1,
         }
+        """How many unknowns of each kind, in their order."""
+        x = ca.MX.sym("x", self.unknowns)
+        parts = dict(zip(self.sizes, split(x, list(self.sizes.values())), strict=True))
+        sizes = [3, motion.scales, 2, motion.states, form.residual_rows * motion.states]
+        p = ca.MX.sym("p", sum(sizes))
+        move, scale, weights, offset, residual = split(p, sizes)
+        residual = ca.reshape(residual, form.residual_rows, motion.states)
+        inputs = (parts["coefficients"], move, scale)
+        objective = weights[0] * self._energy(parts["power"]) + weights[1] * ca.sum1(parts["peak"])
+        arrival, by_step = motion.simulate(*inputs)
+        values = (arrival + offset, by_step)
+        g = ca.vertcat(*(row for rows in self._rows(values, parts, residual) for row in rows))
+        first = ca.Function(
+            "nlp_jac_g", [x, p], [g, self._jacobian(inputs, residual)], ["x", "p"], ["g", "jac_g_x"]
+        )
+        options_of_both = {
+            "jac_g": first,
+            "hess_lag": self._hessian(x, p, inputs, g.numel()),
+            "calc_lam_p": False,
+            "no_nlp_grad": True,
+            "print_time": False,
+        }
+        problem = {"x": x, "p": p, "f": objective, "g": g}
         self._cold, self._warm = (
-            ca.nlpsol(name, "ipopt", problem, {**derivatives, "print_time": False, "ipopt": chosen})
-            for name, chosen in (("cold", dict(options)), ("warm", {**options, **warm_options}))
+            ca.nlpsol(name, "ipopt", problem, {**options_of_both, "ipopt": dict(chosen)})
+            for name, chosen in (("cold", options), ("warm", {**options, **warm_options}))
         )
-        self._simulate = self._simulation()
 
-    def simulate(
-        self, coefficients: np.ndarray, move: Sequence[float], scale: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Scaled states (size, steps + 1) and step outputs (rows, steps) along a profile."""
-        states, outputs = self._simulate(ca.DM(coefficients), ca.DM(move), ca.DM(scale))
-        return states.full(), outputs.full()
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns."""
+        return sum(self.sizes.values())
+
+    def part(self, name: str) -> slice:
+        """Where unknowns of one kind stand among all."""
+        names = list(self.sizes)
+        first = sum(self.sizes[other] for other in names[: names.index(name)])
+        return slice(first, first + self.sizes[name])
 
     def solve(
-        self, start: Point, lower: np.ndarray, upper: np.ndarray, parameters: np.ndarray
-    ) -> tuple[Point, str, int]:
-        """Run IPOPT: where it stopped, its own status (all casadi warns of) and its iterations."""
+        self,
+        start: Point,
+        bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
+        limits: Mapping[str, float],
+        parameters: NDArray[np.float64],
+    ) -> Stop:
+        """Run IPOPT.
+
+        Parameters
+        ----------
+        start : Point
+            Where to start.
+        bounds : tuple of ndarray
+            Lower and upper bounds of the unknowns.
+        limits : mapping of str to float
+            Largest absolute values, scaled; a quantity without an entry is free.
+        parameters : ndarray
+            Move, scales, weights of energy and peak, what is added to the state on arrival, residual
+            matrix by columns.
+
+        Returns
+        -------
+        Stop
+            Where and how it ended.
+        """
+        lower, upper = self._constraint_bounds(limits)
         solver, known = self._cold, {}
         if start.multipliers.size:
-            solver, known = (
-                self._warm,
-                {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers},
-            )
-        with keep_interrupts(), redirect_stderr(io.StringIO()):
+            solver = self._warm
+            known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
+        with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
             result = solver(
-                x0=start.unknowns, lbx=lower, ubx=upper, lbg=self.lower, ubg=self.upper,
+                x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper,
                 p=parameters, **known,
             )  # fmt: skip
-        stopped = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
-        stats = solver.stats()
-        return stopped, str(stats["return_status"]), int(stats["iter_count"])
+        point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
+        g, stats = result["g"].full().ravel(), solver.stats()
+        passed = float(np.max([lower - g, g - upper]))
+        return Stop(point, str(stats["return_status"]), int(stats["iter_count"]), passed)
 
-    def _simulation(self) -> ca.Function:
-        steps, coefficients = self.layout.steps, self.layout.coefficients
-        sizes = [self.layout.state, 1, coefficients, 3, self.model.scales]
-        z, k, *shared = [ca.SX.sym(f"i{i}", size) for i, size in enumerate(sizes)]
-        outputs = self.model.value(z, k, *shared)
-        chain = ca.Function("chain", [z, k, *shared], [outputs[: sizes[0]], outputs])
-        inputs = [ca.MX.sym(f"i{i}", size) for i, size in enumerate(sizes[2:])]
-        after, all_outputs = chain.mapaccum(steps)(
-            ca.DM.zeros(sizes[0]),
-            ca.DM(np.arange(steps)).T,
-            *(ca.repmat(value, 1, steps) for value in inputs),
-        )
-        states = ca.horzcat(ca.DM.zeros(sizes[0]), after)
-        return ca.Function("simulate", inputs, [states, all_outputs])
+    # -- the constraints, in this order: energy, arrival, limited quantities, residual --
 
-    # -- the program, in the order of its constraints: steps, power, limited peaks, residual --
+    def _energy(self, power: ca.MX) -> ca.MX:
+        if not self.form.sampled:
+            return power
+        above, below = ca.vertsplit(power, NODES * self.motion.steps)
+        return ca.dot(np.outer(self.motion.lengths, GAUSS_WEIGHTS).ravel(), above + below)
 
-    def _constraints(
-        self, outputs: ca.MX, states: ca.MX, slack: ca.MX, peak: ca.MX, residual: ca.MX
-    ) -> ca.MX:
-        state, *bounded = self.model.groups
-        rows = [ca.vec(outputs[state.where, :] - states[:, 1:])]
-        for group in bounded:
-            value = ca.vec(outputs[group.where, :])
-            ceiling = slack if group.name == "power" else peak[self.layout.peaks.index(group.name)]
-            rows += [ceiling - value, ceiling + value]
-        if self.layout.residual_rows:
-            tip = residual @ states[:, -1]
-            rows += [peak[0] - tip, peak[0] + tip]
-        return ca.vertcat(*rows)
+    def _rows(
+        self, values: Sequence[ca.MX], parts: Mapping[str, ca.MX], residual: ca.MX
+    ) -> list[list[ca.MX]]:
+        arrival, by_step = values
+        if self.form.sampled:
+            above, below = ca.vertsplit(parts["power"], NODES * self.motion.steps)
+            rows = [[ca.vec(by_step[:NODES, :]) - above + below]]
+        else:
+            rows = [[self.motion.energy(by_step)[0] - parts["power"]]]
+        rows.append([arrival - parts["arrival"] if self.form.residual_rows else arrival])
+        for group in self._limited:
+            first = group.first - self.motion.states
+            value = ca.vec(by_step[first : first + group.rows, :])
+            rows.append(self._within(group.name, value, parts["peak"]))
+        if self.form.residual_rows:
+            rows.append(self._within(RESIDUAL, residual @ parts["arrival"], parts["peak"]))
+        return rows
 
-    def _constraint_bounds(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        equalities = self.layout.state * self.layout.steps
-        lower, upper = np.zeros(count), np.full(count, np.inf)
-        upper[:equalities] = 0.0
-        return lower, upper
+    def _within(self, name: str, value: ca.MX, peak: ca.MX) -> list[ca.MX]:
+        return [value - peak, value + peak] if name == self.form.least else [value]
 
-    def _jacobian(self, arguments: tuple[ca.MX, ...], residual: ca.MX) -> ca.MX:
-        layout, steps = self.layout, self.layout.steps
-        by_coefficients, by_state = _mapped(self.model.first, steps)(*arguments)
-        size, n_peaks = layout.state, len(layout.peaks)
-        rows: list[ca.MX] = []
-        for group in self.model.groups:
-            count = group.rows * steps
-            of_a = ca.vertcat(*ca.horzsplit(by_coefficients[group.where, :], layout.coefficients))
-            of_z = ca.horzcat(
-                block_diagonal(by_state[group.where, :], group.rows, size, steps),
-                ca.MX(count, size),
-            )
-            of_peak, of_slack = ca.MX(count, n_peaks), ca.MX(count, layout.slacks)
-            if group.name == "state":
-                of_next = ca.horzcat(ca.DM(count, size), ca.DM.eye(count))
-                rows.append(ca.horzcat(of_a, of_peak, of_z - of_next, of_slack))
-                continue
-            if group.name == "power":
-                of_slack = ca.MX(ca.DM.eye(count))
+    @property
+    def _limited(self) -> Sequence:
+        return self.motion.groups[2:]  # after state and power
+
+    def _constraint_bounds(
+        self, limits: Mapping[str, float]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        motion, form = self.motion, self.form
+        zeros = (NODES * motion.steps if form.sampled else 1) + motion.states
+        lower, upper = [np.zeros(zeros)], [np.zeros(zeros)]
+        counts = {group.name: group.rows * motion.steps for group in self._limited}
+        if form.residual_rows:
+            counts[RESIDUAL] = form.residual_rows
+        for name, count in counts.items():
+            limit, free = np.full(count, limits.get(name, np.inf)), np.full(count, np.inf)
+            if name == form.least:
+                lower += [-free, np.zeros(count)]
+                upper += [np.zeros(count), free]
             else:
-                of_peak = ca.MX(unit_column(count, n_peaks, layout.peaks.index(group.name)))
-            rows += [
-                ca.horzcat(-of_a, of_peak, -of_z, of_slack),
-                ca.horzcat(of_a, of_peak, of_z, of_slack),
-            ]
-        if layout.residual_rows:
-            count = layout.residual_rows
-            before = ca.MX(count, layout.coefficients)
-            of_peak = ca.MX(unit_column(count, n_peaks, 0))
-            middle, after = ca.MX(count, size * steps), ca.MX(count, layout.slacks)
-            rows += [
-                ca.horzcat(before, of_peak, middle, sign * residual, after) for sign in (-1, 1)
-            ]
+                lower.append(-limit)
+                upper.append(limit)
+        return np.concatenate(lower), np.concatenate(upper)
+
+    # -- derivatives --
+
+    def _row(self, count: int, **blocks: ca.MX | ca.DM) -> ca.MX:
+        """Rows of the Jacobian from its blocks by kind of unknown; what is not given is zero."""
+        return ca.horzcat(
+            *(ca.MX(blocks.get(name, ca.DM(count, size))) for name, size in self.sizes.items())
+        )
+
+    def _jacobian(self, inputs: tuple[ca.MX, ca.MX, ca.MX], residual: ca.MX) -> ca.MX:
+        motion, form = self.motion, self.form
+        found = motion.sensitivities(*inputs)
+        power, power_first = motion.of_group(found, "power")
+        count = power.numel()
+        if form.sampled:
+            signs = ca.horzcat(-ca.DM.eye(count), ca.DM.eye(count))
+            rows = [self._row(count, coefficients=power_first, power=signs)]
+        else:
+            gradient = ca.vec(motion.energy(found.by_step)[1]).T @ power_first
+            rows = [self._row(1, coefficients=gradient, power=ca.DM(-1))]
+        arrived = -ca.DM.eye(motion.states) if form.residual_rows else ca.DM(motion.states, 0)
+        rows.append(self._row(motion.states, coefficients=found.arrival_first, arrival=arrived))
+
+        def limited(name: str, count: int, **first: ca.MX) -> None:
+            if name == form.least:
+                ones = ca.DM.ones(count, 1)
+                rows.extend(self._row(count, **first, peak=sign * ones) for sign in (-1, 1))
+            else:
+                rows.append(self._row(count, **first))
+
+        for group in self._limited:
+            of_values = motion.of_group(found, group.name)[1]
+            limited(group.name, of_values.shape[0], coefficients=of_values)
+        if form.residual_rows:
+            limited(RESIDUAL, form.residual_rows, arrival=residual)
         return ca.vertcat(*rows)
 
     def _hessian(
-        self, x: ca.MX, p: ca.MX, arguments: tuple[ca.MX, ...], constraints: int
+        self, x: ca.MX, p: ca.MX, inputs: tuple[ca.MX, ca.MX, ca.MX], constraints: int
     ) -> ca.Function:
-        layout, steps, n = self.layout, self.layout.steps, self.layout.coefficients
+        motion, form = self.motion, self.form
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
-        sizes: list[int] = []
-        for group in self.model.groups:
-            sizes += [group.rows * steps] * (1 if group.name == "state" else 2)
-        parts = ca.vertsplit(multipliers, offsets([*sizes, 2 * layout.residual_rows]))
-        rows = [ca.reshape(parts[0], layout.state, steps)]
-        for i, group in enumerate(self.model.groups[1:]):
-            below, above = parts[1 + 2 * i], parts[2 + 2 * i]
-            rows.append(ca.reshape(above - below, group.rows, steps))
-        a_a, a_z, z_z = _mapped(self.model.second, steps)(*arguments, ca.vertcat(*rows))
-        a_a = ca.reshape(ca.sum2(ca.reshape(a_a, n * n, steps)), n, n)
-        z_z = block_diagonal(z_z, layout.state, layout.state, steps)
-        n_peaks, rest = len(layout.peaks), layout.state + layout.slacks
-        inner = layout.state * steps
-        hessian = ca.vertcat(
-            ca.horzcat(a_a, ca.MX(n, n_peaks), a_z, ca.MX(n, rest)),
-            ca.MX(n_peaks, layout.unknowns),
-            ca.horzcat(ca.MX(inner, n + n_peaks), z_z, ca.MX(inner, rest)),
-            ca.MX(rest, layout.unknowns),
+        sizes = [NODES * motion.steps if form.sampled else 1, motion.states]
+        for group in self._limited:
+            sizes += [group.rows * motion.steps] * (2 if group.name == form.least else 1)
+        of_energy, of_arrival, *of_values, _ = split(
+            multipliers, [*sizes, constraints - sum(sizes)]
         )
+        bends = None
+        if form.sampled:
+            of_outputs = [ca.reshape(of_energy, NODES, motion.steps)]
+        else:
+            _, gradient, bends = motion.energy(motion.simulate(*inputs)[1])
+            of_outputs, bends = [of_energy * gradient], of_energy * bends
+        for group in self._limited:
+            weight = of_values.pop(0)
+            if group.name == form.least:
+                weight += of_values.pop(0)
+            of_outputs.append(ca.reshape(weight, group.rows, motion.steps))
+        curvature = motion.curvature(inputs, of_arrival, ca.vertcat(*of_outputs), bends)
+        rest = self.unknowns - motion.size
         return ca.Function(
             "nlp_hess_l",
             [x, p, of_objective, multipliers],
-            [ca.triu(hessian)],
+            [ca.triu(ca.diagcat(curvature, ca.MX(rest, rest)))],
             ["x", "p", "lam_f", "lam_g"],
             ["triu_hess_gamma_x_x"],
         )
-
-
-def _mapped(function: ca.Function, steps: int) -> ca.Function:
-    """The function over all steps; coefficients, move and scales are shared."""
-    return function.map(f"{function.name()}_all", "serial", steps, [2, 3, 4], [])
-
-
-def block_diagonal(dense: ca.MX, rows: int, columns: int, blocks: int) -> ca.MX:
-    """Lay blocks that stand side by side along the diagonal; the entries stay where they are."""
-    pattern = ca.diagcat(*[ca.Sparsity.dense(rows, columns)] * blocks)
-    return ca.sparsity_cast(dense, pattern)
-
-
-def unit_column(rows: int, columns: int, column: int) -> ca.DM:
-    """Zeros but for ones in one column."""
-    return ca.horzcat(ca.DM(rows, column), ca.DM.ones(rows, 1), ca.DM(rows, columns - column - 1))
-
-
-def offsets(sizes: Iterable[int]) -> list[int]:
-    """Where parts of these sizes begin, and where the last ends, for `vertsplit`."""
-    return [0, *np.cumsum(list(sizes)).tolist()]
