@@ -4,14 +4,14 @@
 import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]
 
 from metaheuristics.ensemble import LostSeedsError, Spread, search_many
-from metaheuristics.nsga2 import PaperNSGA2
-from metaheuristics.population import PopulationObjective, PopulationValues
-from metaheuristics.presets import PAPER_BOX, PRESETS, Preset
-from metaheuristics.problem import MoveProblem
-from metaheuristics.run import SearchProgress
+from metaheuristics.algorithms.nsga2 import PaperNSGA2
+from metaheuristics.objective.population import PopulationObjective, PopulationValues
+from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset
+from metaheuristics.objective.problem import MoveProblem
+from metaheuristics.runs.run import SearchProgress
 from metaheuristics.search import search
-from metaheuristics.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP, VelocityRule
-from metaheuristics.vepso import VEPSO
+from metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP, VelocityRule
+from metaheuristics.algorithms.vepso import VEPSO
 
 __all__ = [
     "CONSTRICTION",

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from metaheuristics.presets import PRESETS
+from metaheuristics.algorithms.presets import PRESETS
 from metaheuristics.search import SearchProgress, search
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.checks import whole

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from pymoo.core.algorithm import Algorithm
 
-from metaheuristics.nsga2 import PaperNSGA2
-from metaheuristics.presets import PAPER_BOX, PRESETS
-from metaheuristics.run import Run, SearchProgress
-from metaheuristics.vepso import VEPSO
+from metaheuristics.algorithms.nsga2 import PaperNSGA2
+from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
+from metaheuristics.algorithms.vepso import VEPSO
+from metaheuristics.runs.run import Run, SearchProgress
 from ocp import CycloidPolynomial, JointProfile, PointToPoint
 from ocp.checks import whole
 from ocp.files import check_writable

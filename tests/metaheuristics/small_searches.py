@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from metaheuristics import PopulationObjective, search
-from metaheuristics.population import LEAST_STEPS
+from metaheuristics.objective.population import LEAST_STEPS
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
 

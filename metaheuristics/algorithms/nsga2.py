@@ -16,7 +16,7 @@ from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.selection.tournament import TournamentSelection
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 
-from metaheuristics.states import (
+from metaheuristics.algorithms.states import (
     POPULATION_ARRAYS,
     array_of,
     count_of,

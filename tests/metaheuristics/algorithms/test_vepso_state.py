@@ -8,8 +8,8 @@ from pymoo.optimize import minimize
 from pymoo.problems import get_problem
 from target_problems import Constrained, States, Targets, Undefined, same, step
 
-from metaheuristics.velocity import INERTIA_2002
-from metaheuristics.vepso import VEPSO
+from metaheuristics.algorithms.velocity import INERTIA_2002
+from metaheuristics.algorithms.vepso import VEPSO
 
 
 def plain(value):

@@ -28,8 +28,7 @@ from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.util.display.multi import MultiObjectiveOutput
 
-from metaheuristics.problem import UNUSABLE
-from metaheuristics.states import (
+from metaheuristics.algorithms.states import (
     POPULATION_ARRAYS,
     array_of,
     count_of,
@@ -37,7 +36,8 @@ from metaheuristics.states import (
     population_of,
     restore_generator,
 )
-from metaheuristics.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
+from metaheuristics.algorithms.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
+from metaheuristics.objective.problem import UNUSABLE
 from ocp.checks import positive, whole
 
 STATE_ARRAYS = ("velocities", "best_X", "best_merit", "swarm_best")

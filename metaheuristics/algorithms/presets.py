@@ -18,4 +18,4 @@ class Preset:
 
 PRESETS: dict[str, Preset] = {"vepso": Preset(100, 200), "nsga2": Preset(200, 500)}
 """Section 3.1: 100 particles a swarm, 200 iterations. Section 3.2: population 200, 500 generations,
-crossover 0.8, mutation 0.01 (`metaheuristics.nsga2`)."""
+crossover 0.8, mutation 0.01 (`metaheuristics.algorithms.nsga2`)."""

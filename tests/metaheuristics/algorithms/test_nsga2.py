@@ -19,8 +19,8 @@ from pymoo.problems import get_problem
 from pymoo.termination.max_gen import MaximumGenerationTermination
 
 from metaheuristics import PRESETS, MoveProblem, PaperNSGA2, PopulationObjective
-from metaheuristics.checkpoint import load_checkpoint, save_checkpoint
-from metaheuristics.nsga2 import ExactDuplicates
+from metaheuristics.algorithms.nsga2 import ExactDuplicates
+from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, PointToPoint
 

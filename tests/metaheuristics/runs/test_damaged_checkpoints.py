@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metaheuristics import search
-from metaheuristics.checkpoint import load_checkpoint, save_checkpoint
+from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from models import SingleLinkManipulator
 from ocp import FileFormatError, PointToPoint
 

@@ -23,10 +23,10 @@ from small_searches import (
 )
 
 from metaheuristics import VEPSO, PaperNSGA2, PopulationObjective, search
-from metaheuristics.checkpoint import load_checkpoint
-from metaheuristics.population import LEAST_STEPS
+from metaheuristics.objective.population import LEAST_STEPS
+from metaheuristics.runs.checkpoint import load_checkpoint
 
-module = sys.modules["metaheuristics.run"]
+module = sys.modules["metaheuristics.runs.run"]
 
 
 # -- checkpoints --
@@ -209,7 +209,7 @@ def test_a_lost_checkpoint_is_a_warning_of_pythons(tmp_path, always, monkeypatch
     def full(path, content):
         raise ValueError(f"{path} cannot be written: no space left on device")
 
-    monkeypatch.setattr("metaheuristics.checkpoint.write_whole", full)
+    monkeypatch.setattr("metaheuristics.runs.checkpoint.write_whole", full)
     with pytest.warns(RuntimeWarning, match="no space left on device"):
         front = run("vepso", checkpoint=tmp_path / "checkpoint")
     assert front.complete
@@ -233,7 +233,7 @@ from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
 
 method, path = sys.argv[1:]
-sys.modules["metaheuristics.run"].CHECKPOINT_SECONDS = 0.0
+sys.modules["metaheuristics.runs.run"].CHECKPOINT_SECONDS = 0.0
 task, bound = {
     "nsga2": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
     "vepso": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),

@@ -17,7 +17,7 @@ from small_searches import (
 )
 
 from metaheuristics import PopulationObjective, search
-from metaheuristics.population import LEAST_STEPS
+from metaheuristics.objective.population import LEAST_STEPS
 from ocp import CycloidPolynomial, Front, PointToPoint, rollout
 
 # -- history and reports --

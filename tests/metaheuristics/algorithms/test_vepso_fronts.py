@@ -6,8 +6,8 @@ import pytest
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
 
-from metaheuristics.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
-from metaheuristics.vepso import VEPSO
+from metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
+from metaheuristics.algorithms.vepso import VEPSO
 
 # All at the paper's effort, 100 particles a swarm and 200 iterations. IGD is the mean distance of
 # the true front to the archive, HV the archive's hypervolume over the true front's at (1.1, 1.1).

@@ -21,10 +21,10 @@ from small_searches import (
 )
 
 from metaheuristics import PopulationObjective
-from metaheuristics.population import LEAST_STEPS
+from metaheuristics.objective.population import LEAST_STEPS
 from ocp import CycloidPolynomial, Front, resimulate, rollout
 
-module = sys.modules["metaheuristics.run"]
+module = sys.modules["metaheuristics.runs.run"]
 
 
 # -- limits --

@@ -11,13 +11,13 @@ from pymoo.optimize import minimize
 from pymoo.problems import get_problem
 from target_problems import Targets
 
-from metaheuristics.velocity import (
+from metaheuristics.algorithms.velocity import (
     CONSTRICTION,
     INERTIA_2002,
     PAPER_GROUP,
     VelocityRule,
 )
-from metaheuristics.vepso import VEPSO
+from metaheuristics.algorithms.vepso import VEPSO
 
 # -- arguments --
 

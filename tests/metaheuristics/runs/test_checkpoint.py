@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from metaheuristics.checkpoint import FORMAT, VERSION, load_checkpoint, save_checkpoint
+from metaheuristics.runs.checkpoint import FORMAT, VERSION, load_checkpoint, save_checkpoint
 from ocp import FileFormatError
 
 HEADER = {"method": "nsga2", "seed": 3, "settings": {"bound": 0.5, "population": None}}

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.termination.max_gen import MaximumGenerationTermination
 
-from metaheuristics.checkpoint import load_checkpoint, refuse_another_search, save_checkpoint
-from metaheuristics.nsga2 import PaperNSGA2
-from metaheuristics.population import PopulationObjective
-from metaheuristics.problem import UNUSABLE, MoveProblem
-from metaheuristics.provenance import stated
-from metaheuristics.states import array_of, count_of, number_of, part_of
-from metaheuristics.vepso import VEPSO
+from metaheuristics.algorithms.nsga2 import PaperNSGA2
+from metaheuristics.algorithms.provenance import stated
+from metaheuristics.algorithms.states import array_of, count_of, number_of, part_of
+from metaheuristics.algorithms.vepso import VEPSO
+from metaheuristics.objective.population import PopulationObjective
+from metaheuristics.objective.problem import UNUSABLE, MoveProblem
+from metaheuristics.runs.checkpoint import load_checkpoint, refuse_another_search, save_checkpoint
 from ocp import JointProfile, PointToPoint, reference_corner
 from ocp.documents import profile_to_document, reading, task_to_document, versions
 from ocp.front import Front, FrontPoint, Generation, non_dominated

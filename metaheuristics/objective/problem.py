@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 
-from metaheuristics.population import PopulationObjective
+from metaheuristics.objective.population import PopulationObjective
 
 UNUSABLE = 1e30
 """From here on a figure counts as not finite, and this stands for it: finite itself, so that pymoo

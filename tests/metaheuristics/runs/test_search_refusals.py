@@ -11,7 +11,7 @@ from metaheuristics import CONSTRICTION, INERTIA_2002, VEPSO, PaperNSGA2, search
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import CycloidPolynomial, FileFormatError
 
-module = sys.modules["metaheuristics.run"]
+module = sys.modules["metaheuristics.runs.run"]
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from metaheuristics import PopulationObjective
-from metaheuristics.population import LEAST_STEPS, _compiled
+from metaheuristics.objective.population import LEAST_STEPS, _compiled
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import (
     CycloidPolynomial,
