@@ -10,7 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from metaheuristics.algorithms.presets import PRESETS
-from metaheuristics.search import SearchProgress, search
+from metaheuristics.runs.progress import SearchProgress
+from metaheuristics.search import search
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.checks import whole
 from ocp.workers import Say, Workers, remedy

@@ -1,4 +1,4 @@
-"""What an algorithm was set to, in plain numbers and words: the provenance of a front."""
+"""What an algorithm is set to, in plain numbers and words: part of the provenance of a front."""
 
 from __future__ import annotations
 
@@ -14,23 +14,24 @@ _OPERATORS = ("sampling", "selection", "crossover", "mutation", "survival", "dec
 _RENAMED = {"pop_size": "population", "n_offsprings": "offspring"}
 
 
-def stated(algorithm: Algorithm) -> dict[str, Any]:
+def settings_of(algorithm: Algorithm) -> dict[str, Any]:
     """The settings of an algorithm that was not run yet.
 
     Parameters
     ----------
     algorithm : pymoo Algorithm
-        Any; one with a property `settings`, as VEPSO and PaperNSGA2, states them itself.
+        Any; VEPSO and PaperNSGA2 have a property `settings`.
 
     Returns
     -------
     dict
-        Numbers and words by name: what the algorithm has beyond pymoo's base class, its operators
-        with their own numbers, and of reference directions their count and a checksum.
+        Its own `settings` where it has them. Else numbers and words by name: what it has beyond
+        pymoo's base class, its operators with their numbers, and of reference directions their
+        count and a checksum.
     """
     own = getattr(algorithm, "settings", None)
     if isinstance(own, Mapping):
-        return dict(flat(own))
+        return dict(own)
     base = vars(Algorithm()).keys()
     entries = {name: value for name, value in vars(algorithm).items() if name not in base}
     found: dict[str, Any] = {_RENAMED.get(name, name): value for name, value in _plain(entries)}

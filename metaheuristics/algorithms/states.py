@@ -1,7 +1,7 @@
-"""The parts of a state, checked as they are read: a file may hold anything.
+"""The state of an algorithm, to go on from, and its parts, checked as they are read.
 
-Every function raises KeyError where an entry is missing, TypeError or ValueError where it is not
-what a state has there.
+A file may hold anything: every function raises KeyError where an entry is missing, TypeError or
+ValueError where it is not what a state has there.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,24 @@ from pymoo.core.population import Population
 from ocp.checks import finite, whole
 
 POPULATION_ARRAYS = ("X", "F", "G", "H")
+
+
+@runtime_checkable
+class Resumable(Protocol):
+    """An algorithm whose run can be kept in a file and gone on with, bit for bit."""
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What a state is of, in plain numbers and words."""
+        ...
+
+    def state(self) -> dict[str, Any]:
+        """All that the run needs to go on: a nested plain dict."""
+        ...
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on from a `state`; call it after `setup` with the settings of that run."""
+        ...
 
 
 def part_of(state: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -57,12 +57,12 @@ def least_crowded(F: Array, size: int) -> Array:
 class VEPSO(Algorithm):
     """VEPSO for any number of objectives.
 
-    Every iteration, the first included, evaluates exactly n_obj * `particles` candidates. Bests are
-    compared feasible first, then by violation, then by the swarm's objective; a tie is broken by
-    the next objectives of the ring, lest a swarm rests where only its own is minimal. What has a
-    NaN or infinite objective or violation becomes no best, and as little as what violates a
-    constraint does it enter the archive. The archive is `opt` and the result; while it is empty,
-    `opt` is the least infeasible particle, as usual in pymoo.
+    Every iteration, the first included, evaluates exactly n_obj * `particles` candidates. The best
+    of two candidates is the one with the smaller constraint violation; then the one with the
+    smaller objective of the swarm; then, so that a tie does not stop the swarm, of the next swarms
+    in the ring. A candidate with a NaN or infinite objective or violation is never a best. The
+    archive takes neither those nor any that violate a constraint. It is `opt` and the result; while
+    it is empty, `opt` is the least infeasible particle, as usual in pymoo.
 
     Parameters
     ----------
@@ -175,9 +175,12 @@ class VEPSO(Algorithm):
         swarms, particles, _ = self.shape
         X, F = infills.get("X", "F")
         if self.random_before is None or F.shape != (swarms * particles, swarms):
-            raise ValueError(f"told F has shape {F.shape}; ask, and tell all candidates evaluated")
+            raise ValueError(
+                f"the candidates told have objectives of shape {F.shape}; ask for candidates, "
+                "evaluate all of them, and tell them once"
+            )
         self.pop, self.velocities, self.random_before = infills, self.moved, None
-        violation = _violations(infills)
+        violation = _violations(infills, F)
         merit = np.take_along_axis(F.reshape(swarms, particles, -1), self.ring[:, None], axis=2)
         merit = np.concatenate([violation.reshape(swarms, particles, 1), merit], axis=2)
         merit[np.isinf(merit[..., 0])] = np.inf
@@ -199,9 +202,9 @@ class VEPSO(Algorithm):
     _initialize_advance = _advance
 
     def _set_optimum(self) -> None:
-        # never empty, which pymoo's terminations and displays could not bear
-        least_infeasible = self.pop[[np.argmin(self.pop.get("CV"))]]
-        self.opt = self.external_archive if len(self.external_archive) else least_infeasible
+        self.opt = self.external_archive
+        if len(self.opt) == 0:  # which pymoo's terminations and displays could not bear
+            self.opt = self.pop[[np.argmin(self.pop.get("CV"))]]
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -217,7 +220,7 @@ class VEPSO(Algorithm):
         violation, then the objectives from s on round the ring. Settings are not part of it.
         """
         if self.iteration == 0:
-            raise RuntimeError("there is no state before the first iteration; tell it first")
+            raise RuntimeError("there is no state before the first iteration; run one first")
         return {
             "iteration": self.iteration,
             "evaluations": self.evaluator.n_eval,
@@ -246,7 +249,7 @@ class VEPSO(Algorithm):
             raise ValueError("best_X has entries outside the box")
         self.pop = population_of(part_of(state, "particles"), self.problem, swarms * particles)
         self.external_archive = population_of(part_of(state, "archive"), self.problem)
-        _violations(self.pop)
+        _violations(self.pop, self.pop.get("F"))
         self.archive_F = self.external_archive.get("F").reshape(-1, swarms)
         restore_generator(self.random_state, state)
         self.start_time, self.is_initialized, self.random_before = time.time(), True, None
@@ -261,10 +264,10 @@ def _count_or_none(name: str, value: object, least: int) -> int | None:
     return None if value is None else whole(name, value, least)
 
 
-def _violations(candidates: Any) -> Array:
+def _violations(candidates: Any, F: Array) -> Array:
     """Constraint violations, shape (n,); infinite, with a huge CV, where F or CV is not finite."""
-    F, CV = candidates.get("F", "CV")
-    violation = np.where(np.isfinite(F).all(axis=1) & np.isfinite(CV[:, 0]), CV[:, 0], np.inf)
+    CV = candidates.get("CV")[:, 0]
+    violation = np.where(np.isfinite(F).all(axis=1) & np.isfinite(CV), CV, np.inf)
     for candidate in candidates[np.isinf(violation)]:
         candidate.CV = np.array([UNUSABLE])  # not infinite: pymoo subtracts and averages
     return np.maximum(violation, 0.0)

@@ -101,60 +101,6 @@ def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     return document, state
 
 
-def refuse_another_search(
-    path: str | Path, header: Mapping[str, Any], mine: Mapping[str, Any]
-) -> None:
-    """Make sure that a checkpoint is of the search that is to go on.
-
-    Other versions are refused too: the objectives kept in the file would be compared with those of
-    other code, and the front would be that of neither. A search takes seconds to minutes, and the
-    versions that are named can be installed for it.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file, for the message.
-    header : mapping
-        What it holds.
-    mine : mapping
-        What the search to go on has; its entry `versions` says what computes it.
-
-    Raises
-    ------
-    FileFormatError
-        When the file lacks an entry.
-    ValueError
-        When an entry differs.
-    """
-    for name in mine:
-        if name not in header:
-            raise FileFormatError(f"{path} is not a whole checkpoint: {name} is missing")
-    theirs, here = dict(header), dict(mine)
-    their_versions, my_versions = theirs.pop("versions"), here.pop("versions")
-    difference = _difference(theirs, here)
-    if difference:
-        raise ValueError(f"{path} is of another search: its {difference}")
-    difference = _difference({"version of": their_versions}, {"version of": my_versions})
-    if difference:
-        raise ValueError(
-            f"{path} was written with other software: its {difference}; install what it was "
-            "written with, or begin anew"
-        )
-
-
-def _difference(theirs: Mapping[str, Any], mine: Mapping[str, Any]) -> str:
-    """The first entry in which two nested tables differ, in words; empty where none does."""
-    for name in {**mine, **theirs}:
-        other, value = theirs.get(name), mine.get(name)
-        if isinstance(value, Mapping) and isinstance(other, Mapping):
-            inner = _difference(other, value)
-            if inner:
-                return f"{name} {inner}"
-        elif other != value:
-            return f"{name} is {other!r}, not {value!r}"
-    return ""
-
-
 def _split(state: Mapping[str, Any], prefix: str, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
     rest: dict[str, Any] = {}
     for name, value in state.items():

@@ -68,7 +68,7 @@ def good(path):
     return path.read_bytes()
 
 
-def refused(path, message="checkpoint"):
+def refused(path, message="is not a checkpoint, or not a whole one"):
     """Refused in one line that names the file, which stays as it was."""
     before = (path.read_bytes(), path.stat().st_mtime_ns) if path.is_file() else None
     with pytest.raises(FileFormatError, match=message) as caught:

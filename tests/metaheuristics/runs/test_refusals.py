@@ -2,16 +2,15 @@
 
 import dataclasses
 import re
-import sys
 
 import pytest
 from small_searches import BOUNDS, HALF, METHODS, TASKS, found, one_line, run
 
 from metaheuristics import CONSTRICTION, INERTIA_2002, VEPSO, PaperNSGA2, search
+from metaheuristics.runs import keeping
+from metaheuristics.runs.settings import search_versions
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import CycloidPolynomial, FileFormatError
-
-module = sys.modules["metaheuristics.runs.run"]
 
 
 @pytest.fixture(scope="module")
@@ -142,8 +141,8 @@ def test_a_missing_checkpoint_is_named(tmp_path):
 @METHODS
 @pytest.mark.parametrize("package", ["quietarm", "casadi", "numpy", "pymoo"])
 def test_a_checkpoint_of_other_software_is_refused(checkpoints, monkeypatch, method, package):
-    others = {**module.versions(), "pymoo": module.pymoo.__version__, package: "0.0.7"}
-    monkeypatch.setattr(module, "_versions", lambda: others)
+    others = {**search_versions(), package: "0.0.7"}
+    monkeypatch.setattr(keeping, "search_versions", lambda: others)
     words = [f"its version of {package} is", "not '0.0.7'", "begin anew"]
     call = {"method": method, "task": TASKS[method], "generations": 3}
     _refused(checkpoints / method, ValueError, *words, **call)

@@ -24,10 +24,8 @@ from small_searches import (
 
 from metaheuristics import VEPSO, PaperNSGA2, PopulationObjective, search
 from metaheuristics.objective.population import LEAST_STEPS
+from metaheuristics.runs import keeping
 from metaheuristics.runs.checkpoint import load_checkpoint
-
-module = sys.modules["metaheuristics.runs.run"]
-
 
 # -- checkpoints --
 
@@ -35,12 +33,34 @@ module = sys.modules["metaheuristics.runs.run"]
 @pytest.fixture
 def always(monkeypatch):
     """A checkpoint after every generation."""
-    monkeypatch.setattr(module, "CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr(keeping, "CHECKPOINT_SECONDS", 0.0)
 
 
-def test_a_checkpoint_is_written_every_few_seconds():
-    # Issue 3, item 5.
-    assert 1 <= module.CHECKPOINT_SECONDS <= 10
+@pytest.fixture
+def clock(monkeypatch):
+    """A clock that stands still between the generations; `after` sets it forward after each."""
+    now = [100.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
+
+    def after(seconds):
+        def report(progress):
+            now[0] += seconds
+
+        return report
+
+    return after
+
+
+def test_a_checkpoint_is_written_every_two_seconds_and_at_the_end(tmp_path, monkeypatch, clock):
+    written = []
+    monkeypatch.setattr(
+        keeping,
+        "save_checkpoint",
+        lambda path, header, state: written.append(len(state["hypervolume"])),
+    )
+    run("vepso", generations=8, checkpoint=tmp_path / "checkpoint", report=clock(0.75))
+    # 0.75 s a generation: 2.25 s after three, and again after six; 1.5 s later it is over
+    assert written == [3, 6, 8]
 
 
 @METHODS
@@ -89,7 +109,7 @@ def test_ctrl_c_within_an_evaluation_leaves_a_checkpoint_to_go_on_from(
     monkeypatch.setattr(PopulationObjective, "__call__", interrupting)
     part = run(method, checkpoint=path)
     assert not part.complete
-    assert len(part.history) in (4, 5)
+    assert len(part.history) == 5  # the generation that it came in is whole
     assert part.evaluations == part.history[-1].evaluations
     assert part.history == found(method).history[: len(part.history)]
     assert exactly(run(method, resume=path)) == exactly(found(method))
@@ -114,7 +134,7 @@ def test_an_error_leaves_a_checkpoint_to_go_on_from(tmp_path, monkeypatch, alway
         with pytest.raises(CrashError):
             run(method, checkpoint=path, **options)
     front = run(method, resume=path, report=seen.append)
-    assert seen[0].generation in (5, 6)
+    assert seen[0].generation == 5
     assert exactly(front) == exactly(found(method))
 
 
@@ -138,18 +158,24 @@ def test_a_run_may_be_broken_off_and_resumed_again_and_again(tmp_path, always, m
 
 
 @METHODS
-def test_time_adds_up_over_runs(tmp_path, always, method):
-    path = tmp_path / "checkpoint"
+def test_time_adds_up_over_runs(tmp_path, always, clock, method):
+    path, tick = tmp_path / "checkpoint", clock(2.0)
 
-    def slow(progress):
-        time.sleep(0.05)
+    def stop(progress):
+        tick(progress)
         stop_after(3)(progress)
 
-    run(method, checkpoint=path, report=slow)
+    part = run(method, checkpoint=path, report=stop)
+    assert part.seconds == 6.0
     seen = []
-    front = run(method, resume=path, report=seen.append)
-    assert seen[0].seconds > 0.1  # two generations were in the checkpoint
-    assert front.seconds >= seen[-1].seconds
+
+    def report(progress):
+        seen.append(progress.seconds)
+        tick(progress)
+
+    front = run(method, resume=path, report=report)
+    assert seen == [6.0 + 2.0 * k for k in range(12)]
+    assert front.seconds == 6.0 + 12 * 2.0
 
 
 @METHODS
@@ -227,61 +253,49 @@ def test_a_checkpoint_that_cannot_be_written_is_found_before_the_work(tmp_path):
 # -- SIGKILL --
 
 KILLED = """
-import math, sys
+import math, os, signal, sys, threading
 from metaheuristics import search
+from metaheuristics.runs import keeping
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
 
-method, path = sys.argv[1:]
-sys.modules["metaheuristics.runs.run"].CHECKPOINT_SECONDS = 0.0
+method, path, generation, delay = sys.argv[1:]
+keeping.CHECKPOINT_SECONDS = 0.0
+end = threading.Timer(float(delay), os.kill, (os.getpid(), signal.SIGKILL))
 task, bound = {
     "nsga2": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
     "vepso": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
 }[method]
+
+def report(progress):
+    print(progress.generation, flush=True)
+    if progress.generation == int(generation):
+        end.start()
+
 search(
-    task, method, bound=bound, population=20, generations=200, seed=5, checkpoint=path,
-    report=lambda progress: print(progress.generation, flush=True),
+    task, method, bound=bound, population=20, generations=80, seed=5, checkpoint=path, report=report
 )
+end.join()  # should it be over before it is killed
 """
-
-
-def _kill_at(script, method, path, generation, delay):
-    """Run until the generation, wait a little longer, kill; the last generation that it told."""
-    command = [sys.executable, str(script), method, str(path)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    try:
-        last = 0
-        for line in process.stdout:
-            last = int(line)
-            if last >= generation:
-                break
-        time.sleep(delay)
-        process.send_signal(signal.SIGKILL)
-        rest = process.stdout.read().split()
-        assert process.wait(30) == -signal.SIGKILL  # it had not ended by itself
-    finally:
-        process.kill()
-        process.stdout.close()
-        process.wait()
-    return int(rest[-1]) if rest else last
 
 
 @METHODS
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGKILL")
 def test_a_run_that_was_killed_ends_bit_for_bit_as_one_that_was_not(tmp_path, method, seed):
-    # Issue 3, item 5: at any moment.
-    script, path = tmp_path / "script.py", tmp_path / "checkpoint"
-    script.write_text(KILLED)
-    moment = random.Random(f"{method} {seed}")
-    generation, delay = moment.randint(2, 80), moment.uniform(0, 0.02)
-    told = _kill_at(script, method, path, generation, delay)
-    # The checkpoint comes after the report of its generation, and is whole whenever it came.
+    path, moment = tmp_path / "checkpoint", random.Random(f"{method} {seed}")
+    generation, delay = moment.randint(2, 40), moment.uniform(0, 0.02)
+    command = [sys.executable, "-c", KILLED, method, path, str(generation), str(delay)]
+    killed = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=120, check=False)
+    assert killed.returncode == -signal.SIGKILL
+    told = [int(line) for line in killed.stdout.split()]
+    assert told == list(range(1, len(told) + 1))
+    assert len(told) >= generation
+    # the checkpoint comes after the report of its generation, and is whole whenever it came
     saved = len(load_checkpoint(path)[1]["hypervolume"])
-    assert told - 1 <= saved <= told < 200
-    settings = {"seed": 5, "generations": 200}
+    assert saved in (len(told) - 1, len(told))
     seen = []
-    front = run(method, **settings, resume=path, report=seen.append)
-    assert seen[0].generation == saved + 1
+    front = run(method, seed=5, generations=80, resume=path, report=seen.append)
+    assert [progress.generation for progress in seen] == list(range(saved + 1, 81))
     assert front.complete
-    assert exactly(front) == exactly(run(method, **settings))
+    assert exactly(front) == exactly(found(method, seed=5, generations=80))

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -22,10 +21,8 @@ from small_searches import (
 
 from metaheuristics import PopulationObjective
 from metaheuristics.objective.population import LEAST_STEPS
+from metaheuristics.runs import keeping
 from ocp import CycloidPolynomial, Front, resimulate, rollout
-
-module = sys.modules["metaheuristics.runs.run"]
-
 
 # -- limits --
 
@@ -44,9 +41,11 @@ def test_every_point_keeps_the_limits(method):
     assert_is_a_front(front)
     for point in front.points:
         motion = rollout(task, front.profile, point.coefficients).motion
-        independent = resimulate(task, front.profile, point.coefficients)
         for name, limit in task.limits.items():
             assert motion.peak(name) <= limit * (1 + 1e-6)
+    for point in front.points[:: max(len(front.points) // 6, 1)]:
+        independent = resimulate(task, front.profile, point.coefficients)
+        for name, limit in task.limits.items():
             # a peak between two of the 420 nodes: (2 pi 5/420)^2/8 of a fifth harmonic
             assert independent.peak(name) <= limit * (1 + 7e-4)
 
@@ -142,7 +141,7 @@ def test_when_all_candidates_fail_the_front_is_empty(monkeypatch, method, energy
 @METHODS
 def test_failed_candidates_count_on_after_a_resume(tmp_path, monkeypatch, method):
     failing(monkeypatch, math.nan)
-    monkeypatch.setattr(module, "CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr(keeping, "CHECKPOINT_SECONDS", 0.0)
     path = tmp_path / "checkpoint"
 
     def stop(progress):
