@@ -182,7 +182,7 @@ def test_a_process_that_dies_costs_its_own_seed_only(tmp_path, monkeypatch):
     order = tmp_path / "order"
     order.touch()
     monkeypatch.setenv(dying.ORDER, str(order))
-    settings = {**SMALL, "generations": 40, "profile": dying.Dying(2)}
+    settings = {**SMALL, "generations": 20, "profile": dying.Dying(2)}
     heard = set()
     with pytest.raises(LostSeedsError) as caught:
         search_many(

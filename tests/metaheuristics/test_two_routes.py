@@ -27,7 +27,7 @@ from ocp import (
 # coefficients for the first condition of each plant (a_5 mended), times phi.
 STILL = {"vepso": 1.58e-4 * 2.28, "nsga2": 6.6e-4 * 0.508}
 VEPSO_ROWS = [(pi / 6, 0.8, 0.0515), (pi / 2, 1.0, 0.296), (pi / 2, 1.1, 0.223)]
-ARM_ROWS = [(0.0, pi / 2, 0.8, 0.149), (-pi / 2, pi / 4, 1.0, 0.143), (-pi / 2, pi / 2, 1.2, 0.200)]
+ARM_ROWS = [(-pi / 2, pi / 4, 1.0, 0.143), (-pi / 2, pi / 2, 1.2, 0.200)]  # after the first
 
 
 TENTH = {"population": 80, "generations": 120}
@@ -79,7 +79,7 @@ POLISHED = 2e-3
 @pytest.fixture(scope="module", params=CASES)
 def case(request):
     task, bound = CASES[request.param]
-    return task, bound, epsilon_front(task, bound=bound, points=20)
+    return task, bound, epsilon_front(task, bound=bound, points=12, starts=1)
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +95,7 @@ def searched(case):
 @pytest.fixture(scope="module")
 def thinned(searched):
     """A few points of both."""
-    return [_thinned(front, 6) for front in searched]
+    return [_thinned(front, 5) for front in searched]
 
 
 def _thinned(front, count):
@@ -139,7 +139,7 @@ def test_at_their_own_residuals_the_gradient_is_as_cheap_or_cheaper(thinned, lea
 
 def test_weighted_points_lie_on_the_front(case):
     task, bound, front = case
-    weighted = weighted_front(task, bound=bound, points=6)
+    weighted = weighted_front(task, bound=bound, points=4, starts=1)
     energies = _least_energies(front, weighted.points[1:])  # the first is at rest
     assert weighted.energies[1:] == pytest.approx(energies, rel=TOLERANCE)
     assert weighted.energies[0] == pytest.approx(front.energies[0], rel=TOLERANCE)

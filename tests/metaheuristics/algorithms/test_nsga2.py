@@ -17,6 +17,7 @@ from pymoo.operators.mutation.pm import PM
 from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.problems import get_problem
 from pymoo.termination.max_gen import MaximumGenerationTermination
+from states import same
 
 from metaheuristics import PRESETS, MoveProblem, PaperNSGA2, PopulationObjective
 from metaheuristics.algorithms.nsga2 import ExactDuplicates
@@ -25,16 +26,6 @@ from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, PointToPoint
 
 BOX = Problem(n_var=6, n_obj=2, xl=-0.5, xu=0.5)
-
-
-def same(a, b):
-    """Whether two states are equal to the last bit, NaN included."""
-    if isinstance(a, dict):
-        return isinstance(b, dict) and a.keys() == b.keys() and all(same(a[k], b[k]) for k in a)
-    if isinstance(a, np.ndarray):
-        alike = isinstance(b, np.ndarray) and (a.dtype, a.shape) == (b.dtype, b.shape)
-        return alike and a.tobytes() == b.tobytes()
-    return type(a) is type(b) and a == b
 
 
 # -- settings --

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
-from target_problems import Constrained, States, Targets, Undefined, same, step
+from states import same
+from target_problems import Constrained, States, Targets, Undefined, step
 
 from metaheuristics.algorithms.velocity import INERTIA_2002
 from metaheuristics.algorithms.vepso import VEPSO

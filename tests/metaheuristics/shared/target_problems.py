@@ -50,15 +50,6 @@ class States(Callback):
         self.states.append(algorithm.state())
 
 
-def same(a, b):
-    """Whether two states are equal to the last bit, NaN included."""
-    if isinstance(a, dict):
-        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
-    return (
-        np.asarray(a).tobytes() == np.asarray(b).tobytes() if isinstance(a, np.ndarray) else a == b
-    )
-
-
 def step(algorithm):
     algorithm.next()
     return algorithm.state()
