@@ -65,8 +65,8 @@ def search(
     report : callable, optional
         Called with a `SearchProgress` after every generation.
     warn : callable, optional
-        Called with a line when the last checkpoint could not be written, which stops no search;
-        by default it becomes a RuntimeWarning.
+        Called with a message when the last checkpoint could not be written, which does not stop
+        the search; by default it becomes a RuntimeWarning.
 
     Returns
     -------
@@ -99,8 +99,8 @@ def search(
     keeper = None if checkpoint is None else Keeper(loop, check_writable(checkpoint))
     if resume is not None:
         resume_from(resume, loop)
-    # From here on Ctrl-C ends the search after the generation that it comes in, and nothing else:
-    # what is kept is a whole generation, and what was found is not lost in working out the front.
+    # From here on Ctrl-C ends the search after the current generation and does nothing else: the
+    # checkpoint holds whole generations, and the front is worked out to the end.
     with note_interrupts() as interrupts:
         loop.run(interrupts, report, *([keeper.after_generation] if keeper else []))
         trouble = keeper.write() if keeper and loop.history else ""

@@ -29,7 +29,7 @@ from ocp.checks import whole
 CROSSOVER: dict[str, Any] = {"prob": 0.8, "prob_var": 0.5, "eta": 15}
 """Simulated binary crossover: the paper's rate for a pair; pymoo's defaults for a gene and eta."""
 MUTATION: dict[str, Any] = {"prob": 1.0, "prob_var": 0.01, "eta": 20}
-"""Polynomial mutation: every individual is offered, the paper's rate is that of a gene."""
+"""Polynomial mutation: any individual may mutate; the paper's rate is that of a gene."""
 TOURNAMENT = "comp_by_dom_and_crowding"
 
 
@@ -56,8 +56,8 @@ class PaperNSGA2(NSGA2):
     """NSGA-II as the paper sets it: crossover rate 0.8, mutation rate 0.01 a gene.
 
     pymoo's polynomial mutation has one probability for an individual and one for a gene; the
-    paper's rate is read as that of a gene, so every individual is offered for mutation. What the
-    paper leaves open is as in pymoo, and stated here lest it changes with pymoo's defaults.
+    paper's rate is read as that of a gene, and any individual may mutate. What the paper leaves
+    open is as in pymoo, and written out here so that new defaults of pymoo change nothing.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class PaperNSGA2(NSGA2):
         KeyError
             When an entry is missing.
         TypeError, ValueError
-            When an entry has not the kind, shape or range that it has in a state of such a run.
+            When an entry has the wrong kind, shape or range.
         """
         self._restore_population(part_of(state, "population"))
         random: Any = self.random_state
@@ -149,9 +149,9 @@ class PaperNSGA2(NSGA2):
         crowding = array_of(columns, "crowding", (count,), math.nan)
         ranked = ranks[feasible]
         if ranked.size and not (ranked.min() == 0 and np.isfinite(ranked).all()):
-            raise ValueError("rank is not from 0 up for all that keep the limits")
+            raise ValueError("a feasible individual has no rank, or none has rank 0")
         if np.isnan(crowding[feasible]).any():
-            raise ValueError("crowding is not a number for all that keep the limits")
+            raise ValueError("the crowding of a feasible individual is not a number")
         for individual, rank, distance in zip(individuals, ranks, crowding, strict=True):
             individual.set("rank", None if np.isnan(rank) else rank)
             individual.set("crowding", None if np.isnan(distance) else distance)

@@ -73,8 +73,8 @@ def array_of(
     shape : tuple of int
         Its shape; -1 is any number of rows.
     least, most : float, optional
-        Range of the entries. Where `least` is not given they are finite; -inf allows all but NaN,
-        NaN allows all.
+        Range of the entries. By default any finite number; where `least` is -inf, any but NaN;
+        where it is NaN, any.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def restore_generator(generator: np.random.Generator, state: Mapping[str, Any]) 
 
 
 def _alike(saved: Any, own: Any) -> bool:
-    """Whether a generator's state has the names and kinds of another, and its words."""
+    """Whether two states of generators have the same names, kinds of numbers, and words."""
     if isinstance(own, Mapping):
         same_names = isinstance(saved, Mapping) and saved.keys() == own.keys()
         return same_names and all(_alike(saved[name], own[name]) for name in own)

@@ -47,14 +47,15 @@ PAPER_GROUP = VelocityRule(1.0, 1.0, 0.73, 2.05, 2.05)  # stated elsewhere by th
 
 
 def clip(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
-    """Stop at the bound what leaves the box: position on it, velocity zero, per coordinate."""
+    """Put each coordinate that leaves the box on its bound, with velocity zero."""
     inside = np.clip(x, lower, upper)
     return inside, np.where(inside == x, v, 0.0)
 
 
 def reflect(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
-    """Mirror at the bound what leaves the box, velocity reversed; at most to the other bound."""
+    """Mirror each coordinate that leaves the box at its bound, with its velocity reversed."""
     mirrored = np.where(x < lower, 2 * lower - x, np.where(x > upper, 2 * upper - x, x))
+    # a jump of more than the box would leave it on the other side
     return np.clip(mirrored, lower, upper), np.where(mirrored == x, v, -v)
 
 

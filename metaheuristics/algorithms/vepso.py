@@ -46,7 +46,7 @@ STATE_ARRAYS = ("velocities", "best_X", "best_merit", "swarm_best")
 def least_crowded(F: Array, size: int) -> Array:
     """Rows of F, shape (n, n_obj), left when the most crowded one goes until `size` are left.
 
-    One at a time: without a whole cluster at once there would be a hole in the front.
+    One at a time: dropping a whole cluster at once would leave a hole in the front.
     """
     kept = np.arange(len(F))
     while len(kept) > size:
@@ -75,9 +75,9 @@ class VEPSO(Algorithm):
     velocity_limit : float
         Largest velocity of a coordinate as a fraction of its box; [3]_ advises 1.
     archive_size : int, optional
-        Most points in the archive, from which the most crowded go; unbounded by default.
+        Most points in the archive; beyond it the most crowded are dropped. Unbounded by default.
     iterations : int, optional
-        Over how many the inertia changes; by default taken from an "n_gen" termination.
+        Number over which the inertia changes; by default taken from an "n_gen" termination.
     sampling : Sampling or Population or array, optional
         First positions, shape (n_obj * particles, n_var), swarm after swarm; uniform by default.
     **options : Any
@@ -87,7 +87,7 @@ class VEPSO(Algorithm):
     ------
     ValueError
         When an argument is out of range; in `setup`, when a variable has no finite bounds, or the
-        inertia changes over an unknown number of iterations.
+        number of iterations over which the inertia changes is not known.
     """
 
     pop: Any  # for the type checker: pymoo declares these as optional
@@ -130,7 +130,10 @@ class VEPSO(Algorithm):
         self.limit = self.velocity_limit * (self.upper - self.lower)
         self.horizon = self.iterations or getattr(self.termination, "n_max_gen", None) or math.inf
         if self.rule.inertia_start != self.rule.inertia_end and self.horizon == math.inf:
-            raise ValueError("inertia changes until an unknown iteration; give iterations or n_gen")
+            raise ValueError(
+                "the inertia changes until the last iteration, which is not known; give iterations "
+                "or n_gen"
+            )
         swarms = problem.n_obj
         self.shape = (swarms, self.particles, problem.n_var)
         # row s: swarm s, the next one in the ring, the one after it, ...
@@ -141,7 +144,7 @@ class VEPSO(Algorithm):
         self.best_merit = np.full((swarms, self.particles, 1 + swarms), np.inf)
         self.swarm_best = np.zeros(swarms, dtype=int)
         self.external_archive, self.archive_F = Population.empty(), np.empty((0, swarms))
-        self.random_before = None  # state of the generator before the candidates still out
+        self.random_before = None  # the generator's state, until the candidates are told
 
     def _initialize_infill(self) -> Population:
         self.random_before = self.random_state.bit_generator.state
@@ -187,7 +190,7 @@ class VEPSO(Algorithm):
         first_difference = (merit != self.best_merit).argmax(axis=2, keepdims=True)
         better = np.take_along_axis(merit < self.best_merit, first_difference, axis=2)
         self.best_merit = np.where(better, merit, self.best_merit)
-        # where nothing usable was found yet, the best goes with the particle and does not pull
+        # a particle that found nothing usable yet is its own best, which does not pull
         better |= np.isinf(self.best_merit[..., :1])
         self.best_X = np.where(better, X.reshape(self.shape), self.best_X)
         self.swarm_best = np.lexsort(np.moveaxis(self.best_merit, 2, 0)[::-1])[:, 0]
@@ -234,8 +237,8 @@ class VEPSO(Algorithm):
         """Go on from a `state`, bit for bit; call it after `setup` with the settings of that run.
 
         Terminations by generations and evaluations count on, others and pymoo's history begin anew.
-        KeyError where an entry is missing, TypeError or ValueError where it has not the kind, the
-        shape or the range that it has in a state of such a run.
+        KeyError where an entry is missing, TypeError or ValueError where it has the wrong kind,
+        shape or range.
         """
         swarms, particles, _ = self.shape
         self.velocities = array_of(state, "velocities", self.shape)

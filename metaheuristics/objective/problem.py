@@ -1,4 +1,4 @@
-"""A task as a problem of pymoo's, and a count of the candidates that are of no use."""
+"""A task as a pymoo problem, which counts the candidates that fail."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pymoo.core.problem import Problem
 from metaheuristics.objective.population import PopulationObjective
 
 UNUSABLE = 1e30
-"""From here on a figure counts as not finite, and this stands for it: finite itself, so that pymoo
-sorts it last."""
+"""A figure from here up counts as not finite. This value replaces it, because pymoo can sort it: it
+comes last."""
 
 
 class MoveProblem(Problem):
-    """A task as a pymoo problem: coefficients in a box, residual [m] and energy [J] to be small.
+    """A task as a pymoo problem: minimise residual [m] and energy [J] over a box.
 
     Parameters
     ----------

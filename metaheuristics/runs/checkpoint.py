@@ -1,4 +1,4 @@
-"""Checkpoints: the state of a search in a file, whole or not at all, without pickle."""
+"""The file format of checkpoints: the state of a search, written whole or not at all, no pickle."""
 
 from __future__ import annotations
 

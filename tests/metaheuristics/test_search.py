@@ -72,7 +72,7 @@ def test_provenance(method):
 
 
 def test_the_operators_of_nsga2_are_in_the_front():
-    # physics.md, 'NSGA-II settings'
+    # docs/physics.md, 'NSGA-II settings'
     stated = found("nsga2").settings
     assert stated["crossover"] == "SBX(prob=0.8, prob_var=0.5, eta=15)"
     assert stated["mutation"] == "PM(prob=1, prob_var=0.01, eta=20)"
@@ -314,7 +314,7 @@ def test_any_number_of_terms(method, terms):
 
 
 def test_a_plant_of_two_modes(two_links):
-    # physics.md, 'A third plant'
+    # docs/physics.md, 'A third plant'
     task = PointToPoint(two_links, pi / 2, 0.9)
     front = search(task, "nsga2", bound=0.3, population=30, generations=30)
     assert_is_a_front(front)

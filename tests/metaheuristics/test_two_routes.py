@@ -10,15 +10,12 @@ import numpy as np
 import pytest
 from small_searches import ARM, HALF, SINGLE_LINK, SIXTH, found, papers_search, pi
 
-from metaheuristics import search
 from ocp import (
-    CycloidPolynomial,
     PointToPoint,
     epsilon_front,
     plan_move,
     polish_front,
     resimulate,
-    weighted_front,
 )
 
 # -- the paper's energies --
@@ -27,7 +24,7 @@ from ocp import (
 # coefficients for the first condition of each plant (a_5 mended), times phi.
 STILL = {"vepso": 1.58e-4 * 2.28, "nsga2": 6.6e-4 * 0.508}
 VEPSO_ROWS = [(pi / 6, 0.8, 0.0515), (pi / 2, 1.0, 0.296), (pi / 2, 1.1, 0.223)]
-ARM_ROWS = [(-pi / 2, pi / 4, 1.0, 0.143), (-pi / 2, pi / 2, 1.2, 0.200)]  # after the first
+ARM_ROWS = [(-pi / 2, pi / 4, 1.0, 0.143), (-pi / 2, pi / 2, 1.2, 0.200)]  # and HALF, 0.149
 
 
 TENTH = {"population": 80, "generations": 120}
@@ -48,6 +45,10 @@ def test_vepso_reaches_the_papers_energy_with_the_papers_settings(target, durati
     assert_reaches(front, energy)
 
 
+def test_vepso_reaches_the_papers_energy_with_a_third_of_its_budget():
+    assert_reaches(found("vepso", SIXTH, population=60, generations=100), 0.0515)
+
+
 def test_nsga2_reaches_the_papers_energy_with_the_papers_settings():
     front = papers_search("nsga2", HALF)
     assert front.evaluations == 200 * 500  # section 3.2
@@ -60,10 +61,6 @@ def test_nsga2_reaches_the_papers_energy_with_a_tenth_of_its_budget(
     start, target, duration, energy
 ):
     assert_reaches(found("nsga2", PointToPoint(ARM, target, duration, start), **TENTH), energy)
-
-
-def test_vepso_reaches_the_papers_energy_with_a_third_of_its_budget():
-    assert_reaches(search(SIXTH, "vepso", bound=0.2, population=60, generations=100), 0.0515)
 
 
 # -- against the gradient --
@@ -95,7 +92,7 @@ def searched(case):
 @pytest.fixture(scope="module")
 def thinned(searched):
     """A few points of both."""
-    return [_thinned(front, 5) for front in searched]
+    return [_thinned(front, 4) for front in searched]
 
 
 def _thinned(front, count):
@@ -137,14 +134,6 @@ def test_at_their_own_residuals_the_gradient_is_as_cheap_or_cheaper(thinned, lea
         assert np.all(energies <= front.energies * (1 + TOLERANCE))
 
 
-def test_weighted_points_lie_on_the_front(case):
-    task, bound, front = case
-    weighted = weighted_front(task, bound=bound, points=4, starts=1)
-    energies = _least_energies(front, weighted.points[1:])  # the first is at rest
-    assert weighted.energies[1:] == pytest.approx(energies, rel=TOLERANCE)
-    assert weighted.energies[0] == pytest.approx(front.energies[0], rel=TOLERANCE)
-
-
 def test_polishing_a_search_lands_on_the_front(thinned, least):
     for front, energies in zip(thinned, least, strict=True):
         polish = polish_front(front)
@@ -154,10 +143,10 @@ def test_polishing_a_search_lands_on_the_front(thinned, least):
         assert max(gain.share for gain in polish.gains) > 1e-3
 
 
-def test_all_figures_agree_with_the_independent_integrator(case, searched):
-    task, _, front = case
-    for one in (front, *searched):
-        for point in one.points[:: max(len(one.points) // 10, 1)]:
-            motion = resimulate(task, CycloidPolynomial(6), point.coefficients)
+def test_all_figures_agree_with_the_independent_integrator(case, thinned):
+    _, _, front = case
+    for one in (front, *thinned):
+        for point in one.points:
+            motion = resimulate(one.task, one.profile, point.coefficients)
             assert point.energy == pytest.approx(motion.energy, rel=TOLERANCE)
             assert point.residual == pytest.approx(motion.residual, rel=1e-3, abs=1e-6)

@@ -1,28 +1,25 @@
 """VEPSO on both plants: what it finds is true of the motion, keeps the limits, and gets better."""
 
 import dataclasses
-import math
 from functools import cache
 
 import moocore
 import numpy as np
 import pytest
+from small_searches import HALF, LIMITED, SIXTH
 
 from metaheuristics import PAPER_BOX, PopulationObjective, search
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, resimulate, rollout
+from ocp import CycloidPolynomial, resimulate, rollout
 
-SIXTH = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
-HALF = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
 TASKS = {
     "single link": SIXTH,
     "arm": HALF,
-    "single link, limits": dataclasses.replace(SIXTH, torque_limit=0.16, deflection_limit=0.03),
-    "arm, limits": dataclasses.replace(HALF, torque_limit=0.5, acceleration_limit=75.0),
+    "single link, limits": LIMITED["vepso"],
+    "arm, limits": dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5),
 }
 EVERY = pytest.mark.parametrize("name", TASKS)
 FREE = pytest.mark.parametrize("name", ["single link", "arm"])
-LIMITED = pytest.mark.parametrize("name", ["single link, limits", "arm, limits"])
+WITH_LIMITS = pytest.mark.parametrize("name", ["single link, limits", "arm, limits"])
 
 
 @cache
@@ -65,7 +62,7 @@ def test_every_point_is_what_the_rollout_of_its_coefficients_gives(name):
     assert front.knee().residual == pytest.approx(independent.residual, rel=1e-4, abs=1e-6)
 
 
-@LIMITED
+@WITH_LIMITS
 def test_every_point_keeps_the_limits_that_others_break(name):
     front = _found(name)
     free = _found(name.removesuffix(", limits"))

@@ -8,7 +8,7 @@ from ocp import PointToPoint
 
 @pytest.fixture(scope="module")
 def tasks(two_links):
-    """A task and its box for each plant; the two links' from physics.md, 'A third plant'."""
+    """A task and its box for each plant; the two links' from docs/physics.md, 'A third plant'."""
     return {
         "single link": (PointToPoint(SINGLE_LINK, pi / 6, 0.8), 0.2),
         "arm": (PointToPoint(ARM, pi / 2, 0.8), 0.5),

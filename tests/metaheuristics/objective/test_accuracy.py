@@ -20,9 +20,8 @@ FINE = 140  # ocp.rollout.LEAST_STEPS
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
 def test_nine_in_ten_energies_are_within_the_error_stated(plant, start, target, duration, bound):
-    # Issue 3, item 1: F2 within 1e-4 relative; `LEAST_STEPS`: for nine in ten random candidates of
-    # the paper's boxes. The reference is the finer rollout, that keeps 1e-5 to CVODES (issue 2,
-    # item 5), as is checked below on fewer.
+    # `LEAST_STEPS` states 1e-4. The reference is the finer rollout, itself within 1e-5 of CVODES
+    # (README, 'How exact'), as the next test checks on fewer candidates.
     task = PointToPoint(plant, target, duration, start)
     X = candidates(1000, bound, seed=2)
     fine = PopulationObjective(task, PROFILE, steps=FINE)(X).energy
@@ -41,15 +40,15 @@ def test_energy_and_residual_are_those_of_the_independent_integrator(
     motions = [resimulate(task, PROFILE, x) for x in X]
     assert fine.energy == pytest.approx([m.energy for m in motions], rel=1e-5, abs=0)
     residuals = np.array([motion.residual for motion in motions])
-    # W and W'/omega 1e-6 m off at arrival (issue 3, item 1), on top of the 5e-5 of a peak between
-    # two samples (and 1.2e-6 of one that CVODES' own samples miss).
+    # W and W'/omega 1e-6 m off at arrival (`LEAST_STEPS`), on top of the 5e-5 of a peak between two
+    # samples (and 1.2e-6 of one that CVODES' own samples miss).
     allowed = 5.2e-5 * residuals + plant.phi * math.sqrt(2) * 1e-6
     assert np.all(np.abs(values.residual - residuals) <= allowed)
 
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
 def test_the_amplitude_at_arrival_is_within_a_micrometre(plant, start, target, duration, bound):
-    # Issue 3, item 1: W at arrival within 1e-6 m.
+    # `LEAST_STEPS`
     task = PointToPoint(plant, target, duration, start)
     steps = PopulationObjective(task, PROFILE).steps
     for x in candidates(8, bound, seed=6):
@@ -82,8 +81,8 @@ def test_other_plants_and_durations_are_as_accurate(two_links, plant, duration, 
 @pytest.mark.parametrize(
     ("plant", "target", "coefficients", "energy", "deflection"),
     [
-        # physics.md, 'What the printed coefficients give' (DOP853): F2 [J], residual max |W| [m];
-        # Tables 1 and 4 of the paper, a_5 of the last one mended.
+        # docs/physics.md, 'What the printed coefficients give' (DOP853): F2 [J], residual max |W|
+        # [m]; Tables 1 and 4 of the paper, a_5 of the last one mended.
         (SINGLE_LINK, pi / 6, [0] * 6, 0.09115, 3.382e-2),
         (SINGLE_LINK, pi / 6, [3.347e-3, -1.697e-1, 0, 0, 0, 0], 0.06297, 1.12e-4),
         (

@@ -67,7 +67,7 @@ def test_any_number_of_terms(terms):
 
 
 def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
-    # physics.md, 'A third plant': F1 is then the larger of the two links' peaks.
+    # docs/physics.md, 'A third plant': F1 is then the larger of the two links' peaks.
     task, bound = tasks["two links"]
     X = candidates(12, bound)
     times = task.duration + np.linspace(1e-9, task.residual_window, 4000)

@@ -148,7 +148,7 @@ print(json.dumps([before, peak(), int(np.isfinite(values.energy).sum())]))
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="peaks are read from /proc")
 def test_ten_thousand_candidates_take_less_than_a_gigabyte():
-    # Issue 3, item 1; the build included, in a process of its own.
+    # the build included, in a process of its own
     done = subprocess.run(
         [sys.executable, "-c", MEMORY], capture_output=True, text=True, timeout=120, check=True
     )

@@ -7,17 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from small_searches import IMPOSSIBLE, LIMITED, METHODS, SIXTH
 
 from metaheuristics import search
 from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
-from models import SingleLinkManipulator
-from ocp import FileFormatError, PointToPoint
+from ocp import FileFormatError
 
-FREE = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
-LIMITED = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8, torque_limit=0.16)
-IMPOSSIBLE = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8, torque_limit=1e-4)
-TASKS = {"free": FREE, "limited": LIMITED, "impossible": IMPOSSIBLE}
-METHODS = pytest.mark.parametrize("method", ["nsga2", "vepso"])
+TASKS = {"free": SIXTH, "limited": LIMITED["vepso"], "impossible": IMPOSSIBLE["vepso"]}
 GONE = object()
 
 
@@ -144,7 +140,7 @@ def test_a_state_that_is_not_whole_is_refused_and_left_as_it_was(tmp_path, whole
     save_checkpoint(path, header, _changed(state, _keys(method, keys), value))
     before, seen = (path.read_bytes(), path.stat().st_mtime_ns), []
     with pytest.raises(FileFormatError, match=r"is not a (whole|valid) checkpoint: ") as caught:
-        _run(method, FREE, resume=path, checkpoint=path, report=seen.append)
+        _run(method, SIXTH, resume=path, checkpoint=path, report=seen.append)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
     assert seen == []
@@ -164,7 +160,7 @@ def test_an_empty_state_is_refused(tmp_path, whole, method):
     path = tmp_path / "checkpoint"
     save_checkpoint(path, whole(method, "free")[0], {})
     with pytest.raises(FileFormatError, match="'algorithm' is missing"):
-        _run(method, FREE, resume=path)
+        _run(method, SIXTH, resume=path)
 
 
 @METHODS
@@ -174,7 +170,7 @@ def test_a_header_that_lacks_something_names_it(tmp_path, whole, method):
     for name in header:
         save_checkpoint(path, _changed(header, (name,), GONE), state)
         with pytest.raises(FileFormatError, match=f"not a whole checkpoint: '{name}' is missing"):
-            _run(method, FREE, resume=path)
+            _run(method, SIXTH, resume=path)
 
 
 def _leaves(tree, keys=()):

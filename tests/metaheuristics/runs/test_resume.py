@@ -76,7 +76,7 @@ class CrashError(Exception):
 
 @METHODS
 @pytest.mark.parametrize("limited", [False, True], ids=["free", "limits"])
-@pytest.mark.parametrize("stop", [2, 3, 9, 15])
+@pytest.mark.parametrize("stop", [2, 9, 15])
 def test_a_run_resumed_after_any_generation_ends_with_the_same_front(
     tmp_path, always, method, limited, stop
 ):
@@ -273,7 +273,7 @@ def report(progress):
         end.start()
 
 search(
-    task, method, bound=bound, population=20, generations=80, seed=5, checkpoint=path, report=report
+    task, method, bound=bound, population=20, generations=50, seed=5, checkpoint=path, report=report
 )
 end.join()  # should it be over before it is killed
 """
@@ -283,7 +283,7 @@ end.join()  # should it be over before it is killed
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGKILL")
 def test_a_run_that_was_killed_ends_bit_for_bit_as_one_that_was_not(tmp_path, method):
     path, moment = tmp_path / "checkpoint", random.Random(method)
-    generation, delay = moment.randint(2, 40), moment.uniform(0, 0.02)
+    generation, delay = moment.randint(2, 25), moment.uniform(0, 0.02)
     command = [sys.executable, "-c", KILLED, method, path, str(generation), str(delay)]
     killed = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=120, check=False)
     assert killed.returncode == -signal.SIGKILL
@@ -294,7 +294,7 @@ def test_a_run_that_was_killed_ends_bit_for_bit_as_one_that_was_not(tmp_path, me
     saved = len(load_checkpoint(path)[1]["hypervolume"])
     assert saved in (len(told) - 1, len(told))
     seen = []
-    front = run(method, seed=5, generations=80, resume=path, report=seen.append)
-    assert [progress.generation for progress in seen] == list(range(saved + 1, 81))
+    front = run(method, seed=5, generations=50, resume=path, report=seen.append)
+    assert [progress.generation for progress in seen] == list(range(saved + 1, 51))
     assert front.complete
-    assert exactly(front) == exactly(found(method, seed=5, generations=80))
+    assert exactly(front) == exactly(found(method, seed=5, generations=50))

@@ -79,7 +79,9 @@ def test_inertia_falls_linearly_from_first_to_last_move():
 
 def test_falling_inertia_needs_the_number_of_iterations():
     for termination in (None, ("n_eval", 1000), ("time", 1.0)):
-        with pytest.raises(ValueError, match="unknown iteration; give iterations or n_gen"):
+        with pytest.raises(
+            ValueError, match="last iteration, which is not known; give iterations or n_gen"
+        ):
             VEPSO(10, INERTIA_2002).setup(Targets(), termination=termination)
         VEPSO(10, CONSTRICTION).setup(Targets(), termination=termination)
     explicit = minimize(Targets(), VEPSO(10, INERTIA_2002, iterations=7), ("n_eval", 140), seed=3)
