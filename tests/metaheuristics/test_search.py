@@ -23,7 +23,7 @@ from small_searches import (
     run,
 )
 
-from metaheuristics import CONSTRICTION, PRESETS, search
+from metaheuristics import CONSTRICTION, search
 from ocp import CycloidPolynomial, Front, PointToPoint, resimulate, rollout
 
 # -- what a front is --
@@ -83,12 +83,6 @@ def test_the_constants_of_vepso_are_in_the_front():
     stated = dict(found("vepso").settings)
     assert dataclasses.asdict(CONSTRICTION).items() <= stated.items()
     assert (stated["boundary"], stated["velocity_limit"]) == ("clip", 1.0)
-
-
-def test_the_papers_settings_are_the_defaults():
-    # Sections 3.1 and 3.2.
-    settings = {name: (p.population, p.generations) for name, p in PRESETS.items()}
-    assert settings == {"vepso": (100, 200), "nsga2": (200, 500)}
 
 
 @METHODS
