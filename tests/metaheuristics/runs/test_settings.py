@@ -8,7 +8,6 @@ from small_searches import HALF, LIMITED, SIXTH
 from metaheuristics.runs.settings import SearchSettings, SearchSpec
 from ocp import CycloidPolynomial
 
-
 SETTINGS = SearchSettings(0.5, 20, 15)
 
 
