@@ -76,7 +76,7 @@ POLISHED = 2e-3
 @pytest.fixture(scope="module", params=CASES)
 def case(request):
     task, bound = CASES[request.param]
-    return task, bound, epsilon_front(task, bound=bound, points=12, starts=1)
+    return task, bound, epsilon_front(task, bound=bound, points=8, starts=1)
 
 
 @pytest.fixture(scope="module")

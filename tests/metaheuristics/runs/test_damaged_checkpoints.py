@@ -191,7 +191,7 @@ ARRAYS = [
 
 @METHODS
 @given(data=st.data())
-@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_any_entry_replaced_is_refused_in_one_line_or_harmless(tmp_path, whole, method, data):
     name = data.draw(st.sampled_from(sorted(TASKS)))
     tables = dict(zip(("header", "state"), whole(method, name), strict=True))
