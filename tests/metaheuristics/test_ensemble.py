@@ -232,7 +232,7 @@ def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
         "search_many(task, 'vepso', 3, workers=2, bound=0.2)\n"
     )
     ran = subprocess.run(
-        [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, timeout=60
+        [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, timeout=600
     )
     last = ran.stderr.splitlines()[-1]
     assert last.startswith("metaheuristics.ensemble.LostSeedsError: the process of seed 0 (status ")

@@ -285,7 +285,7 @@ def test_a_run_that_was_killed_ends_bit_for_bit_as_one_that_was_not(tmp_path, me
     path, moment = tmp_path / "checkpoint", random.Random(method)
     generation, delay = moment.randint(2, 25), moment.uniform(0, 0.02)
     command = [sys.executable, "-c", KILLED, method, path, str(generation), str(delay)]
-    killed = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=120, check=False)
+    killed = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=600, check=False)
     assert killed.returncode == -signal.SIGKILL
     told = [int(line) for line in killed.stdout.split()]
     assert told == list(range(1, len(told) + 1))
