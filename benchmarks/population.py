@@ -54,7 +54,7 @@ from rich.table import Table
 from scipy.integrate import solve_ivp
 
 from metaheuristics import PopulationObjective
-from metaheuristics.population import _compiled
+from metaheuristics.objective.population import _compiled
 from models import ArmOnFlexibleLink, JointMotion
 from ocp import CycloidPolynomial, PointToPoint, rollout
 from ocp.collocation import mesh, modal_system

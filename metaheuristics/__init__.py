@@ -1,17 +1,33 @@
-"""The derivative-free answer: the paper's VEPSO and NSGA-II, and any other of pymoo's."""
+"""The derivative-free answer: the paper's VEPSO and NSGA-II, and any other of pymoo's.
+
+`search` and `search_many` are on top; the rooms below are `objective`, `algorithms` and `runs`. It
+may import `ocp` and `models`.
+"""
 
 # ruff: noqa: I001  # ocp first: it finds a user's file that shadows models
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]
 
+from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset
+from metaheuristics.algorithms.velocity import (
+    CONSTRICTION,
+    INERTIA_2002,
+    PAPER_GROUP,
+    VelocityRule,
+)
 from metaheuristics.ensemble import LostSeedsError, Spread, search_many
-from metaheuristics.nsga2 import PaperNSGA2
-from metaheuristics.population import PopulationObjective, PopulationValues
-from metaheuristics.presets import PAPER_BOX, PRESETS, Preset
-from metaheuristics.problem import MoveProblem
-from metaheuristics.run import SearchProgress
+from metaheuristics.objective.population import PopulationObjective, PopulationValues
+from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.search import search
-from metaheuristics.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP, VelocityRule
-from metaheuristics.vepso import VEPSO
+
+if TYPE_CHECKING:
+    from metaheuristics.algorithms.nsga2 import PaperNSGA2
+    from metaheuristics.algorithms.vepso import VEPSO
+    from metaheuristics.objective.problem import MoveProblem
 
 __all__ = [
     "CONSTRICTION",
@@ -32,3 +48,17 @@ __all__ = [
     "search",
     "search_many",
 ]
+
+_OF_PYMOO = {
+    "MoveProblem": "metaheuristics.objective.problem",
+    "PaperNSGA2": "metaheuristics.algorithms.nsga2",
+    "VEPSO": "metaheuristics.algorithms.vepso",
+}
+"""What derives from pymoo's classes, which take longer to load than all of quietarm."""
+
+
+def __getattr__(name: str) -> object:
+    """Import what derives from pymoo's classes when it is first asked for."""
+    if name not in _OF_PYMOO:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_OF_PYMOO[name]), name)

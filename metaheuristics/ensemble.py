@@ -9,8 +9,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from metaheuristics.presets import PRESETS
-from metaheuristics.search import SearchProgress, search
+from metaheuristics.algorithms.presets import PRESETS
+from metaheuristics.runs.progress import SearchProgress
+from metaheuristics.search import search
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.checks import whole
 from ocp.workers import Say, Workers, remedy
@@ -18,7 +19,7 @@ from ocp.workers import Say, Workers, remedy
 STILL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
 MOST_RUNS = 10_000
-"""Fronts of more would fill the memory."""
+"""More fronts would fill the memory."""
 
 _KILLED_REMEDY = "where memory ran short, give fewer workers or a smaller population"
 
@@ -123,7 +124,7 @@ def search_many(
     runs : int
         Number of seeds, from `seed` on.
     workers : int
-        Processes; 1 stays in this one.
+        Processes; 1 runs in this one.
     seed : int
         First seed.
     report : callable, optional

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import copy
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from pymoo.core.algorithm import Algorithm
-
-from metaheuristics.nsga2 import PaperNSGA2
-from metaheuristics.presets import PAPER_BOX, PRESETS
-from metaheuristics.run import Run, SearchProgress
-from metaheuristics.vepso import VEPSO
-from ocp import CycloidPolynomial, JointProfile, PointToPoint
-from ocp.checks import whole
+from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
+from metaheuristics.runs.progress import Report
+from metaheuristics.runs.settings import SearchSettings, SearchSpec
+from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
 from ocp.files import check_writable
-from ocp.front import Front
 from ocp.interrupts import note_interrupts
-from ocp.provenance import coefficient_bound
+
+if TYPE_CHECKING:
+    from pymoo.core.algorithm import Algorithm
 
 
 def _warn(message: str) -> None:
@@ -38,7 +35,7 @@ def search(
     threads: int = 1,
     checkpoint: str | Path | None = None,
     resume: str | Path | None = None,
-    report: Callable[[SearchProgress], None] = lambda progress: None,
+    report: Report = lambda progress: None,
     warn: Callable[[str], None] = _warn,
 ) -> Front:
     """Search the trade-off between residual and energy without derivatives.
@@ -68,8 +65,8 @@ def search(
     report : callable, optional
         Called with a `SearchProgress` after every generation.
     warn : callable, optional
-        Called with a line when the last checkpoint could not be written, which stops no search;
-        by default it becomes a RuntimeWarning.
+        Called with a message when the last checkpoint could not be written, which does not stop
+        the search; by default it becomes a RuntimeWarning.
 
     Returns
     -------
@@ -84,83 +81,80 @@ def search(
     FileFormatError
         When the file to resume from is not a whole checkpoint.
     """
+    # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
+    from metaheuristics.algorithms.provenance import settings_of
+    from metaheuristics.algorithms.states import Resumable
+    from metaheuristics.runs.front import front_of
+    from metaheuristics.runs.keeping import Keeper, resume_from
+    from metaheuristics.runs.loop import Loop
+
     profile = CycloidPolynomial() if profile is None else profile
-    run = _prepare(task, algorithm, profile, bound, population, generations, seed, threads)
-    if (checkpoint or resume) and not run.resumable:
-        raise ValueError(f"checkpoints are for nsga2 and vepso, not for {run.method}")
-    if checkpoint is not None:
-        check_writable(checkpoint)
+    _refuse_other_kinds(task, profile)
+    method, chosen, settings = _chosen(algorithm, bound, population, generations)
+    loop = Loop(
+        SearchSpec(task, profile, method, settings, seed, settings_of(chosen)), chosen, threads
+    )
+    if (checkpoint or resume) and not isinstance(chosen, Resumable):
+        raise ValueError(f"checkpoints are for {' and '.join(PRESETS)}, not for {method}")
+    keeper = None if checkpoint is None else Keeper(loop, check_writable(checkpoint))
     if resume is not None:
-        run.resume(resume)
-    # From here on Ctrl-C ends the search after the generation that it comes in, and nothing else:
-    # what is kept is a whole generation, and what was found is not lost in working out the front.
+        resume_from(resume, loop)
+    # From here on Ctrl-C ends the search after the current generation and does nothing else: the
+    # checkpoint holds whole generations, and the front is worked out to the end.
     with note_interrupts() as interrupts:
-        trouble = run.go(checkpoint, report, interrupts)
-        front = run.front()
+        loop.run(interrupts, report, *([keeper.after_generation] if keeper else []))
+        trouble = keeper.write() if keeper and loop.history else ""
+        front = front_of(loop)
     if trouble:
         warn(f"the end of the search is in no checkpoint: {trouble}")
     return replace(front, complete=not interrupts)
 
 
-def _prepare(
-    task: PointToPoint,
+def _refuse_other_kinds(task: object, profile: object) -> None:
+    if not isinstance(task, PointToPoint):
+        raise ValueError(f"task is {task!r}; give a PointToPoint")
+    if not isinstance(profile, JointProfile):
+        raise ValueError(f"profile is {profile!r}; give a JointProfile, as CycloidPolynomial(6)")
+
+
+def _chosen(
     algorithm: str | Algorithm,
-    profile: JointProfile,
     bound: float | None,
     population: int | None,
     generations: int | None,
-    seed: int,
-    threads: int,
-) -> Run:
-    """Check the arguments of `search`."""
-    if not isinstance(task, PointToPoint):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise ValueError(f"task is {task!r}; give a PointToPoint")
-    if not isinstance(profile, JointProfile):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise ValueError(f"profile is {profile!r}; give a JointProfile, as CycloidPolynomial(6)")
-    method = _checked_name(algorithm)
+) -> tuple[str, Algorithm, SearchSettings]:
+    """Name, algorithm and settings, each checked; those that are not given are the paper's."""
+    if not isinstance(algorithm, str):
+        return _own(algorithm, bound, population, generations)
+    preset = PRESETS.get(algorithm)
+    if preset is None:
+        raise ValueError(f"unknown method {algorithm!r}; give one of {', '.join(PRESETS)}")
+    bound = _required(bound, preset.name)
+    population = preset.population if population is None else population
+    generations = preset.generations if generations is None else generations
+    settings = SearchSettings(bound, population, generations)
+    return preset.name, preset.build(population), settings
+
+
+def _own(
+    algorithm: Algorithm, bound: float | None, population: int | None, generations: int | None
+) -> tuple[str, Algorithm, SearchSettings]:
+    from metaheuristics.algorithms.own import own_algorithm
+
+    chosen = own_algorithm(algorithm)
+    method = type(chosen).__name__
+    bound = _required(bound, method)
+    if population is not None:
+        raise ValueError("population is set in the algorithm that you give, not beside it")
+    if generations is None:
+        raise ValueError(f"give the number of generations for {method}")
+    return method, chosen, SearchSettings(bound, None, generations)
+
+
+def _required(bound: float | None, method: str) -> float:
     if bound is None:
         papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
         raise ValueError(
             f"{method} searches a box: give a bound on the coefficients (the paper used {papers})"
         )
-    bound = coefficient_bound(bound)
-    if isinstance(algorithm, str):
-        preset = PRESETS[method]
-        # a crossing takes a pair, and a swarm of one has nobody to learn from
-        population = whole("population", preset.population if population is None else population, 2)
-        generations = preset.generations if generations is None else generations
-        chosen = VEPSO(population) if method == "vepso" else PaperNSGA2(population)
-    else:
-        if population is not None:
-            raise ValueError("population is set in the algorithm that you give, not beside it")
-        if generations is None:
-            raise ValueError(f"give the number of generations for {method}")
-        chosen = copy.deepcopy(algorithm)  # as it was given, to be given again
-    generations, seed = whole("generations", generations, 1), whole("seed", seed, 0)
-    if profile.size == 0:
-        raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
-    settings = {"bound": bound, "population": population, "generations": generations}
-    return Run(task, profile, chosen, method, settings, seed, threads)
-
-
-def _checked_name(algorithm: str | Algorithm) -> str:
-    """The name of a method that can search a trade-off; ValueError where it cannot."""
-    if isinstance(algorithm, str):
-        if algorithm not in PRESETS:
-            raise ValueError(f"unknown method {algorithm!r}; give one of {', '.join(PRESETS)}")
-        return algorithm
-    if not isinstance(algorithm, Algorithm):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise ValueError(
-            f"algorithm is {algorithm!r}; give {', '.join(PRESETS)} or an instance of one of "
-            "pymoo's algorithms"
-        )
-    name = type(algorithm).__name__
-    # pymoo says nowhere else how many objectives an algorithm is for, and some would run on
-    if any(kind.__module__.startswith("pymoo.algorithms.soo") for kind in type(algorithm).__mro__):
-        raise ValueError(
-            f"{name} minimises one objective, and a move has two; give a multi-objective "
-            "algorithm, as those of pymoo.algorithms.moo"
-        )
-    if algorithm.problem is not None or algorithm.is_initialized:
-        raise ValueError(f"this {name} was set up or run before; give a new one")
-    return name
+    return bound

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
-from metaheuristics.presets import PAPER_BOX
+from metaheuristics import PAPER_BOX
 from models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
 from ocp import PointToPoint
 

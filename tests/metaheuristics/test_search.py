@@ -3,20 +3,17 @@
 import dataclasses
 import math
 import random
-import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from small_searches import (
-    ARM,
     BOUNDS,
     HALF,
     METHODS,
-    SINGLE_LINK,
-    SIXTH,
     SWARMS,
     TASKS,
     assert_is_a_front,
@@ -27,51 +24,8 @@ from small_searches import (
     run,
 )
 
-from metaheuristics import CONSTRICTION, PRESETS, search
+from metaheuristics import CONSTRICTION, search
 from ocp import CycloidPolynomial, Front, PointToPoint, resimulate, rollout
-
-# -- the paper --
-
-# Tables 3 and 6: conditions, F2 [J]. Residual: physics.md, max |W| of the paper's own N = 6
-# coefficients for the first condition of each plant (a_5 mended), times phi.
-STILL = {"vepso": 1.58e-4 * 2.28, "nsga2": 6.6e-4 * 0.508}
-VEPSO_ROWS = [(pi / 6, 0.8, 0.0515), (pi / 2, 1.0, 0.296), (pi / 2, 1.1, 0.223)]
-ARM_ROWS = [(0.0, pi / 2, 0.8, 0.149), (-pi / 2, pi / 4, 1.0, 0.143), (-pi / 2, pi / 2, 1.2, 0.200)]
-
-
-def assert_reaches(front, energy):
-    point = front.cheapest(STILL[front.method])
-    assert point.energy <= energy
-    motion = resimulate(front.task, front.profile, point.coefficients)
-    assert motion.energy <= energy * (1 + 1e-5)
-    assert motion.residual <= STILL[front.method] * (1 + 1e-3)
-
-
-@pytest.mark.parametrize(("target", "duration", "energy"), VEPSO_ROWS)
-def test_vepso_reaches_the_papers_energy_with_the_papers_settings(target, duration, energy):
-    front = search(PointToPoint(SINGLE_LINK, target, duration), "vepso", bound=0.2)
-    assert front.evaluations == 2 * 100 * 200  # section 3.1: particles, iterations
-    assert_reaches(front, energy)
-
-
-def test_nsga2_reaches_the_papers_energy_with_the_papers_settings():
-    front = search(HALF, "nsga2", bound=0.5)
-    assert front.evaluations == 200 * 500  # section 3.2
-    assert len(front.history) == 500
-    assert_reaches(front, 0.149)
-
-
-@pytest.mark.parametrize(("start", "target", "duration", "energy"), ARM_ROWS)
-def test_nsga2_reaches_the_papers_energy_with_a_tenth_of_its_budget(
-    start, target, duration, energy
-):
-    task = PointToPoint(ARM, target, duration, start)
-    assert_reaches(search(task, "nsga2", bound=0.5, population=80, generations=120), energy)
-
-
-def test_vepso_reaches_the_papers_energy_with_a_third_of_its_budget():
-    assert_reaches(search(SIXTH, "vepso", bound=0.2, population=60, generations=100), 0.0515)
-
 
 # -- what a front is --
 
@@ -79,7 +33,7 @@ def test_vepso_reaches_the_papers_energy_with_a_third_of_its_budget():
 @METHODS
 @pytest.mark.parametrize("seed", [0, 1])
 def test_points_are_sorted_and_none_is_better_than_another(method, seed):
-    front = found(method, seed)
+    front = found(method, seed=seed)
     assert len(front.points) > 3
     assert_is_a_front(front)
 
@@ -119,7 +73,7 @@ def test_provenance(method):
 
 
 def test_the_operators_of_nsga2_are_in_the_front():
-    # physics.md, 'NSGA-II settings'
+    # docs/physics.md, 'NSGA-II settings'
     stated = found("nsga2").settings
     assert stated["crossover"] == "SBX(prob=0.8, prob_var=0.5, eta=15)"
     assert stated["mutation"] == "PM(prob=1, prob_var=0.01, eta=20)"
@@ -130,12 +84,6 @@ def test_the_constants_of_vepso_are_in_the_front():
     stated = dict(found("vepso").settings)
     assert dataclasses.asdict(CONSTRICTION).items() <= stated.items()
     assert (stated["boundary"], stated["velocity_limit"]) == ("clip", 1.0)
-
-
-def test_the_papers_settings_are_the_defaults():
-    # Sections 3.1 and 3.2.
-    assert dataclasses.astuple(PRESETS["vepso"]) == (100, 200)
-    assert dataclasses.astuple(PRESETS["nsga2"]) == (200, 500)
 
 
 @METHODS
@@ -151,8 +99,7 @@ def test_a_front_cannot_be_changed(method):
     with pytest.raises(TypeError):
         front.points[0].coefficients[0] = 0.0
     for array in (front.residuals, front.energies):
-        if array.flags.writeable:  # then a copy
-            array[:] = 0.0
+        array[:] = 0.0  # a copy
     assert exactly(front) == before
 
 
@@ -231,24 +178,26 @@ def test_selecting(method):
 # -- memory --
 
 LARGE = """
-import math, resource
+import math
 from metaheuristics import search
 from models import ArmOnFlexibleLink
 from ocp import PointToPoint
 
 task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
-front = search(task, "nsga2", bound=0.5, population=10_000, generations=2)
-print(front.evaluations, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+front = search(task, "nsga2", bound=0.5, population=10_000, generations=1)
+# not ru_maxrss, which over fork and exec starts from the peak of the parent
+(peak,) = [line for line in open("/proc/self/status") if line.startswith("VmHWM")]
+print(front.evaluations, peak.split()[1])
 """
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="ru_maxrss is in other units elsewhere")
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="peaks are read from /proc")
 def test_a_population_of_ten_thousand_needs_little_memory():
-    # pymoo's duplicate elimination held 10,000 x 10,000 distances: 1.8 GB. Measured: 0.15 GB.
+    # pymoo's duplicate elimination held 10,000 x 10,000 distances: 1.8 GB. Measured: 0.14 GB.
     command = [sys.executable, "-c", LARGE]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
     evaluations, kilobytes = map(int, done.stdout.split())
-    assert evaluations == 20_000
+    assert evaluations == 10_000
     assert kilobytes < 400_000
 
 
@@ -300,10 +249,8 @@ def _cancel(progress):
 )
 def test_odd_settings_are_named_with_a_remedy(method, name, value):
     settings = {"population": 4, "generations": 2, name: value}
-    with pytest.raises(ValueError, match=r"; give ") as caught:
+    with pytest.raises(ValueError, match=f"{name}.* is .*; give ") as caught:
         run(method, **settings, report=_cancel)
-    names = {"population": "population|particles", "seed": "seed"}
-    assert re.search(names.get(name, name), str(caught.value))
     assert str(value) in str(caught.value)
     one_line(caught)
 
@@ -323,7 +270,8 @@ def test_an_unknown_method_is_named_with_the_known_ones():
 
 @pytest.mark.parametrize("algorithm", [NSGA2, None, 3])
 def test_what_is_no_algorithm_is_named(algorithm):
-    with pytest.raises((ValueError, TypeError), match=r"[Aa]lgorithm|method") as caught:
+    words = r"algorithm is .*; give vepso, nsga2 or an instance of one of pymoo's"
+    with pytest.raises(ValueError, match=words) as caught:
         search(HALF, algorithm, bound=0.5, generations=3)
     one_line(caught)
 
@@ -363,7 +311,7 @@ def test_any_number_of_terms(method, terms):
 
 
 def test_a_plant_of_two_modes(two_links):
-    # physics.md, 'A third plant'
+    # docs/physics.md, 'A third plant'
     task = PointToPoint(two_links, pi / 2, 0.9)
     front = search(task, "nsga2", bound=0.3, population=30, generations=30)
     assert_is_a_front(front)

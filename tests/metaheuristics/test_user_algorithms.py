@@ -128,7 +128,7 @@ def test_an_algorithm_that_was_set_up_or_run_is_refused(name, steps):
 
 def test_an_algorithm_that_cannot_keep_limits_is_refused():
     task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5)
-    with pytest.raises(ValueError, match=r"MOEAD|constraint|limit") as caught:
+    with pytest.raises(ValueError, match="MOEAD cannot search this task: ") as caught:
         search(task, _moead(), bound=0.5, generations=3)
     one_line(caught)
 
@@ -136,7 +136,7 @@ def test_an_algorithm_that_cannot_keep_limits_is_refused():
 @pytest.mark.parametrize("name", ["SMSEMOA", "MOEAD", "MOPSO_CD", "NSGA2"])
 @pytest.mark.parametrize("option", ["checkpoint", "resume"])
 def test_checkpoints_are_for_the_two_that_have_a_state(tmp_path, name, option):
-    with pytest.raises(ValueError, match=f"checkpoints are for nsga2 and vepso, not for {name}"):
+    with pytest.raises(ValueError, match=f"checkpoints are for vepso and nsga2, not for {name}"):
         search(HALF, OTHERS[name](), bound=0.5, generations=2, **{option: tmp_path / "file"})
     assert list(tmp_path.iterdir()) == []
 

@@ -1,0 +1,44 @@
+"""An algorithm of the user's own: whether it can search a trade-off."""
+
+from __future__ import annotations
+
+import copy
+
+from pymoo.core.algorithm import Algorithm
+
+from metaheuristics.algorithms.presets import PRESETS
+
+
+def own_algorithm(algorithm: object) -> Algorithm:
+    """A copy to run, so that the one given stays as it is.
+
+    Parameters
+    ----------
+    algorithm : pymoo Algorithm
+        A multi-objective one that was not set up before.
+
+    Returns
+    -------
+    Algorithm
+        The copy.
+
+    Raises
+    ------
+    ValueError
+        When it is no algorithm, is for one objective, or was set up before.
+    """
+    if not isinstance(algorithm, Algorithm):
+        raise ValueError(
+            f"algorithm is {algorithm!r}; give {', '.join(PRESETS)} or an instance of one of "
+            "pymoo's algorithms"
+        )
+    name = type(algorithm).__name__
+    # pymoo says nowhere else how many objectives an algorithm is for, and some would run on
+    if any(kind.__module__.startswith("pymoo.algorithms.soo") for kind in type(algorithm).__mro__):
+        raise ValueError(
+            f"{name} minimises one objective, and a move has two; give a multi-objective "
+            "algorithm, as those of pymoo.algorithms.moo"
+        )
+    if algorithm.problem is not None or algorithm.is_initialized:
+        raise ValueError(f"this {name} was set up or run before; give a new one")
+    return copy.deepcopy(algorithm)

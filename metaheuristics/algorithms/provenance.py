@@ -1,0 +1,73 @@
+"""What an algorithm is set to, in plain numbers and words: part of the provenance of a front."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from pymoo.core.algorithm import Algorithm
+from pymoo.core.variable import Variable
+
+_OPERATORS = ("sampling", "selection", "crossover", "mutation", "survival", "decomposition")
+_RENAMED = {"pop_size": "population", "n_offsprings": "offspring"}
+
+
+def settings_of(algorithm: Algorithm) -> dict[str, Any]:
+    """The settings of an algorithm that was not run yet.
+
+    Parameters
+    ----------
+    algorithm : pymoo Algorithm
+        Any; VEPSO and PaperNSGA2 have a property `settings`.
+
+    Returns
+    -------
+    dict
+        Its own `settings` where it has them. Else numbers and words by name: what it has beyond
+        pymoo's base class, its operators with their numbers, and of reference directions their
+        count and a checksum.
+    """
+    own = getattr(algorithm, "settings", None)
+    if isinstance(own, Mapping):
+        return dict(own)
+    base = vars(Algorithm()).keys()
+    entries = {name: value for name, value in vars(algorithm).items() if name not in base}
+    found: dict[str, Any] = {_RENAMED.get(name, name): value for name, value in _plain(entries)}
+    for holder in ("initialization", "mating"):
+        inner = entries.get(holder)
+        entries = {**(vars(inner) if hasattr(inner, "__dict__") else {}), **entries}
+    found.update((name, _named(entries[name])) for name in _OPERATORS if entries.get(name))
+    directions = entries.get("ref_dirs")
+    if isinstance(directions, np.ndarray):
+        digest = hashlib.sha256(np.ascontiguousarray(directions, dtype=float).tobytes())
+        found["reference_directions"] = f"{len(directions)}, sha256 {digest.hexdigest()[:12]}"
+    return found
+
+
+def flat(settings: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Settings with those of an inner table beside the others."""
+    for name, value in settings.items():
+        if isinstance(value, Mapping):
+            yield from flat(value)
+        else:
+            yield name, value
+
+
+def _plain(entries: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The entries that are numbers or words; what is None is not set, or not a setting."""
+    for name, value in sorted(entries.items()):
+        value = value.value if isinstance(value, Variable) else value
+        value = value.item() if isinstance(value, np.generic) else value
+        if isinstance(value, str | int | float) and not name.startswith("_"):
+            yield name, value
+
+
+def _named(operator: Any) -> str:
+    """An operator's class and numbers, as SBX(eta=15, prob=0.9)."""
+    if not hasattr(operator, "__dict__"):
+        return str(operator)
+    name = type(operator).__name__
+    numbers = ", ".join(f"{k}={v}" for k, v in _plain(vars(operator)) if k != "name")
+    return f"{name}({numbers})" if numbers else name

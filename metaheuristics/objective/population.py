@@ -1,0 +1,209 @@
+"""The objectives of a whole population in one casadi call.
+
+The equations and definitions are those of the gradient answer: the same symbolic rollout, with one
+row per candidate. casadi's virtual machine runs over the rows, so no compiler is needed, and sines
+and cosines of every candidate and time point are taken in a few long operations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models import Expression, Plant
+from ocp import JointProfile, PointToPoint, residual_matrix, symbolic_rollout
+from ocp.checks import whole
+from ocp.interrupts import keep_interrupts
+from ocp.residual import extreme_rows
+from ocp.rollout import SymbolicRollout, default_steps
+
+LEAST_STEPS = 24
+"""Steps that keep the energy of nine in ten random candidates of the paper's boxes within 1e-4, and
+W at arrival within 1e-6 m."""
+BLOCK = 100
+"""Candidates a call: their intermediate values fit the processor's cache."""
+
+
+@dataclass(frozen=True)
+class PopulationValues:
+    """What a population costs; rows are candidates.
+
+    Attributes
+    ----------
+    residual : ndarray, shape (candidates,)
+        F1 [m].
+    energy : ndarray, shape (candidates,)
+        F2 [J].
+    violations : ndarray, shape (candidates, limits)
+        Each limited peak over its limit, less 1: positive where the limit is broken.
+    """
+
+    residual: NDArray[np.float64]
+    energy: NDArray[np.float64]
+    violations: NDArray[np.float64]
+
+
+class PopulationObjective:
+    """F1, F2 and the violations of a task's limits for many candidates at once.
+
+    Start, target, duration, limits and the residual matrix are parameters of the compiled function:
+    an objective for another task of the same plant, profile and limited quantities costs no build.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    steps : int, optional
+        Number of steps; by default `LEAST_STEPS`, or more where the plant's modes need them.
+    threads : int
+        Blocks of candidates that are evaluated at the same time.
+
+    Raises
+    ------
+    ValueError
+        When `threads` is below 1.
+    """
+
+    @keep_interrupts()  # casadi loses a Ctrl-C
+    def __init__(
+        self,
+        task: PointToPoint,
+        profile: JointProfile,
+        *,
+        steps: int | None = None,
+        threads: int = 1,
+    ) -> None:
+        self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
+        default = default_steps(task, least=LEAST_STEPS)
+        self.steps = default if steps is None else whole("steps", steps, 1)
+        self._tip_of_state = extreme_rows(residual_matrix(task), task.plant.tips).T
+        self._limits = np.array(list(task.limits.values()))
+        self._idle: list[_Workspace] = []
+        self._function = _compiled(task.plant, profile, self.steps, tuple(task.limits))
+
+    @keep_interrupts()
+    def __call__(self, coefficients: ArrayLike) -> PopulationValues:
+        """Evaluate a population.
+
+        Parameters
+        ----------
+        coefficients : array_like, shape (candidates, profile.size)
+            One candidate a row.
+
+        Returns
+        -------
+        PopulationValues
+            One row a candidate, in the same order; NaN where a candidate is not finite.
+
+        Raises
+        ------
+        ValueError
+            When the shape does not fit the profile.
+        """
+        population = np.asarray(coefficients, dtype=float)
+        if population.ndim != 2 or population.shape[1] != self.profile.size:
+            raise ValueError(
+                f"the population has shape {population.shape}; give (candidates, "
+                f"{self.profile.size})"
+            )
+        count = len(population)
+        blocks = list(_blocks(population))
+        if self.threads > 1 and len(blocks) > 1:
+            with ThreadPoolExecutor(self.threads) as pool:
+                rows = list(pool.map(self._evaluate, blocks))
+        else:
+            rows = [self._evaluate(block) for block in blocks]
+        table = np.vstack(rows)[:count] if rows else np.empty((0, 2 + self._limits.size))
+        return PopulationValues(table[:, 0], table[:, 1], table[:, 2:])
+
+    def _evaluate(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
+        try:
+            workspace = self._idle.pop()
+        except IndexError:  # all are in use by other threads, or none is made yet
+            workspace = _Workspace(self._function)
+        arrival, table = workspace(block.T, self.task.move, self._limits)
+        residual = np.abs(arrival.T @ self._tip_of_state).max(axis=1)
+        rows = np.column_stack([residual, table.T])
+        self._idle.append(workspace)
+        return rows
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**self.__dict__, "_idle": []}  # casadi's buffers can be neither copied nor pickled
+
+
+class _Workspace:
+    """A function with memory of its own, for one thread at a time.
+
+    A plain call of a casadi function spends as long on converting a NumPy argument as on two steps
+    of a population, and allocates its working memory anew.
+    """
+
+    def __init__(self, function: ca.Function) -> None:
+        self._buffer: Any  # casadi's type says nothing of memoryviews
+        self._buffer, self._run = function.buffer()
+        self._inputs = [np.zeros(function.size_in(i)[::-1]) for i in range(function.n_in())]
+        self._outputs = [np.zeros(function.size_out(i)[::-1]) for i in range(function.n_out())]
+        for i, values in enumerate(self._inputs):
+            self._buffer.set_arg(i, values.data)
+        for i, values in enumerate(self._outputs):
+            self._buffer.set_res(i, values.data)
+
+    def __call__(self, *inputs: ArrayLike) -> list[NDArray[np.float64]]:
+        """The outputs, transposed as the inputs are; the next call overwrites them."""
+        for own, values in zip(self._inputs, inputs, strict=True):
+            own[...] = values
+        self._run()
+        return self._outputs
+
+
+def _blocks(population: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
+    """Blocks of equal size; the last is filled up with plain cycloids."""
+    for first in range(0, len(population), BLOCK):
+        block = population[first : first + BLOCK]
+        missing = BLOCK - len(block)
+        yield np.vstack([block, np.zeros((missing, block.shape[1]))]) if missing else block
+
+
+@lru_cache(maxsize=16)
+def _compiled(
+    plant: Plant, profile: JointProfile, steps: int, limited: tuple[str, ...]
+) -> ca.Function:
+    population = ca.MX.sym("a", BLOCK, profile.size)
+    move, limits = ca.MX.sym("move", 3), ca.MX.sym("limits", len(limited))
+    columns = [ca.repmat(column, 1, steps) for column in ca.horzsplit(population, 1)]
+    rollout = symbolic_rollout(plant, profile, columns, ca.vertsplit(move), steps, candidates=BLOCK)
+    peaks = _peaks(plant, rollout)
+    violations = [_row_peak(peaks[name]) / limits[i] - 1 for i, name in enumerate(limited)]
+    outputs = [rollout.arrival, ca.horzcat(rollout.energy, *violations)]
+    return ca.Function("population", [population, move, limits], outputs, {"cse": True})
+
+
+def _peaks(plant: Plant, rollout: SymbolicRollout) -> dict[str, list[Expression]]:
+    """The quantities that a task may limit, at the nodes."""
+    tips = [tip for state in rollout.states for tip in plant.tip_displacements(state.W)]
+    return {
+        "torque": rollout.torque,
+        "speed": [joint.speed for joint in rollout.joints],
+        "acceleration": [joint.acceleration for joint in rollout.joints],
+        "deflection": tips,
+    }
+
+
+def _row_peak(values: Sequence[Expression]) -> Expression:
+    """Largest absolute entry of each row: the columns are folded onto each other by halves."""
+    folded = ca.horzcat(*(ca.fabs(value) for value in values))
+    while folded.shape[1] > 1:
+        columns = folded.shape[1]
+        half = (columns + 1) // 2
+        upper = folded[:, columns - half :]  # overlaps the lower half where the count is odd
+        folded = ca.fmax(folded[:, :half], upper)
+    return folded

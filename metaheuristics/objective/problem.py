@@ -1,0 +1,56 @@
+"""A task as a pymoo problem, which counts the candidates that fail."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pymoo.core.problem import Problem
+
+from metaheuristics.objective.population import PopulationObjective
+
+UNUSABLE = 1e30
+"""A figure from here up counts as not finite. This value replaces it, because pymoo can sort it: it
+comes last."""
+
+
+class MoveProblem(Problem):
+    """A task as a pymoo problem: minimise residual [m] and energy [J] over a box.
+
+    Parameters
+    ----------
+    objective : PopulationObjective
+        What is minimised; the task's limits become inequality constraints.
+    bound : float
+        Largest absolute coefficient.
+
+    Attributes
+    ----------
+    failed : int
+        Candidates so far whose objectives or violations were not finite.
+    infeasible : int
+        Candidates so far that were finite and broke a limit.
+    """
+
+    def __init__(self, objective: PopulationObjective, bound: float) -> None:
+        size = objective.profile.size
+        super().__init__(
+            n_var=size,
+            n_obj=2,
+            n_ieq_constr=len(objective.task.limits),
+            xl=np.full(size, -bound),
+            xu=np.full(size, bound),
+        )
+        self.objective, self.failed, self.infeasible = objective, 0, 0
+
+    def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
+        values = self.objective(x)
+        table = np.column_stack([values.residual, values.energy, values.violations])
+        bad = ~(np.abs(table) < UNUSABLE).all(axis=1)  # NaN is not less, either
+        self.failed += int(bad.sum())
+        self.infeasible += int((values.violations[~bad] > 0).any(axis=1).sum())
+        table[bad] = UNUSABLE
+        out["F"] = table[:, :2]
+        if table.shape[1] > 2:
+            out["G"] = table[:, 2:]

@@ -1,0 +1,124 @@
+"""The file format of checkpoints: the state of a search, written whole or not at all, no pickle."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ocp import FileFormatError
+from ocp.files import write_whole
+
+FORMAT, VERSION = "quietarm-checkpoint", 1
+_HEADER, _STATE = "header", "state."
+_DAMAGE = (
+    OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, RuntimeError, MemoryError,
+    zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
+"""What numpy, zipfile and json raise over a file that is damaged or of another kind."""
+
+
+def save_checkpoint(path: str | Path, header: Mapping[str, Any], state: Mapping[str, Any]) -> None:
+    """Write a checkpoint.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    header : mapping
+        What the search is: its task, method and settings, in JSON's types.
+    state : mapping
+        Where the search is: a nested dict of arrays, numbers and strings.
+
+    Raises
+    ------
+    ValueError
+        When the file cannot be written.
+    """
+    arrays: dict[str, np.ndarray] = {}
+    rest = _split(state, _STATE, arrays)
+    document = {"format": FORMAT, "version": VERSION, **header, "state": rest}
+    document["arrays"] = sorted(arrays)
+    content = io.BytesIO()
+    text = np.frombuffer(json.dumps(document).encode(), dtype=np.uint8)
+    np.savez(content, allow_pickle=False, **{_HEADER: text}, **arrays)
+    write_whole(path, content.getvalue())
+
+
+def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Read a checkpoint; the file is left as it was.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    header, state : dict
+        As they were given to `save_checkpoint`.
+
+    Raises
+    ------
+    FileFormatError
+        When the file is not a checkpoint, truncated, or of a newer version.
+    """
+    try:
+        content = Path(path).read_bytes()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise FileFormatError(f"{path} cannot be read: {reason}") from None
+    broken = FileFormatError(f"{path} is not a checkpoint, or not a whole one")
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        document = json.loads(bytes(arrays.pop(_HEADER)))
+        kind, version = document.pop("format"), document.pop("version")
+    except _DAMAGE:
+        raise broken from None
+    if kind != FORMAT:
+        raise FileFormatError(f"{path} is not a checkpoint: its format is {kind!r}")
+    if not isinstance(version, int) or version < 1:
+        raise broken
+    if version > VERSION:
+        raise FileFormatError(
+            f"{path} has version {version} of the checkpoint format and this quietarm reads up to "
+            f"{VERSION}; install a newer quietarm"
+        )
+    try:
+        rest, names = document.pop("state"), document.pop("arrays")
+        state = _join(rest, _STATE, arrays)
+    except _DAMAGE:
+        raise broken from None
+    if names != sorted(arrays):
+        raise broken
+    return document, state
+
+
+def _split(state: Mapping[str, Any], prefix: str, arrays: dict[str, np.ndarray]) -> dict[str, Any]:
+    rest: dict[str, Any] = {}
+    for name, value in state.items():
+        if isinstance(value, Mapping):
+            rest[name] = _split(value, f"{prefix}{name}.", arrays)
+        elif isinstance(value, np.ndarray):
+            arrays[f"{prefix}{name}"] = value
+            rest[name] = None
+        else:
+            rest[name] = value
+    return rest
+
+
+def _join(rest: Mapping[str, Any], prefix: str, arrays: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    state: dict[str, Any] = {}
+    for name, value in rest.items():
+        if isinstance(value, Mapping):
+            state[name] = _join(value, f"{prefix}{name}.", arrays)
+        else:
+            state[name] = arrays.get(f"{prefix}{name}", value)
+    return state

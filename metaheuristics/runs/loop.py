@@ -1,0 +1,157 @@
+"""The generations of a search, and its record."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+from pymoo.core.algorithm import Algorithm
+from pymoo.termination.max_gen import MaximumGenerationTermination
+
+from metaheuristics.algorithms.states import array_of, count_of, number_of, part_of
+from metaheuristics.objective.population import PopulationObjective
+from metaheuristics.objective.problem import UNUSABLE, MoveProblem
+from metaheuristics.runs.progress import Report, SearchProgress
+from metaheuristics.runs.settings import SearchSpec
+from ocp import Generation, reference_corner
+
+
+class Loop:
+    """An algorithm at work on a move.
+
+    Parameters
+    ----------
+    spec : SearchSpec
+        What is searched.
+    algorithm : Algorithm
+        A fresh one, of this search alone.
+    threads : int
+        Blocks of the population that are evaluated at the same time.
+
+    Attributes
+    ----------
+    history : list of Generation
+        What was recorded after each generation.
+    reference : tuple of float
+        Residual [m] and energy [J] of the corner that hypervolumes are measured from.
+
+    Raises
+    ------
+    ValueError
+        When the algorithm refuses the problem.
+    """
+
+    def __init__(self, spec: SearchSpec, algorithm: Algorithm, threads: int) -> None:
+        self.spec = spec
+        self.problem = MoveProblem(
+            PopulationObjective(spec.task, spec.profile, threads=threads), spec.settings.bound
+        )
+        self.history: list[Generation] = []
+        self.reference = reference_corner(spec.task)
+        self._algorithm: Any = algorithm  # for the type checker: pymoo declares much as optional
+        self._earlier, self._began = 0.0, time.perf_counter()
+        termination = MaximumGenerationTermination(spec.settings.generations)
+        try:
+            algorithm.setup(self.problem, termination=termination, seed=spec.seed)
+        except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
+            raise ValueError(f"{spec.method} cannot search this task: {error}") from None
+
+    @property
+    def evaluations(self) -> int:
+        """Candidates evaluated so far."""
+        return int(self._algorithm.evaluator.n_eval)
+
+    @property
+    def seconds(self) -> float:
+        """How long it took so far, with the run that it goes on from."""
+        return self._earlier + time.perf_counter() - self._began
+
+    def run(self, interrupts: list[int], *reports: Report) -> None:
+        """Run to the end, or to the first interrupt in the list.
+
+        Parameters
+        ----------
+        interrupts : list of int
+            Signals until now; a KeyboardInterrupt adds one.
+        *reports : callable
+            Called with a `SearchProgress` after every generation, in this order.
+        """
+        try:
+            while not interrupts and self._algorithm.has_next():
+                self._algorithm.next()
+                # some algorithms, as MOEA/D, take many steps a generation
+                if self._algorithm.n_iter - 1 > len(self.history):
+                    progress = self._record()
+                    for report in reports:
+                        report(progress)
+        except KeyboardInterrupt:  # raised by a report, say
+            interrupts.append(signal.SIGINT)
+
+    def found(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Coefficients and objectives of the feasible, finite points of the front so far."""
+        if self._algorithm.opt is None:
+            return np.empty((0, self.spec.profile.size)), np.empty((0, 2))
+        X, F, CV = (self._algorithm.opt.get(name) for name in ("X", "F", "CV"))
+        usable = (F < UNUSABLE).all(axis=1) & (CV.ravel() <= 0)
+        return X[usable], F[usable]
+
+    def state(self) -> dict[str, Any]:
+        """All that is needed to go on: a nested dict of arrays, numbers and words."""
+        return {
+            "algorithm": self._algorithm.state(),
+            "evaluations": np.array([entry.evaluations for entry in self.history]),
+            "hypervolume": np.array([entry.hypervolume for entry in self.history]),
+            "failed": self.problem.failed,
+            "infeasible": self.problem.infeasible,
+            "seconds": self.seconds,
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on from a `state`; KeyError, TypeError or ValueError where it is not of this search.
+
+        Parameters
+        ----------
+        state : mapping
+            What `state` returned, perhaps damaged since.
+        """
+        self._algorithm.restore(part_of(state, "algorithm"))
+        done = self._algorithm.n_iter - 1
+        evaluations = array_of(state, "evaluations", (done,), least=1)
+        shares = array_of(state, "hypervolume", (done,), 0.0, 1.0)
+        if np.any(np.diff(evaluations) < 0) or evaluations[-1] != self.evaluations:
+            raise ValueError("evaluations do not rise to those of the algorithm")
+        for known in (self._algorithm.pop, self._algorithm.opt):
+            X, F, G = known.get("X", "F", "G")
+            if not (np.isfinite(F).all() and np.isfinite(G).all()):
+                raise ValueError("F or G has entries that are not finite")
+            if np.any(np.abs(X) > self.spec.settings.bound):
+                raise ValueError("X has entries beyond the bound")
+        self.history = [
+            Generation(int(count), float(share))
+            for count, share in zip(evaluations, shares, strict=True)
+        ]
+        self.problem.failed = count_of(state, "failed")
+        self.problem.infeasible = count_of(state, "infeasible")
+        self._earlier = number_of(state, "seconds")
+
+    def _record(self) -> SearchProgress:
+        _, F = self.found()
+        share = float(moocore.hypervolume(F / self.reference, ref=[1.0, 1.0])) if len(F) else 0.0
+        self.history.append(Generation(self.evaluations, share))
+        least = F.min(axis=0) if len(F) else np.full(2, np.nan)
+        return SearchProgress(
+            generation=len(self.history),
+            generations=self.spec.settings.generations,
+            residual=float(least[0]),
+            energy=float(least[1]),
+            hypervolume=share,
+            evaluations=self.evaluations,
+            seconds=self.seconds,
+            failed=self.problem.failed,
+            infeasible=self.problem.infeasible,
+        )

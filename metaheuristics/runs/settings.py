@@ -1,0 +1,115 @@
+"""What a search is: all that its front depends on, and what of it goes into a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from importlib import metadata
+from typing import Any
+
+from ocp import JointProfile, PointToPoint
+from ocp.checks import whole
+from ocp.documents import (
+    Document,
+    profile_from_document,
+    profile_to_document,
+    task_from_document,
+    task_to_document,
+    versions,
+)
+from ocp.provenance import coefficient_bound
+
+
+@dataclass(frozen=True)
+class SearchSettings:
+    """What is asked of any algorithm.
+
+    Attributes
+    ----------
+    bound : float
+        Largest absolute coefficient.
+    population : int or None
+        Individuals, or particles a swarm; None where an algorithm of the user's own has its own.
+    generations : int
+        Generations to run.
+
+    Raises
+    ------
+    ValueError
+        When a setting is out of range.
+    """
+
+    bound: float
+    population: int | None
+    generations: int
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bound", coefficient_bound(self.bound))
+        if self.population is not None:
+            # a crossing takes a pair, and a swarm of one has nobody to learn from
+            object.__setattr__(self, "population", whole("population", self.population, 2))
+        object.__setattr__(self, "generations", whole("generations", self.generations, 1))
+
+
+@dataclass(frozen=True)
+class SearchSpec:
+    """What a search is; with the same versions, the same one gives the same front.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    method : str
+        Name of the algorithm.
+    settings : SearchSettings
+        What is asked of any algorithm.
+    seed : int
+        Seed of the random numbers.
+    algorithm : mapping
+        The algorithm's own settings, as `settings_of` states them.
+    """
+
+    task: PointToPoint
+    profile: JointProfile
+    method: str
+    settings: SearchSettings
+    seed: int
+    algorithm: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "seed", whole("seed", self.seed, 0))
+        if self.profile.size == 0:
+            raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+
+    def to_document(self) -> Document:
+        """The search in JSON's types, SI units and radians."""
+        return {
+            "method": self.method,
+            "seed": self.seed,
+            "settings": asdict(self.settings),
+            "algorithm": dict(self.algorithm),
+            "profile": profile_to_document(self.profile),
+            **task_to_document(self.task),
+        }
+
+    @classmethod
+    def from_document(cls, document: Document) -> SearchSpec:
+        """The search of a document; KeyError, TypeError or ValueError where it is not one."""
+        settings = document["settings"]
+        return cls(
+            task=task_from_document(document),
+            profile=profile_from_document(document["profile"]),
+            method=document["method"],
+            settings=SearchSettings(
+                settings["bound"], settings["population"], settings["generations"]
+            ),
+            seed=document["seed"],
+            algorithm=dict(document["algorithm"]),
+        )
+
+
+def search_versions() -> dict[str, str]:
+    """Versions of what computes a search."""
+    return {**versions(), "pymoo": metadata.version("pymoo")}

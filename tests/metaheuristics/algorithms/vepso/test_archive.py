@@ -1,0 +1,153 @@
+"""VEPSO's archive; candidates that fail or break a constraint."""
+
+import moocore
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from pymoo.core.problem import Problem
+from pymoo.optimize import minimize
+from target_problems import Constrained, States, Targets, Undefined
+
+from metaheuristics.algorithms.velocity import VelocityRule
+from metaheuristics.algorithms.vepso import VEPSO, least_crowded
+
+# -- archive --
+
+
+def test_result_is_the_unbounded_archive_of_all_that_was_not_dominated():
+    problem = Targets()
+    result = minimize(problem, VEPSO(15), ("n_gen", 40), seed=1)
+    X, F = np.concatenate(problem.X), np.concatenate(problem.F)
+    kept = moocore.is_nondominated(F)
+    assert len(result.F) == kept.sum() > 30
+    assert np.array_equal(np.unique(result.X, axis=0), np.unique(X[kept], axis=0))
+    assert np.array_equal(result.F, problem.evaluate(result.X))
+
+
+def test_bounded_archive_keeps_the_extremes_and_spreads():
+    bounded = minimize(Targets(), VEPSO(20, archive_size=15), ("n_gen", 60), seed=1)
+    free = minimize(Targets(), VEPSO(20), ("n_gen", 60), seed=1)
+    assert len(bounded.F) == 15 < len(free.F)
+    assert moocore.is_nondominated(bounded.F).all()
+    # the archive does not steer the swarms, so both saw the same candidates
+    assert np.array_equal(bounded.F.min(axis=0), free.F.min(axis=0))
+    gaps = np.diff(np.sort(bounded.F[:, 0]))
+    assert gaps.max() < 0.5 * np.ptp(bounded.F[:, 0])
+
+
+def test_least_crowded_thins_a_cluster_without_a_hole():
+    f = np.concatenate([np.linspace(0, 0.1, 50), [0.5, 1.0]])
+    F = np.column_stack([f, 1 - f])
+    kept = F[least_crowded(F, 5), 0]
+    assert {0.0, 0.5, 1.0} <= set(kept)
+    assert ((kept > 0) & (kept <= 0.1)).sum() == 2
+    assert least_crowded(F, 52).tolist() == list(range(52))
+
+
+@settings(deadline=None, max_examples=60)
+@given(data=st.data(), n_obj=st.integers(1, 4), size=st.sampled_from([None, 2, 5]))
+def test_archive_is_feasible_finite_and_mutually_non_dominated(data, n_obj, size):
+    values = st.sampled_from([0.0, 1.0, 2.0, 3.0, -1.0, np.nan, np.inf, -np.inf])
+    problem = Problem(n_var=2, n_obj=n_obj, n_ieq_constr=1, xl=0.0, xu=1.0)
+    algorithm = VEPSO(4, archive_size=size).setup(problem, termination=("n_gen", 3), seed=1)
+    best = np.full(n_obj, np.inf)
+    for _ in range(3):
+        candidates = algorithm.ask()
+        F = data.draw(arrays(float, (4 * n_obj, n_obj), elements=values))
+        G = data.draw(
+            arrays(float, (4 * n_obj, 1), elements=st.sampled_from([-1.0, 0.0, 2.0, np.nan]))
+        )
+        candidates.set("F", F)
+        candidates.set("G", G)
+        algorithm.tell(infills=candidates)
+        usable = np.isfinite(F).all(axis=1) & (G[:, 0] <= 0)
+        best = np.vstack([best, F[usable]]).min(axis=0)
+        archive = algorithm.external_archive
+        if not len(archive):
+            assert not np.isfinite(best).any()
+            continue
+        A = archive.get("F")
+        assert np.isfinite(A).all()
+        assert (archive.get("CV") <= 0).all()
+        assert np.isfinite(algorithm.ask().get("X")).all()
+        worse = (A[:, None] >= A[None]).all(axis=2) & (A[:, None] > A[None]).any(axis=2)
+        assert not worse.any()
+        assert len(np.unique(A, axis=0)) == len(A)
+        assert size is None or len(A) <= size
+        if size is None:
+            assert np.array_equal(A.min(axis=0), best)
+        assert algorithm.opt is archive
+
+
+# -- failed and infeasible candidates --
+
+
+def test_undefined_candidates_become_no_best_and_stay_out_of_the_archive():
+    problem, states = Undefined(), States()
+    result = minimize(problem, VEPSO(20), ("n_gen", 30), seed=1, callback=states)
+    assert np.isnan(np.concatenate(problem.F)).sum() > 10
+    assert np.isinf(np.concatenate(problem.F)).sum() > 10
+    assert np.isfinite(result.F).all()
+    for state in states.states:
+        assert not np.isnan(state["best_merit"]).any()
+        found = np.isfinite(state["best_merit"][..., 0])
+        assert np.isfinite(state["best_merit"][found]).all()
+        x1 = state["best_X"][found][:, 0]
+        assert ((x1 >= 0) & (x1 <= 1.5)).all()
+    assert found.all()
+
+
+class Nowhere(Targets):
+    """NaN everywhere, in the second objective."""
+
+    def _evaluate(self, x, out, *args, **kwargs):
+        super()._evaluate(x, out)
+        out["F"][:, 1] = np.nan
+
+
+def test_who_has_found_nothing_usable_draws_nobody():
+    problem = Nowhere()
+    rule = VelocityRule(0.0, 0.0, 1.0, 2.0, 2.0)  # moves by the pulls only
+    minimize(problem, VEPSO(5, rule), ("n_gen", 5), seed=1)
+    assert np.ptp(problem.X, axis=0).max() == 0
+
+
+def test_nothing_defined_at_all_gives_no_result():
+    for termination in (("n_gen", 10), None):
+        problem = Nowhere()
+        result = minimize(problem, VEPSO(5), termination, seed=1)
+        assert result.X is None
+        assert result.F is None
+        assert len(problem.X) >= 10
+        assert not result.pop.get("FEAS").any()
+    assert np.ptp(problem.X, axis=0).min() > 0  # the swarms go on looking
+
+
+def test_constraints_come_before_objectives():
+    problem = Constrained()
+    result = minimize(problem, VEPSO(30), ("n_gen", 60), seed=1)
+    assert (result.CV <= 0).all()
+    assert (result.G <= 0).all()
+    assert (result.X[:, 0] >= 1.9).all()
+    state = result.algorithm.state()
+    assert (state["best_merit"][..., 0] == 0).all()
+    # the constrained minima of the objectives: x1 = 1.9, the rest as in the targets
+    # (measured for seeds 0 to 19: at most 0.005 above)
+    assert result.F.min(axis=0) == pytest.approx([0.9**2, 1.9**2], abs=0.03)
+
+
+def test_infeasible_run_gives_none_or_the_least_infeasible():
+    class Never(Constrained):
+        def _evaluate(self, x, out, *args, **kwargs):
+            super()._evaluate(x, out)
+            out["G"] += 1.0
+
+    result = minimize(Never(), VEPSO(10), ("n_gen", 40), seed=1)
+    assert result.X is None
+    result = minimize(Never(), VEPSO(10, return_least_infeasible=True), ("n_gen", 40), seed=1)
+    np.testing.assert_allclose(result.CV, 0.9, atol=1e-3)
+    assert len(result.algorithm.external_archive) == 0
+    result = minimize(Never(), VEPSO(10), seed=1, verbose=True)  # pymoo's tolerances and display
+    assert result.X is None

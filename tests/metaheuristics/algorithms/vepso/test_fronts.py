@@ -1,0 +1,100 @@
+"""VEPSO on ZDT1 to ZDT3 and a sphere, against the true fronts."""
+
+import moocore
+import numpy as np
+import pytest
+from pymoo.optimize import minimize
+from pymoo.problems import get_problem
+
+from metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
+from metaheuristics.algorithms.vepso import VEPSO
+
+# The paper's effort is 100 particles a swarm and 200 iterations; 80 are run where they are enough.
+# IGD is the mean distance of the true front to the archive, HV the archive's hypervolume over the
+# true front's at (1.1, 1.1). Measured is the worst of seeds 0 to 19 after 200 iterations, of seeds
+# 0 to 7 after 80. 40,000 uniformly random candidates get an IGD of 0.06 to 0.09 for 3 variables,
+# 0.2 to 0.6 for 5 and 1.3 to 2.9 for 30.
+#
+# These problems have their optima on the bounds, which favours "clip"; "reflect" shows what is left
+# without that help. The thin middle is VEPSO's own: nothing pulls a swarm along the front.
+
+
+def fronts(name, n_var, algorithm, iterations=200):
+    problem = get_problem(name, n_var=n_var)
+    result = minimize(problem, algorithm, ("n_gen", iterations), seed=1)
+    assert result.algorithm.evaluator.n_eval == 200 * iterations
+    return result.F, problem.pareto_front(1000)
+
+
+def quality(F, true):
+    hypervolumes = [moocore.hypervolume(front, ref=[1.1, 1.1]) for front in (F, true)]
+    return moocore.igd(F, ref=true), hypervolumes[0] / hypervolumes[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "iterations"),
+    [
+        ("zdt1", 80),  # measured: 2e-4, 1.000
+        ("zdt2", 80),  # measured: 4e-4, 1.000
+        ("zdt3", 200),  # measured: 4e-4, 1.000
+    ],
+)
+def test_default_finds_the_whole_front_of_five_variables(name, iterations):
+    igd, hv = quality(*fronts(name, 5, VEPSO(), iterations))
+    assert igd < 2e-3
+    assert hv > 0.995
+
+
+@pytest.mark.parametrize(
+    ("name", "largest_igd", "smallest_hv"),
+    [
+        ("zdt1", 0.01, 0.98),  # measured: 0.0027, 0.995
+        ("zdt3", 0.3, 0.6),  # measured: 0.144, 0.758 (median 0.031)
+    ],
+)
+def test_default_finds_the_front_of_thirty_variables(name, largest_igd, smallest_hv):
+    igd, hv = quality(*fronts(name, 30, VEPSO()))
+    assert igd < largest_igd
+    assert hv > smallest_hv
+
+
+def test_default_finds_the_corner_of_zdt2_with_thirty_variables():
+    # Known weakness: for 17 seeds of 20 both swarms end at the corner (0, 1), from where the
+    # concave front is uphill for the second objective; the IGD is then 0.61. What is found is on
+    # the front: its mean distance to it was at most 0.036.
+    F, true = fronts("zdt2", 30, VEPSO())
+    assert moocore.igd(true, ref=F) < 0.1
+    assert np.abs(F - [0.0, 1.0]).max(axis=1).min() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "iterations", "rule", "boundary", "largest_igd", "smallest_hv"),
+    [
+        ("zdt3", 80, PAPER_GROUP, "clip", 2e-3, 0.995),  # measured: 0.0011, 1.000
+        ("zdt2", 200, CONSTRICTION, "reflect", 0.05, 0.85),  # measured: 0.024, 0.932
+        ("zdt1", 80, INERTIA_2002, "clip", 0.01, 0.98),  # measured: 0.0027, 0.996
+        ("zdt2", 80, INERTIA_2002, "reflect", 0.25, 0.4),  # measured: 0.14, 0.60
+    ],
+)
+def test_variants_find_the_front_of_three_variables(
+    name, iterations, rule, boundary, largest_igd, smallest_hv
+):
+    igd, hv = quality(*fronts(name, 3, VEPSO(100, rule, boundary), iterations))
+    assert igd < largest_igd
+    assert hv > smallest_hv
+
+
+def test_bounded_archive_covers_the_front():
+    F, true = fronts("zdt1", 5, VEPSO(archive_size=50), 80)
+    igd, hv = quality(F, true)
+    assert len(F) == 50
+    assert igd < 0.015  # measured: 0.0079
+    assert hv > 0.98  # measured: 0.989
+
+
+def test_three_objectives_cover_the_sphere():
+    F = minimize(get_problem("dtlz2", n_var=8), VEPSO(50), ("n_gen", 200), seed=1).F
+    assert len(F) > 500  # measured: 1339
+    assert np.abs(np.linalg.norm(F, axis=1) - 1).mean() < 0.015  # measured: 0.0049
+    assert moocore.hypervolume(F, ref=[1.1] * 3) > 0.73  # measured: 0.769; three corners: 0.331
+    assert (F.min(axis=0) < 0.01).all()  # measured: 4e-33

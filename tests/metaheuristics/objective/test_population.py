@@ -1,0 +1,233 @@
+"""The population objective: the same F1, F2 and peaks as the one rollout, for many at once."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
+
+from metaheuristics import PopulationObjective
+from ocp import (
+    CycloidPolynomial,
+    PointToPoint,
+    residual_matrix,
+    rollout,
+    sample_trajectory,
+)
+from ocp.residual import fastest_mode
+
+LIMITS = ("torque", "speed", "acceleration", "deflection")
+
+# -- the same quantities as the rollout --
+
+
+@PLANTS
+def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, name):
+    task, bound = tasks[name]
+    objective, X = PopulationObjective(task, PROFILE), candidates(30, bound)
+    values = objective(X)
+    motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
+    assert values.energy == pytest.approx([m.energy for m in motions], rel=1e-12, abs=0)
+    # Both watch the tip at times of their own, that miss a peak by 5e-5 of it at most
+    # (ocp.residual.RADIANS_A_SAMPLE).
+    assert values.residual == pytest.approx([m.residual for m in motions], rel=5e-5, abs=0)
+
+
+@PLANTS
+def test_residual_is_that_of_the_rollout_to_the_last_digits_at_the_same_times(tasks, name):
+    # A window for which the rollout watches the tip at 512 times, as the population then does.
+    task, bound = tasks[name]
+    task = dataclasses.replace(task, start=-task.target)  # as fast a mode at either end
+    task = dataclasses.replace(task, residual_window=510.5 * 0.02 / fastest_mode(task))
+    assert len(residual_matrix(task)) == 512 * task.plant.tips
+    objective, X = PopulationObjective(task, PROFILE), candidates(20, bound)
+    residuals = [rollout(task, PROFILE, x, objective.steps).motion.residual for x in X]
+    assert objective(X).residual == pytest.approx(residuals, rel=1e-11, abs=0)
+
+
+def test_other_steps_are_honoured(tasks):
+    task, bound = tasks["arm"]
+    X = candidates(5, bound)
+    coarse, fine = (PopulationObjective(task, PROFILE, steps=steps) for steps in (11, 60))
+    for objective, steps in ((coarse, 11), (fine, 60)):
+        energies = [rollout(task, PROFILE, x, steps).motion.energy for x in X]
+        assert objective.steps == steps
+        assert objective(X).energy == pytest.approx(energies, rel=1e-12, abs=0)
+    assert np.all(coarse(X).energy != fine(X).energy)
+
+
+@pytest.mark.parametrize("terms", [1, 2, 10])
+def test_any_number_of_terms(terms):
+    profile, task = CycloidPolynomial(terms), PointToPoint(ARM, pi / 2, 0.8)
+    X = np.random.default_rng(3).uniform(-0.3, 0.3, (7, terms))
+    objective = PopulationObjective(task, profile)
+    energies = [rollout(task, profile, x, objective.steps).motion.energy for x in X]
+    assert objective(X).energy == pytest.approx(energies, rel=1e-12, abs=0)
+
+
+def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
+    # docs/physics.md, 'A third plant': F1 is then the larger of the two links' peaks.
+    task, bound = tasks["two links"]
+    X = candidates(12, bound)
+    times = task.duration + np.linspace(1e-9, task.residual_window, 4000)
+    tips = [np.abs(sample_trajectory(task, PROFILE, x, times).tips).max(axis=0) for x in X]
+    assert {int(np.argmax(peaks)) for peaks in tips} == {0, 1}  # either link is the worse of some
+    expected = np.max(tips, axis=1)
+    assert PopulationObjective(task, PROFILE)(X).residual == pytest.approx(
+        expected, rel=6e-5, abs=2.7244e-6
+    )
+
+
+def test_a_mirrored_move_costs_the_same(tasks):
+    task, bound = tasks["single link"]
+    X = candidates(10, bound)
+    there = PopulationObjective(task, PROFILE)(X)
+    back = PopulationObjective(dataclasses.replace(task, target=-task.target), PROFILE)(X)
+    assert back.energy == pytest.approx(there.energy, rel=1e-12, abs=0)
+    assert back.residual == pytest.approx(there.residual, rel=1e-10, abs=0)
+
+
+# -- limits --
+
+
+@PLANTS
+def test_violations_are_the_rollouts_peaks_over_the_limits(tasks, name):
+    task, bound = tasks[name]
+    X = candidates(30, bound)
+    steps = PopulationObjective(task, PROFILE).steps
+    motions = [rollout(task, PROFILE, x, steps).motion for x in X]
+    peaks = np.array([[motion.peak(limit) for limit in LIMITS] for motion in motions])
+    limits = np.median(peaks, axis=0)  # half of the candidates break each
+    limited = dataclasses.replace(
+        task, **{f"{name}_limit": float(v) for name, v in zip(LIMITS, limits, strict=True)}
+    )
+    values = PopulationObjective(limited, PROFILE)(X)
+    assert values.violations.shape == (30, 4)
+    assert values.violations == pytest.approx(peaks / limits - 1, rel=0, abs=1e-12)
+    assert np.array_equal(values.violations > 0, peaks > limits)
+    assert np.all((values.violations > 0).sum(axis=0) == 15)
+    without = PopulationObjective(task, PROFILE)(X)
+    assert without.violations.shape == (30, 0)
+    assert values.energy == pytest.approx(without.energy, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("chosen", [("deflection",), ("deflection", "torque"), ("speed", "torque")])
+def test_each_limit_keeps_its_own_column(chosen):
+    limits = {"torque": 0.3, "speed": 3.0, "acceleration": 70.0, "deflection": 0.01}
+    task = PointToPoint(ARM, pi / 2, 0.8, **{f"{name}_limit": limits[name] for name in chosen})
+    objective, X = PopulationObjective(task, PROFILE), candidates(10, 0.5)
+    motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
+    # in the order of the task's own list, whatever the order they were given in
+    columns = [name for name in LIMITS if name in chosen]
+    expected = [[m.peak(name) / limits[name] - 1 for name in columns] for m in motions]
+    assert objective(X).violations == pytest.approx(np.array(expected), rel=0, abs=1e-12)
+
+
+def test_only_the_value_of_a_limit_changed():
+    X = candidates(10, 0.5)
+    loose, tight = (
+        PopulationObjective(PointToPoint(ARM, pi / 2, 0.8, torque_limit=limit), PROFILE)(X)
+        for limit in (0.4, 0.2)
+    )
+    assert tight.violations + 1 == pytest.approx(2 * (loose.violations + 1), rel=1e-14)
+
+
+# -- populations --
+
+
+@pytest.mark.parametrize("count", [1, 199, 200, 201, 450])
+def test_the_order_is_kept_for_any_size(tasks, count):
+    task, bound = tasks["arm"]
+    limited = dataclasses.replace(task, speed_limit=3.0)
+    objective, X = PopulationObjective(limited, PROFILE), candidates(450, bound)
+    values = objective(X[:count])
+    assert values.residual.shape == values.energy.shape == (count,)
+    assert values.violations.shape == (count, 1)
+    rows = sorted({0, 1, count // 2, count - 2, count - 1, 198, 199, 200} & set(range(count)))
+    for row in rows:
+        motion = rollout(limited, PROFILE, X[row], objective.steps).motion
+        assert values.energy[row] == pytest.approx(motion.energy, rel=1e-12, abs=0)
+        assert values.violations[row, 0] == pytest.approx(motion.peak_speed / 3.0 - 1, abs=1e-12)
+
+
+def test_a_candidate_costs_the_same_bits_wherever_it_stands(tasks):
+    task, bound = tasks["arm"]
+    objective, X = PopulationObjective(task, PROFILE), candidates(450, bound)
+    order = np.random.default_rng(5).permutation(450)
+    values, shuffled = objective(X), objective(X[order])
+    assert np.array_equal(values.energy[order], shuffled.energy)
+    assert np.array_equal(values.residual[order], shuffled.residual)
+    assert len(np.unique(values.energy)) == 450
+
+
+@PLANTS
+def test_two_threads_give_identical_bits(tasks, name):
+    task, bound = tasks[name]
+    task = dataclasses.replace(task, torque_limit=0.1)
+    X = candidates(1050, bound)
+    one, two = (PopulationObjective(task, PROFILE, threads=threads)(X) for threads in (1, 2))
+    assert same_bits(one, two)
+
+
+def test_the_population_given_is_left_as_it_was(tasks):
+    task, bound = tasks["arm"]
+    X = candidates(201, bound)
+    before = X.copy()
+    X.setflags(write=False)
+    PopulationObjective(task, PROFILE)(X)
+    assert np.array_equal(X, before)
+
+
+def test_lists_and_arrays_of_any_layout_are_taken(tasks):
+    task, bound = tasks["arm"]
+    objective, X = PopulationObjective(task, PROFILE), candidates(6, bound)  # square
+    expected = objective(X)
+    assert same_bits(objective(X.tolist()), expected)
+    assert same_bits(objective(np.asfortranarray(X)), expected)
+    assert same_bits(objective(np.repeat(X, 2, axis=0)[::2]), expected)
+
+
+def test_an_empty_population_has_no_values():
+    task = PointToPoint(ARM, pi / 2, 0.8, torque_limit=1.0, speed_limit=1.0)
+    values = PopulationObjective(task, PROFILE)(np.empty((0, 6)))
+    assert values.residual.shape == values.energy.shape == (0,)
+    assert values.violations.shape == (0, 2)
+
+
+@pytest.mark.parametrize("shape", [(6,), (6, 20), (20, 5), (20, 7), (2, 20, 6), (), (0,), (6, 0)])
+def test_a_wrong_shape_is_named(tasks, shape):
+    objective = PopulationObjective(tasks["arm"][0], PROFILE)
+    with pytest.raises(ValueError, match=r"has shape .*; give \(candidates, 6\)") as caught:
+        objective(np.zeros(shape))
+    assert str(shape) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("threads", [0, -1])
+def test_threads_below_one_are_refused(tasks, threads):
+    with pytest.raises(ValueError, match=f"threads is {threads}; give "):
+        PopulationObjective(tasks["arm"][0], PROFILE, threads=threads)
+
+
+@pytest.mark.parametrize("steps", [0, -1, 2.5])
+def test_odd_numbers_of_steps_are_refused(tasks, steps):
+    with pytest.raises(ValueError, match=f"steps is {steps}; give a whole number"):
+        PopulationObjective(tasks["arm"][0], PROFILE, steps=steps)
+
+
+@PLANTS
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e200])
+def test_a_candidate_that_is_not_finite_spoils_only_its_own_row(tasks, name, bad):
+    task, bound = tasks[name]
+    task = dataclasses.replace(task, torque_limit=0.1, deflection_limit=0.01)
+    objective, X = PopulationObjective(task, PROFILE), candidates(250, bound)
+    expected, spoilt = objective(X), X.copy()
+    spoilt[[3, 199, 249], [0, 2, 5]] = bad
+    values = objective(spoilt)
+    rows = np.column_stack([values.residual, values.energy, values.violations])
+    bad_rows = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+    assert bad_rows.tolist() == [3, 199, 249]
+    kept = np.setdiff1d(np.arange(250), bad_rows)
+    for attribute in ("residual", "energy", "violations"):
+        assert np.array_equal(getattr(values, attribute)[kept], getattr(expected, attribute)[kept])

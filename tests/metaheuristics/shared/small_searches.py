@@ -1,0 +1,90 @@
+"""Small searches that the tests of searches share, and what they all ask of a front."""
+
+import dataclasses
+import json
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from metaheuristics import PAPER_BOX, PopulationObjective, search
+from metaheuristics.objective.population import LEAST_STEPS
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import PointToPoint
+
+pi = math.pi
+SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
+SIXTH, HALF = PointToPoint(SINGLE_LINK, pi / 6, 0.8), PointToPoint(ARM, pi / 2, 0.8)
+TASKS = {"nsga2": HALF, "vepso": SIXTH}
+BOUNDS = {"nsga2": 0.5, "vepso": 0.2}  # eqs (17) and (12)
+SWARMS = {"nsga2": 1, "vepso": 2}  # how many times the population is evaluated in a generation
+METHODS = pytest.mark.parametrize("method", ["nsga2", "vepso"])
+
+
+def run(method, task=None, **settings):
+    """A small search with what a test does not care about filled in."""
+    given = {"bound": BOUNDS[method], "population": 20, "generations": 15, **settings}
+    return search(TASKS[method] if task is None else task, method, **given)
+
+
+@cache
+def found(method, task=None, **settings):
+    """The same, done once for all tests that ask for it."""
+    return run(method, task, **settings)
+
+
+@cache
+def papers_search(method, task):
+    """A search with the paper's settings in the paper's box, done once as well."""
+    return search(task, method, bound=PAPER_BOX[task.plant.name])
+
+
+def exactly(front):
+    """All of a front but its time, to the last bit."""
+    return json.dumps({**front.to_document(), "seconds": None})
+
+
+def assert_is_a_front(front):
+    """Sorted, finite, mutually non-dominated."""
+    F = np.column_stack([front.residuals, front.energies])
+    assert np.isfinite(F).all()
+    assert np.all(np.diff(front.residuals) > 0)
+    assert np.all(np.diff(front.energies) < 0)
+
+
+def one_line(caught):
+    assert "\n" not in str(caught.value)
+
+
+LIMITED = {
+    "nsga2": dataclasses.replace(HALF, torque_limit=0.3, acceleration_limit=75.0),
+    "vepso": dataclasses.replace(SIXTH, torque_limit=0.16, speed_limit=0.99, deflection_limit=0.03),
+}
+IMPOSSIBLE = {
+    method: dataclasses.replace(task, torque_limit=1e-4) for method, task in LIMITED.items()
+}
+
+
+def failing(monkeypatch, value, column="energy"):
+    """Half of the candidates, those with a_1 > 0, get `value`; returns how many were, by call."""
+    evaluate, counts = PopulationObjective.__call__, []
+
+    def failing(self, coefficients):
+        values = evaluate(self, coefficients)
+        bad = np.asarray(coefficients)[:, 0] > 0
+        if self.steps == LEAST_STEPS:
+            counts.append(int(bad.sum()))
+        getattr(values, column)[bad] = value
+        return values
+
+    monkeypatch.setattr(PopulationObjective, "__call__", failing)
+    return counts
+
+
+def stop_after(generations):
+    def report(progress):
+        if progress.generation == generations:
+            raise KeyboardInterrupt
+
+    return report

@@ -1,0 +1,55 @@
+"""Small problems for VEPSO whose answers are known, and what its tests ask of its states."""
+
+import numpy as np
+from pymoo.core.callback import Callback
+from pymoo.core.problem import Problem
+
+
+class Targets(Problem):
+    """Objective s is the squared distance to a target of its own; remembers what it was asked."""
+
+    def __init__(self, n_obj=2, n_var=3, **options):
+        super().__init__(n_var=n_var, n_obj=n_obj, xl=-1.0, xu=2.0, **options)
+        self.targets = np.eye(n_obj, n_var)
+        self.X, self.F = [], []
+
+    def _evaluate(self, x, out, *args, **kwargs):
+        out["F"] = ((x[:, None, :] - self.targets) ** 2).sum(axis=2)
+        self.X.append(x)
+        self.F.append(out["F"])
+
+
+class Undefined(Targets):
+    """NaN for x1 < 0 and infinite for x1 > 1.5 in one objective only."""
+
+    def _evaluate(self, x, out, *args, **kwargs):
+        super()._evaluate(x, out)
+        out["F"][x[:, 0] < 0.0, 0] = np.nan
+        out["F"][x[:, 0] > 1.5, 1] = np.inf
+
+
+class Constrained(Targets):
+    """Feasible in a small corner only, x1 >= 1.9."""
+
+    def __init__(self, **options):
+        super().__init__(n_ieq_constr=1, **options)
+
+    def _evaluate(self, x, out, *args, **kwargs):
+        super()._evaluate(x, out)
+        out["G"] = 1.9 - x[:, :1]
+
+
+class States(Callback):
+    """Collects the state after every iteration."""
+
+    def __init__(self):
+        super().__init__()
+        self.states = []
+
+    def notify(self, algorithm):
+        self.states.append(algorithm.state())
+
+
+def step(algorithm):
+    algorithm.next()
+    return algorithm.state()

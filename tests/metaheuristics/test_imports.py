@@ -1,0 +1,37 @@
+"""What `import metaheuristics` gives, and that it does not wait for pymoo."""
+
+import subprocess
+import sys
+
+import pytest
+
+import metaheuristics
+
+LIGHT = """
+import sys
+import metaheuristics
+from metaheuristics import PRESETS, PopulationObjective, Spread, search, search_many
+from metaheuristics.ensemble import energies_at
+
+assert "pymoo" not in sys.modules
+from metaheuristics import VEPSO
+
+assert VEPSO.__module__ == "metaheuristics.algorithms.vepso"
+assert "pymoo" in sys.modules
+"""
+
+
+def test_pymoo_is_imported_with_what_builds_on_it_only():
+    command = [sys.executable, "-c", LIGHT]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("name", metaheuristics.__all__)
+def test_every_public_name_is_there(name):
+    assert getattr(metaheuristics, name) is not None
+
+
+def test_another_name_is_refused_as_by_any_module():
+    with pytest.raises(AttributeError, match="'metaheuristics' has no attribute 'nonsense'"):
+        metaheuristics.nonsense  # noqa: B018
