@@ -23,7 +23,7 @@ from rich.table import Table
 from metaheuristics import PRESETS, PopulationObjective, search, search_many
 from metaheuristics.ensemble import energies_at, energy_at
 from ocp import evaluate_coefficients
-from studies.paper import (
+from studies.paper.printed import (
     ARM_HALF,
     COEFFICIENTS,
     MENDED,

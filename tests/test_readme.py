@@ -216,7 +216,7 @@ def test_files_that_it_names_are_there():
 
 def test_the_order_of_the_packages_is_that_of_the_contract():
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
-    (layers,) = [c["layers"] for c in contracts["contracts"] if c["type"] == "layers"]
+    layers = next(c["layers"] for c in contracts["contracts"] if c["type"] == "layers")
     assert "  <-  ".join(reversed(layers)) in README
 
 

@@ -18,8 +18,8 @@ from ocp import (
     non_dominated,
     plan_move,
 )
-from studies import reproduce as reproduce_module
 from studies.cli import main
+from studies.reproduction import recompute as reproduce_module
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,96 @@
+"""The command `quietarm`: its group of commands, and what becomes of errors."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+import click
+
+from models import __version__
+from ocp import FileFormatError, QuietarmError
+
+BAD_INPUT, NOT_SOLVED = 2, 1
+
+COMMANDS = (
+    "plan",
+    "evaluate",
+    "front",
+    "polish",
+    "compare",
+    "floor",
+    "study",
+    "reproduce",
+)
+"""Each is of this name in the file of this name in `studies.cli.commands`."""
+
+
+@click.group(
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    no_args_is_help=True,
+)
+@click.version_option(__version__, prog_name="quietarm")
+def quietarm() -> None:
+    """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
+
+    PLANT is single-link or arm-on-flexible-link. Angles are radians, or 30deg, pi/6, -pi/2;
+    lengths are metres, or 1mm; times are seconds, or 800ms.
+
+    \b
+    Examples:
+      quietarm reproduce --output results
+      quietarm plan single-link --target 30deg --duration 0.8 --figure move.png
+      quietarm plan arm-on-flexible-link --start=-pi/2 --target pi/4 --duration 1.0 \\
+          --torque-limit 0.4 --output plan.json --csv move.csv
+      quietarm evaluate single-link --target pi/6 --duration 0.8 \\
+          --coefficients=0.003347,-0.1697
+    """  # noqa: D301  # \b is click's: do not rewrap
+
+
+for _name in COMMANDS:
+    quietarm.add_command(getattr(import_module(f"studies.cli.commands.{_name}"), _name))
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command and end the process with its status.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The words after ``quietarm``; those of the process by default.
+
+    Raises
+    ------
+    SystemExit
+        0 when done, 2 for bad input or a file that fails, 1 where a solve failed or was
+        interrupted.
+    """
+    try:
+        status = quietarm.main(arguments, prog_name="quietarm", standalone_mode=False)
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        status = BAD_INPUT
+    except click.ClickException as error:
+        status = _complain(error.format_message(), BAD_INPUT)
+    except (FileFormatError, ValueError) as error:
+        status = _complain(str(error), BAD_INPUT)
+    except QuietarmError as error:
+        status = _complain(str(error), NOT_SOLVED)
+    except (KeyboardInterrupt, click.Abort):
+        status = _complain("interrupted; nothing was written", NOT_SOLVED)
+    except MemoryError:
+        status = _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
+    except OSError as error:
+        status = _complain(f"{error.filename or ''} {error.strerror or error}".strip(), BAD_INPUT)
+    sys.exit(status or 0)
+
+
+def _complain(message: str, status: int) -> int:
+    line = " ".join(message.split())
+    click.echo(f"quietarm: {line}", err=True)
+    return status
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,71 @@
+"""What several commands do: the task from its options, a plan to its files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+from click.core import ParameterSource
+from rich.console import Console
+
+from models import Plant
+from ocp import Plan, PointToPoint
+from ocp.plan import ticks_of_move
+from studies.runs.files import refuse_same_file
+
+
+def split_options(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
+    """The task and the output options, from a command's shared options."""
+    outputs = {name: rest.pop(name) for name in ("output", "csv_file", "sample_rate", "figure")}
+    names = {"--output": "output", "--csv": "csv_file", "--figure": "figure"}
+    refuse_same_file((option, outputs[name]) for option, name in names.items())
+    task = task_of(rest)
+    ticks_of_move(task.duration, outputs["sample_rate"])  # refused now rather than after the solve
+    return task, outputs
+
+
+def task_of(rest: dict[str, Any]) -> PointToPoint:
+    """The task of the options that `task_options` adds; ValueError where it is none."""
+    plant: Plant = rest.pop("plant")
+    return PointToPoint(plant, **rest)
+
+
+def write_plan(
+    found: Plan, output: Path | None, csv_file: Path | None, sample_rate: float, figure: Path | None
+) -> None:
+    """Write a plan to the files that were asked for, and say so."""
+    console = Console()
+    if output is not None:
+        found.save(output)
+    if csv_file is not None:
+        found.save_csv(csv_file, sample_rate)
+    if figure is not None:
+        from studies.display.pictures import save_figure
+        from studies.reports.motion_figure import four_panels
+
+        save_figure(four_panels(found), figure)
+    for path in (output, csv_file, figure):
+        if path is not None:
+            console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+
+
+def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequence[str]]) -> None:
+    """Make sure that no option was typed that does nothing here; ValueError says for what it is.
+
+    Parameters
+    ----------
+    context : click.Context
+        The command's, which knows what was typed.
+    method : str
+        What was chosen.
+    only_for : mapping of str to sequence of str
+        For each such option the choices for which it does something.
+    """
+    for name, methods in only_for.items():
+        typed = context.get_parameter_source(name) is not ParameterSource.DEFAULT
+        if typed and method not in methods:
+            *some, last = methods
+            known = f"{', '.join(some)} and {last}" if some else last
+            raise ValueError(f"--{name} is for {known}, not for {method}; leave it out")

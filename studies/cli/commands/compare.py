@@ -1,0 +1,63 @@
+"""`quietarm compare`: fronts of one task held against each other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from studies.cli.options import FOLDER
+
+FRONT_FILE = click.Path(path_type=Path)
+
+
+@click.command(short_help="Hold fronts of one task against each other.")
+@click.argument("fronts", nargs=-1, type=FRONT_FILE, metavar="FRONT FRONT ...")
+@click.option("--reference", type=FRONT_FILE, help="Measure IGD+ and epsilon against this front.")
+@click.option(
+    "--floor/--no-floor", default=True, show_default=True,
+    help="Find the least energy over all joint motions as well: some seconds.",
+)  # fmt: skip
+@click.option("--as-found", is_flag=True, help="Count no motions between the points of a front.")
+@click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
+def compare(
+    fronts: tuple[Path, ...],
+    reference: Path | None,
+    floor: bool,
+    as_found: bool,
+    output: Path | None,
+) -> None:
+    """Hold fronts of one task, by any methods, against each other.
+
+    Hypervolume, IGD+, additive epsilon, coverage, the energies at residuals of 0.1, 1 and 5 mm,
+    candidates evaluated and time. So that a front is not judged by how many points it holds, the
+    motions between its points count as well, for all alike. Files of one method with other seeds
+    are taken together: medians, quartiles and attainment surfaces.
+
+    \b
+    Examples:
+      quietarm compare nsga2.json vepso.json
+      quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from studies.comparison.check import check_figures
+    from studies.comparison.measures import FILL
+    from studies.comparison.measures import compare as measure
+    from studies.comparison.report import load_fronts, show, with_floor, write
+
+    loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
+    for front, name in zip(loaded, names, strict=True):
+        check_figures(front, name)
+    named = None if reference is None else loaded.pop()
+    comparison = measure(
+        loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
+        fill=0 if as_found else FILL,
+    )  # fmt: skip
+    if floor:
+        comparison = with_floor(comparison, Console(stderr=True))
+    console = Console()
+    show(console, comparison)
+    if output is not None:
+        output.mkdir(exist_ok=True)
+        for path in write(output, comparison):
+            console.print(f"wrote {path}", highlight=False, soft_wrap=True)

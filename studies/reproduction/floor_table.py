@@ -1,0 +1,146 @@
+"""Every energy of the paper's conditions as a multiple of the floor at rest on arrival."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from metaheuristics.ensemble import Spread
+from ocp import Floor
+from studies.display.tables import Cell, Column, Table
+from studies.paper.printed import Condition
+from studies.reproduction.recompute import CONDITIONS, TERMS, Reproduction
+
+PAPER, VEPSO, NSGA2 = "paper", "VEPSO", "NSGA-II"
+IN_BOX, FREE = "gradient, in the box", "gradient, no box"
+SERIES = (PAPER, VEPSO, NSGA2, IN_BOX, FREE)
+_METHODS = {VEPSO: "vepso", NSGA2: "nsga2"}
+_PRINTED_TERMS = (2, 4, 6)
+LEGEND = (
+    "Floor: the least energy over all joint motions that start and end at rest, joint and "
+    "structure, without limits; it starts and stops with jolts. Left: what ever finer grids would "
+    "still take off it, estimated; starts that agree: how many of the solver's starts end within "
+    "0.5 % of the best. The paper's energies are the printed ones, with the paper's residual; "
+    "VEPSO and NSGA-II are judged at that residual, the gradient and the floor at rest."
+)
+
+
+@dataclass(frozen=True)
+class Multiple:
+    """An energy over the floor: its series, number of terms, and quartiles over seeds."""
+
+    series: str
+    terms: int
+    median: float
+    lower: float
+    upper: float
+
+
+def multiples(result: Reproduction, condition: Condition) -> list[Multiple]:
+    """All energies of a condition as multiples of its floor, by series and then terms.
+
+    Parameters
+    ----------
+    result : Reproduction
+        What `reproduce` returned.
+    condition : Condition
+        The driving condition.
+
+    Returns
+    -------
+    list of Multiple
+        A search that met the paper's residual from no seed has none.
+    """
+    floor = result.floors[condition].energy
+    rows = {r.row.terms: r for r in result.rows if r.row.condition == condition}
+    found = [_exact(PAPER, terms, r.row.energy / floor) for terms, r in sorted(rows.items())]
+    for series, method in _METHODS.items():
+        for terms, row in sorted(rows.items()):
+            spread = row.searched_by(method)
+            if isfinite(spread.median):
+                found.append(_of_spread(series, terms, spread, floor))
+    for series, boxed in ((IN_BOX, True), (FREE, False)):
+        for terms in TERMS:
+            energy = result.more_terms[condition, terms, boxed].energy
+            found.append(_exact(series, terms, energy / floor))
+    return found
+
+
+def _exact(series: str, terms: int, value: float) -> Multiple:
+    return Multiple(series, terms, value, value, value)
+
+
+def _of_spread(series: str, terms: int, spread: Spread, floor: float) -> Multiple:
+    return Multiple(
+        series, terms, *(q / floor for q in (spread.median, spread.lower, spread.upper))
+    )
+
+
+def floor_table(result: Reproduction, plant: str | None = None) -> Table:
+    """The multiples as a table: a row a condition; of one plant, whose name is in the title."""
+    columns = [
+        Column("plant", key="plant"),
+        Column("move", key="move"),
+        Column("floor F2 [J]", "{:.4g}".format, "floor_J"),
+        Column("  left [J], about", "{:.1g}".format, "left_J"),
+        Column("  starts that agree", key="starts_that_agree"),
+    ]
+    places = [
+        (series, terms)
+        for series in SERIES
+        for terms in (TERMS if series in (IN_BOX, FREE) else _PRINTED_TERMS)
+    ]
+    for series, terms in places:
+        heading = f"{series}, N = {terms}"
+        columns.append(Column(heading, "{:.3f}".format, _key(series, terms)))
+    rows = [_row(result, c, places) for c in CONDITIONS if plant in (None, c.plant.name)]
+    title = "Energies as multiples of the floor, at rest on arrival"
+    if plant is not None:
+        title, rows = f"{title}, {plant}", [[None, *row[1:]] for row in rows]
+    return Table(title, columns, rows)
+
+
+def _key(series: str, terms: int) -> str:
+    name = series.lower().replace(", ", "_").replace(" ", "_").replace("-", "_")
+    return f"{name}_{terms}_terms_over_floor"
+
+
+def _row(
+    result: Reproduction, condition: Condition, places: Sequence[tuple[str, int]]
+) -> list[Cell]:
+    floor = result.floors[condition]
+    values = {(m.series, m.terms): m.median for m in multiples(result, condition)}
+    head: list[Cell] = [
+        condition.plant.name, condition.label, floor.energy, floor.left, _agreement(floor)
+    ]  # fmt: skip
+    return [*head, *(values.get(place) for place in places)]
+
+
+def _agreement(floor: Floor) -> str:
+    return f"{floor.agreeing()} of {len(floor.starts)}"
+
+
+def floor_tables(result: Reproduction) -> list[Table]:
+    """The same, a table a plant, narrow enough for a terminal."""
+    plants = dict.fromkeys(condition.plant.name for condition in CONDITIONS)
+    return [floor_table(result, plant) for plant in plants]
+
+
+def finding(result: Reproduction) -> str:
+    """In a sentence, how far from the floor the paper and the gradient are."""
+
+    def span(series: str, terms: int | None = None) -> str:
+        values = [
+            m.median
+            for condition in CONDITIONS
+            for m in multiples(result, condition)
+            if m.series == series and terms in (None, m.terms)
+        ]
+        return f"{min(values):.2f} to {max(values):.2f}"
+
+    return (
+        f"The paper's plans need {span(PAPER)} times the least energy that its plants permit; the "
+        f"gradient's with six terms in the paper's box {span(IN_BOX, 6)} times, with ten terms and "
+        f"no box {span(FREE, 10)} times."
+    )
