@@ -1,4 +1,4 @@
-"""What several commands do: the task from its options, a plan to its files."""
+"""What several commands do with their arguments: make a task, write a plan, refuse an option."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 from click.core import ParameterSource
-from rich.console import Console
 
 from models import Plant
 from ocp import Plan, PointToPoint
@@ -36,7 +35,6 @@ def write_plan(
     found: Plan, output: Path | None, csv_file: Path | None, sample_rate: float, figure: Path | None
 ) -> None:
     """Write a plan to the files that were asked for, and say so."""
-    console = Console()
     if output is not None:
         found.save(output)
     if csv_file is not None:
@@ -46,9 +44,14 @@ def write_plan(
         from studies.reports.motion_figure import four_panels
 
         save_figure(four_panels(found), figure)
-    for path in (output, csv_file, figure):
+    say_written(output, csv_file, figure)
+
+
+def say_written(*files: Path | None) -> None:
+    """Say which files were written, a line for each; None is a file that was not asked for."""
+    for path in files:
         if path is not None:
-            console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+            click.echo(f"wrote {path}")
 
 
 def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequence[str]]) -> None:

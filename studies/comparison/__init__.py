@@ -1,4 +1,4 @@
 """Fronts of one task measured against each other, in tables and pictures.
 
-May import `paper` and `display`.
+May import `paper`, `methods` and `display`.
 """

@@ -16,15 +16,20 @@ from numpy.typing import NDArray
 
 from studies.comparison.measures import Comparison
 from studies.comparison.staircase import within
+from studies.methods import EPSILON, NSGA2, VEPSO, WEIGHTED
 from studies.paper.points import PaperPoint
 
 _COLOURS = {
-    "epsilon": "#0072B2", "nsga2": "#D55E00", "vepso": "#009E73", "weighted": "#56B4E9",
-    "nsga2, polished": "#E69F00", "vepso, polished": "#CC79A7",
+    EPSILON: "#0072B2", NSGA2: "#D55E00", VEPSO: "#009E73", WEIGHTED: "#56B4E9",
+    NSGA2.then_polished(): "#E69F00", VEPSO.then_polished(): "#CC79A7",
 }  # fmt: skip
 _SPARE = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#000000")
-"""Okabe and Ito's colours, told apart by colour-blind eyes as well; their yellow is too pale."""
-_DASHES = {"weighted": (0, (1, 1)), "nsga2, polished": "--", "vepso, polished": (0, (4, 1, 1, 1))}
+"""Okabe and Ito's colours, which colour-blind people can tell apart; their yellow is too pale."""
+_DASHES = {
+    WEIGHTED: (0, (1, 1)),
+    NSGA2.then_polished(): "--",
+    VEPSO.then_polished(): (0, (4, 1, 1, 1)),
+}
 _STILLEST = 1e-6
 """Residuals below this [m] are alike to the eye: the logarithmic axes begin here."""
 _TALLEST = 1.6
@@ -52,11 +57,10 @@ def looks(comparison: Comparison) -> dict[str, _Look]:
     taken: set[str] = set()
     spare = cycle(_SPARE)
     for group in comparison.groups:
-        method = group.runs[0].front.method
-        colour = _COLOURS.get(method, "")
+        colour = _COLOURS.get(group.method, "")
         if not colour or colour in taken:
             colour = next((c for c in _SPARE if c not in taken), None) or next(spare)
-        dash = _DASHES.get(method, "-") if colour not in taken else ":"
+        dash = _DASHES.get(group.method, "-") if colour not in taken else ":"
         taken.add(colour)
         below = len(comparison.groups) - len(found) - 1  # wider, to be seen below those after it
         found[group.label] = _Look(colour, dash, 1.2 + 0.45 * below)

@@ -3,25 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from ocp import Front
 from ocp.documents import profile_to_document
+from studies.methods import method_of
 from studies.paper.tasks import task_difference
-
-METHOD_NAMES: Mapping[str, str] = {
-    "nsga2": "NSGA-II",
-    "vepso": "VEPSO",
-    "epsilon": "epsilon constraint",
-    "weighted": "weighted sum",
-}
-"""The methods as people write them."""
-
-
-def method_name(method: str) -> str:
-    """A method as people write it: ``"nsga2, polished"`` is ``"NSGA-II polished"``."""
-    head, _, rest = method.partition(",")
-    return METHOD_NAMES.get(head, head) + rest
 
 
 def check_fronts(fronts: Sequence[Front], names: Sequence[str], *, twice: bool = False) -> None:
@@ -97,7 +84,7 @@ def _settings(front: Front) -> dict[str, object]:
 
 def _label(front: Front, alike: Sequence[Front]) -> str:
     """The method, with the settings that tell it from those of the same method."""
-    words = [method_name(front.method)]
+    words = [method_of(front.method).label]
     for name, value in _settings(front).items():
         others = [_settings(other).get(name) for other in alike]
         if any(other != value for other in others):

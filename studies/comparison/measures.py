@@ -14,6 +14,7 @@ from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
 from studies.comparison.groups import check_fronts, grouped
 from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
+from studies.methods import Method, method_of
 
 LEVELS = (1e-4, 1e-3, 5e-3)
 """Residuals [m] at which energies are compared."""
@@ -90,6 +91,11 @@ class Group:
     median: Array
     worst: Array
 
+    @property
+    def method(self) -> Method:
+        """The method that found them."""
+        return method_of(self.runs[0].front.method)
+
     def spread(self, figure: str, level: int | None = None) -> Spread:
         """Quartiles over the runs of a figure of `Measured`, or of its front, by name."""
         values: list[float] = []
@@ -161,7 +167,7 @@ class Comparison:
         raise KeyError(label)
 
 
-def compare(
+def compare_fronts(
     fronts: Sequence[Front],
     names: Sequence[str] = (),
     *,

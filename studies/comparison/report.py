@@ -10,16 +10,14 @@ from rich.console import Console
 from ocp import Front, QuietarmError
 from ocp.files import check_writable, write_whole
 from ocp.floor import energy_floor
-from studies.comparison.figure import comparison_figure
 from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
-from studies.display.pictures import save_figure
 from studies.display.tables import print_table
 from studies.paper.points import paper_points
 from studies.paper.tasks import title_of
 
 FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
-"""What `write` writes to a folder."""
+"""What `write_comparison` writes to a folder."""
 
 
 def load_fronts(paths: list[Path]) -> tuple[list[Front], list[str]]:
@@ -43,7 +41,7 @@ def terms_of(comparison: Comparison) -> set[int]:
     return {run.front.profile.size for run in comparison.runs}
 
 
-def show(console: Console, comparison: Comparison) -> None:
+def print_comparison(console: Console, comparison: Comparison) -> None:
     """Print the tables and how to read them."""
     console.print(title_of(comparison.task), style="bold", highlight=False)
     for table in tables(comparison).values():
@@ -52,8 +50,11 @@ def show(console: Console, comparison: Comparison) -> None:
         console.print(f"- {line}", highlight=False, style="dim")
 
 
-def write(folder: Path, comparison: Comparison) -> list[Path]:
+def write_comparison(folder: Path, comparison: Comparison) -> list[Path]:
     """Write `FILES` to a folder, each whole or not at all; return what was written."""
+    from studies.comparison.figure import comparison_figure
+    from studies.display.pictures import save_figure
+
     paths = [check_writable(folder / name) for name in FILES]
     report, runs, coverage, picture = paths
     shown = tables(comparison)

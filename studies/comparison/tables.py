@@ -8,6 +8,7 @@ from math import isfinite
 from metaheuristics.ensemble import Spread
 from studies.comparison.measures import Comparison, Group
 from studies.display.tables import Cell, Column, Table
+from studies.display.words import millimetres
 
 _ENERGY, _SHARE, _PERCENT = "{:.5g}".format, "{:.4f}".format, "{:.2f}".format
 _MISS = "{:.2g}".format
@@ -175,13 +176,8 @@ def units(comparison: Comparison) -> list[str]:
     return lines
 
 
-def millimetres(length: float) -> str:
-    """A length as people read it."""
-    return f"{length * 1e3:.3g} mm"
-
-
-def _quartile_columns(show: Callable[[float], str]) -> tuple[Column, Column]:
-    return Column("  lower quartile of the seeds", show), Column("  upper quartile", show)
+def _quartile_columns(form: Callable[[float], str]) -> tuple[Column, Column]:
+    return Column("  lower quartile of the seeds", form), Column("  upper quartile", form)
 
 
 def _quartiles(spread: Spread, several: bool) -> list[Cell]:

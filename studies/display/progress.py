@@ -17,6 +17,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from studies.display.words import print_lines
+
 Display = TypeVar("Display")
 
 PLAIN_SECONDS = 2.0
@@ -75,11 +77,6 @@ def shown(
             yield bar(bars)
 
 
-def print_line(console: Console, line: str) -> None:
-    """Print a line as it is, however narrow the console."""
-    console.print(line, markup=False, highlight=False, soft_wrap=True)
-
-
 @contextmanager
 def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[Advance]:
     """Show how far a piece of work is.
@@ -103,7 +100,7 @@ def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[A
     def line(name: str) -> None:
         nonlocal begun
         begun += 1
-        print_line(console, f"[{begun}/{total}] {name}")
+        print_lines(console, f"[{begun}/{total}] {name}")
 
     def bar(bars: Progress) -> Advance:
         task = bars.add_task("", total=total)
@@ -148,7 +145,7 @@ def count(
         nonlocal said
         if done == total or time.monotonic() - said >= PLAIN_SECONDS:
             said = time.monotonic()
-            print_line(console, f"{done} of {total} {what}")
+            print_lines(console, f"{done} of {total} {what}")
 
     def bar(bars: Progress) -> Callable[[int, int], None]:
         task = bars.add_task(what, total=total)

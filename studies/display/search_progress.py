@@ -12,7 +12,8 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from metaheuristics import SearchProgress
 from ocp import Front
-from studies.display.progress import PLAIN_SECONDS, print_line, shown
+from studies.display.progress import PLAIN_SECONDS, shown
+from studies.display.words import millimetres, print_lines
 
 _WIDE = 120
 """Columns of a terminal from which every figure has its name."""
@@ -69,7 +70,7 @@ class _Bars(SearchDisplay):
     def finish(self, front: Front) -> None:
         if front.seed in self._tasks:
             self._bars.remove_task(self._tasks.pop(front.seed))
-        print_line(self._bars.console, _found(front))
+        print_lines(self._bars.console, _found(front))
 
 
 class _Lines(SearchDisplay):
@@ -84,10 +85,10 @@ class _Lines(SearchDisplay):
         due = now - self._last.setdefault(seed, now) >= PLAIN_SECONDS
         if due or progress.generation == progress.generations:
             self._last[seed] = now
-            print_line(self._console, _figures(progress, seed))
+            print_lines(self._console, _figures(progress, seed))
 
     def finish(self, front: Front) -> None:
-        print_line(self._console, _found(front))
+        print_lines(self._console, _found(front))
 
 
 def _found(front: Front) -> str:
@@ -98,7 +99,7 @@ def _found(front: Front) -> str:
 def _figures(progress: SearchProgress, seed: int | None) -> str:
     which = "" if seed is None else f"seed {seed}, "
     share = progress.infeasible / max(progress.evaluations, 1)
-    best = f"residual {progress.residual * 1e3:.3g} mm, energy {progress.energy:.4g} J"
+    best = f"residual {millimetres(progress.residual)}, energy {progress.energy:.4g} J"
     best = "nothing found yet" if isnan(progress.residual) else best
     broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
     return (

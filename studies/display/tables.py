@@ -21,14 +21,14 @@ class Column:
     """A column: its heading (with the unit), how its numbers are written, its name in CSV."""
 
     heading: str
-    show: Callable[[float], str] = "{:.4g}".format
+    form: Callable[[float], str] = "{:.4g}".format
     key: str = ""
 
     def text(self, cell: Cell) -> str:
         """A cell for people; a dash where there is nothing."""
         if cell is None:
             return "-"
-        return self.show(cell) if isinstance(cell, float) else str(cell)
+        return self.form(cell) if isinstance(cell, float) else str(cell)
 
 
 @dataclass(frozen=True)

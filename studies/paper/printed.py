@@ -5,42 +5,30 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
-from metaheuristics.presets import PAPER_BOX
 from models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
 from ocp import PointToPoint
+from studies.methods import NSGA2, VEPSO
+from studies.paper.case import Case
 
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
 
 
-@dataclass(frozen=True)
-class Condition:
-    """A driving condition of the paper: start and target [rad], duration [s]."""
-
-    plant: Plant
-    start: float
-    target: float
-    duration: float
-    label: str
-
-    @property
-    def task(self) -> PointToPoint:
-        """The condition as a task without limits."""
-        return PointToPoint(self.plant, self.target, self.duration, self.start)
-
-    @property
-    def box(self) -> float:
-        """The paper's bound on the coefficients."""
-        return PAPER_BOX[self.plant.name]
+def _condition(plant: Plant, start: float, target: float, duration: float, label: str) -> Case:
+    """A driving condition: start and target [rad], duration [s]; in its plant's box."""
+    return Case(PointToPoint(plant, target, duration, start), label=label)
 
 
-SINGLE_LINK_SIXTH = Condition(SINGLE_LINK, 0.0, pi / 6, 0.8, "0 to pi/6, 0.8 s")
-SINGLE_LINK_HALF_1_0 = Condition(SINGLE_LINK, 0.0, pi / 2, 1.0, "0 to pi/2, 1.0 s")
-SINGLE_LINK_HALF_1_1 = Condition(SINGLE_LINK, 0.0, pi / 2, 1.1, "0 to pi/2, 1.1 s")
-ARM_HALF = Condition(ARM, 0.0, pi / 2, 0.8, "0 to pi/2, 0.8 s")
-ARM_THREE_QUARTERS = Condition(ARM, -pi / 2, pi / 4, 1.0, "-pi/2 to pi/4, 1.0 s")
-ARM_WHOLE = Condition(ARM, -pi / 2, pi / 2, 1.2, "-pi/2 to pi/2, 1.2 s")
+SINGLE_LINK_SIXTH = _condition(SINGLE_LINK, 0.0, pi / 6, 0.8, "0 to pi/6, 0.8 s")
+SINGLE_LINK_HALF_1_0 = _condition(SINGLE_LINK, 0.0, pi / 2, 1.0, "0 to pi/2, 1.0 s")
+SINGLE_LINK_HALF_1_1 = _condition(SINGLE_LINK, 0.0, pi / 2, 1.1, "0 to pi/2, 1.1 s")
+ARM_HALF = _condition(ARM, 0.0, pi / 2, 0.8, "0 to pi/2, 0.8 s")
+ARM_THREE_QUARTERS = _condition(ARM, -pi / 2, pi / 4, 1.0, "-pi/2 to pi/4, 1.0 s")
+ARM_WHOLE = _condition(ARM, -pi / 2, pi / 2, 1.2, "-pi/2 to pi/2, 1.2 s")
 
-COEFFICIENTS: dict[tuple[Condition, int], tuple[float, ...]] = {
+PAPER_SEARCH = {SINGLE_LINK.name: VEPSO, ARM.name: NSGA2}
+"""The paper's search for each plant: sections 3.1 and 3.2."""
+
+COEFFICIENTS: dict[tuple[Case, int], tuple[float, ...]] = {
     (SINGLE_LINK_SIXTH, 2): (3.347e-3, -1.697e-1),
     (SINGLE_LINK_SIXTH, 4): (-1.690e-3, -1.367e-1, -1.951e-2, -1.971e-1),
     (SINGLE_LINK_SIXTH, 6): (-1.889e-3, -1.427e-1, -4.247e-2, -1.187e-1, 4.800e-2, -1.890e-1),
@@ -50,7 +38,7 @@ COEFFICIENTS: dict[tuple[Condition, int], tuple[float, ...]] = {
 }
 """Tables 1 and 4, as printed."""
 
-MENDED: dict[tuple[Condition, int], tuple[float, ...]] = {
+MENDED: dict[tuple[Case, int], tuple[float, ...]] = {
     (ARM_HALF, 6): (-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-2, -2.377e-1),
 }
 """Table 4, N = 6, with the exponent of a_5 mended: only this reproduces Table 5's 0.149 J."""
@@ -64,7 +52,7 @@ class Row:
     ----------
     table : int
         Number of the table.
-    condition : Condition
+    condition : Case
         The driving condition.
     terms : int
         N of eq (6).
@@ -75,7 +63,7 @@ class Row:
     """
 
     table: int
-    condition: Condition
+    condition: Case
     terms: int
     energy: float
     earlier_energy: float | None = None
@@ -95,3 +83,6 @@ ROWS: tuple[Row, ...] = (
     Row(6, ARM_THREE_QUARTERS, 6, 1.43e-1, 1.55e-1),
     Row(6, ARM_WHOLE, 6, 2.00e-1, 2.22e-1),
 )
+
+CONDITIONS: tuple[Case, ...] = tuple(dict.fromkeys(row.condition for row in ROWS))
+"""The six driving conditions of these tables."""

@@ -6,7 +6,8 @@ from math import isclose
 
 from ocp import PointToPoint
 from ocp.task import LIMITS
-from studies.paper.printed import ROWS, Condition
+from studies.paper.case import Case
+from studies.paper.printed import CONDITIONS
 
 _SAME = 1e-9
 """Relative difference below which two numbers of a task are one: 30deg and pi/6."""
@@ -57,10 +58,9 @@ def _words(value: float | None, unit: str) -> str:
     return "none" if value is None else f"{value:.10g} {unit}".strip()
 
 
-def condition_of(task: PointToPoint) -> Condition | None:
+def condition_of(task: PointToPoint) -> Case | None:
     """The condition of the paper that a task is; None where it is none of them."""
-    conditions = dict.fromkeys(row.condition for row in ROWS)
-    return next((c for c in conditions if not task_difference(task, c.task)), None)
+    return next((c for c in CONDITIONS if not task_difference(task, c.task)), None)
 
 
 def title_of(task: PointToPoint) -> str:

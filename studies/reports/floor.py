@@ -1,12 +1,10 @@
-"""A floor on screen and as a picture, with the plan of six terms beside it."""
+"""A floor on the screen, with the plan of six terms beside it."""
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
 from rich.console import Console
 
 from ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
-from studies.reports.motion_figure import Line, four_panels
 from studies.reports.plan import add_figures, add_move, upright_table
 
 TERMS = 6
@@ -21,7 +19,7 @@ def plan_beside(floor: Floor) -> Plan | None:
         return None
 
 
-def show_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
+def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
     """Print a floor: its energy, what is left, how it was found.
 
     Parameters
@@ -62,18 +60,6 @@ def show_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
     )
     table.add_row("time", f"{floor.provenance.seconds:.2f} s")
     console.print(table, highlight=False)
-
-
-def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
-    """The four panels of a floor, over the plan."""
-    lines = [Line(floor, f"floor, {floor.energy:.4g} J", "tab:blue")]
-    if plan is not None:
-        lines.insert(0, Line(plan, f"plan of {TERMS} terms, {plan.energy:.4g} J", "tab:orange"))
-    task = floor.task
-    return four_panels(
-        lines,
-        f"{task.plant.name}, {task.start:.4g} to {task.target:.4g} rad in {task.duration:g} s",
-    )
 
 
 def _unsolved(floor: Floor) -> str:

@@ -9,9 +9,10 @@ from rich.table import Table
 
 from ocp import Motion, Plan, PointToPoint
 from ocp.task import LIMITS
+from studies.display.words import millimetres
 
 
-def show_plan(console: Console, plan: Plan) -> None:
+def print_plan(console: Console, plan: Plan) -> None:
     """Print a plan's coefficients, figures and verification.
 
     Parameters
@@ -33,7 +34,7 @@ def show_plan(console: Console, plan: Plan) -> None:
     table.add_row(
         "verified",
         f"by CVODES: {check.steps} fixed steps differ by {relative:.0e} in energy and "
-        f"{_length(abs(check.residual_difference))} in residual",
+        f"{millimetres(abs(check.residual_difference))} in residual",
     )
     table.add_row("time", f"{plan.provenance.seconds:.2f} s")
     console.print(table, highlight=False)
@@ -64,21 +65,18 @@ def add_move(table: Table, task: PointToPoint, motion: Motion) -> None:
 def add_figures(table: Table, task: PointToPoint, motion: Motion) -> None:
     """Add a motion's residual, peaks and overshoot."""
     table.add_row(
-        "residual F1", f"{_length(motion.residual)} at the tip within {task.residual_window:g} s"
+        "residual F1",
+        f"{millimetres(motion.residual)} at the tip within {task.residual_window:g} s",
     )
     table.add_row("peak torque", f"{motion.peak_torque:.4g} N m")
     table.add_row("peak speed", f"{motion.peak_speed:.4g} rad/s")
     table.add_row("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2")
-    table.add_row("peak deflection", _length(motion.peak_deflection))
+    table.add_row("peak deflection", millimetres(motion.peak_deflection))
     table.add_row("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none")
 
 
 def _angle(value: float) -> str:
     return f"{math.degrees(value):.6g}deg"
-
-
-def _length(value: float) -> str:
-    return f"{value * 1e3:.3g} mm"
 
 
 def _quantity(name: str, value: float) -> str:

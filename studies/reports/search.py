@@ -8,9 +8,10 @@ from rich.console import Console
 
 from metaheuristics.ensemble import STILL, Spread, energies_at, hypervolumes
 from ocp import Front
+from studies.display.words import millimetres, print_lines
 
 
-def show_fronts(console: Console, fronts: Sequence[Front]) -> None:
+def print_fronts(console: Console, fronts: Sequence[Front]) -> None:
     """Print the ends and the knee of every front, and the spread of those that are complete.
 
     Parameters
@@ -21,16 +22,15 @@ def show_fronts(console: Console, fronts: Sequence[Front]) -> None:
         One for every seed.
     """
     for front in fronts:
-        _print(console, _front_lines(front))
+        print_lines(console, *_front_lines(front))
     complete = [front for front in fronts if front.complete]
     if len(complete) > 1:
-        _print(
+        energies = energies_at(complete)
+        print_lines(
             console,
-            [
-                f"hypervolume: {quartiles(hypervolumes(complete), '.4f')}",
-                f"energy at {STILL * 1e3:g} mm: {quartiles(energies_at(complete), '.4g', ' J')}; "
-                f"{reached(energies_at(complete))}",
-            ],
+            f"hypervolume: {quartiles(hypervolumes(complete), '.4f')}",
+            f"energy at {millimetres(STILL)}: {quartiles(energies, '.4g', ' J')}; "
+            f"{reached(energies)}",
         )
 
 
@@ -46,7 +46,7 @@ def quartiles(spread: Spread, form: str, unit: str = "") -> str:
 
 def reached(spread: Spread) -> str:
     """How many of the seeds the quartiles of the energy at `STILL` are of."""
-    return f"{spread.count} of {spread.seeds} seeds reach {STILL * 1e3:g} mm"
+    return f"{spread.count} of {spread.seeds} seeds reach {millimetres(STILL)}"
 
 
 def _front_lines(front: Front) -> list[str]:
@@ -58,11 +58,7 @@ def _front_lines(front: Front) -> list[str]:
     if front.points:
         chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
         lines += [
-            f"  {name:9}{point.energy:.4g} J at {point.residual * 1e3:.3g} mm"
+            f"  {name:9}{point.energy:.4g} J at {millimetres(point.residual)}"
             for name, point in chosen.items()
         ]
     return lines
-
-
-def _print(console: Console, lines: Sequence[str]) -> None:
-    console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)

@@ -12,6 +12,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodF
 
 from metaheuristics.ensemble import STILL, energies_at, energy_at, hypervolumes
 from ocp import Front
+from studies.display.words import millimetres
 from studies.reports.search import reached
 
 _MOST_NAMED = 10
@@ -134,7 +135,7 @@ def _draw_energies(axis: Axes, fronts: Sequence[Front], colours: dict[int | None
             axis.plot(
                 place, 0.02, "x", color=colours[front.seed], transform=axis.get_xaxis_transform()
             )
-    marks = [f"x: never within {STILL * 1e3:g} mm"] * (spread.count < spread.seeds)
+    marks = [f"x: never within {millimetres(STILL)}"] * (spread.count < spread.seeds)
     figures = ""
     if spread.count:
         axis.axhspan(spread.lower, spread.upper, alpha=0.2, color="tab:blue")
@@ -143,7 +144,7 @@ def _draw_energies(axis: Axes, fronts: Sequence[Front], colours: dict[int | None
         figures = f": {spread.median:.4g} J ({spread.lower:.4g} to {spread.upper:.4g})"
     else:
         axis.set_yticks([])
-    axis.set_title(f"energy at {STILL * 1e3:g} mm{figures}\n{reached(spread)}")
+    axis.set_title(f"energy at {millimetres(STILL)}{figures}\n{reached(spread)}")
     axis.set_xlabel(f"seed ({', '.join(marks)})")
     axis.set_ylabel("energy F2 [J]")
     if len(fronts) <= 20:

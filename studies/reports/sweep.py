@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from rich.console import Console
 
 from metaheuristics.ensemble import energy_at
 from ocp import FailedPoint, Front, QuietarmError
 from ocp.sweep import RESIDUAL_LIMIT
 from studies.comparison.measures import LEVELS
+from studies.display.words import millimetres, print_lines
 
 
-def show_sweep(console: Console, front: Front, asked_for: int) -> None:
+def print_sweep(console: Console, front: Front, asked_for: int) -> None:
     """Print a front: how it was found, its ends and knee, energies, what could not be found.
 
     Parameters
@@ -25,19 +24,14 @@ def show_sweep(console: Console, front: Front, asked_for: int) -> None:
         How many points were asked for.
     """
     state = "" if front.complete else " (interrupted: what was found until then)"
-    lines = [
+    print_lines(
+        console,
         f"{front.method}: {len(front.points)} points, {front.evaluations} iterations of the solver "
         f"in {front.seconds:.1f} s{state}",
         *point_lines(front),
         *failure_lines(front, asked_for),
         *gap_lines(front),
-    ]
-    print_lines(console, lines)
-
-
-def print_lines(console: Console, lines: Sequence[str]) -> None:
-    """Print lines as they are."""
-    console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
+    )
 
 
 def point_lines(front: Front) -> list[str]:
@@ -46,11 +40,11 @@ def point_lines(front: Front) -> list[str]:
     if len(front.points) < 3:
         del chosen["knee"]  # it would be an end
     lines = [
-        f"  {name:15}{point.energy:.4g} J at {length(point.residual)}"
+        f"  {name:15}{point.energy:.4g} J at {millimetres(point.residual)}"
         for name, point in chosen.items()
     ]
     for level in LEVELS:
-        energy, name = energy_at(front, level), f"within {length(level)}"
+        energy, name = energy_at(front, level), f"within {millimetres(level)}"
         found = f"{energy:.4g} J" if energy == energy else "none"  # NaN where there is none
         lines.append(f"  {name:15}{found}")
     return lines
@@ -72,8 +66,8 @@ def failure_lines(front: Front, asked_for: int) -> list[str]:
 def gap_lines(front: Front) -> list[str]:
     """The ranges of the residual that no weight reaches, a line each."""
     return [
-        f"no weight reaches residuals from {length(begin)} to {length(end)}: the front bends the "
-        "wrong way there"
+        f"no weight reaches residuals from {millimetres(begin)} to {millimetres(end)}: the front "
+        "bends the wrong way there"
         for begin, end in front.gaps
     ]
 
@@ -83,12 +77,7 @@ def interruption() -> QuietarmError:
     return QuietarmError("interrupted; what was found until then is kept")
 
 
-def length(metres: float) -> str:
-    """A residual in millimetres."""
-    return f"{metres * 1e3:.3g} mm"
-
-
 def _asked(failure: FailedPoint) -> str:
     if RESIDUAL_LIMIT in failure.asked:
-        return f"residual <= {length(failure.asked[RESIDUAL_LIMIT])}"
+        return f"residual <= {millimetres(failure.asked[RESIDUAL_LIMIT])}"
     return ":".join(f"{weight:.3g}" for weight in failure.asked.values()) + " (residual:energy)"

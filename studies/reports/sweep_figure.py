@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ocp import Front, Polish
 from ocp.sweep import RESIDUAL_LIMIT
+from studies.display.words import millimetres
 from studies.reports.search_figure import scale_residuals
 
 _STAIRS = "steps-post"  # between two points the stiller one is the best there is
@@ -39,7 +40,7 @@ def sweep_figure(front: Front) -> Figure:
     if len(front.points) > 2:
         axis.plot(
             knee.residual * 1e3, knee.energy, "o", color="tab:blue", fillstyle="none",
-            label=f"knee: {knee.energy:.4g} J at {knee.residual * 1e3:.3g} mm",
+            label=f"knee: {knee.energy:.4g} J at {millimetres(knee.residual)}",
         )  # fmt: skip
     _draw_failures(axis, front)
     axis.legend(fontsize=8)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ocp import Plan
-from studies.paper.printed import Condition, Row
+from studies.paper.case import Case
+from studies.paper.printed import Row
 from studies.reproduction.recompute import BEYOND_SIX, STUDIED, Reproduction
 
 _AT_REST = 1e-7
@@ -35,7 +36,7 @@ def claims(result: Reproduction) -> list[Claim]:
     Parameters
     ----------
     result : Reproduction
-        What `reproduce` returned.
+        What `recompute_paper` returned.
 
     Returns
     -------
@@ -51,13 +52,12 @@ def claims(result: Reproduction) -> list[Claim]:
     ]
 
 
-def _name(condition: Condition) -> str:
-    return f"{condition.plant.name} {condition.label}"
+def _name(condition: Case) -> str:
+    return f"{condition.task.plant.name} {condition.label}"
 
 
-def _best_printed(result: Reproduction, condition: Condition, terms: int) -> Plan:
-    row = next(r for r in result.rows if r.row.condition == condition and r.row.terms == terms)
-    plan = row.mended or row.printed
+def _best_printed(result: Reproduction, condition: Case, terms: int) -> Plan:
+    plan = result.result(condition, terms).mended_or_printed
     if plan is None:
         raise KeyError((condition, terms))
     return plan

@@ -8,20 +8,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, NullLocator
 
-from studies.reproduction.floor_table import (
-    FREE,
-    IN_BOX,
-    NSGA2,
-    PAPER,
-    SERIES,
-    VEPSO,
-    Multiple,
-    multiples,
-)
-from studies.reproduction.recompute import CONDITIONS, Reproduction
+from studies.methods import NSGA2, VEPSO
+from studies.paper.printed import CONDITIONS
+from studies.reproduction.floor_table import FREE, IN_BOX, PAPER, SERIES, Multiple, multiples
+from studies.reproduction.recompute import Reproduction
 
 _COLOURS = {
-    PAPER: "black", VEPSO: "#009E73", NSGA2: "#CC79A7", IN_BOX: "#0072B2", FREE: "#D55E00"
+    PAPER: "black", VEPSO.label: "#009E73", NSGA2.label: "#CC79A7", IN_BOX: "#0072B2",
+    FREE: "#D55E00",
 }  # fmt: skip  # Okabe and Ito's, told apart by colour-blind people
 _TICKS = (1.02, 1.05, 1.1, 1.2, 1.5, 2, 3, 4, 6, 10)
 _MARGIN = 1.1
@@ -37,7 +31,7 @@ def floor_dots(result: Reproduction) -> Figure:
     Parameters
     ----------
     result : Reproduction
-        What `reproduce` returned.
+        What `recompute_paper` returned.
 
     Returns
     -------
@@ -56,7 +50,7 @@ def floor_dots(result: Reproduction) -> Figure:
             _draw_lane(axis, top + lane, series, [m for m in found if m.series == series])
     middle = (len(SERIES) - 1) / 2
     names = [
-        f"{c.plant.name}\n{c.label}\nfloor {result.floors[c].energy:.4g} J" for c in CONDITIONS
+        f"{c.task.plant.name}\n{c.label}\nfloor {result.floors[c].energy:.4g} J" for c in CONDITIONS
     ]
     axis.set_yticks([place * _BAND + middle for place in range(len(CONDITIONS))], names)
     axis.tick_params(axis="y", length=0)

@@ -9,13 +9,12 @@ from math import isfinite
 from metaheuristics.ensemble import Spread
 from ocp import Floor
 from studies.display.tables import Cell, Column, Table
-from studies.paper.printed import Condition
-from studies.reproduction.recompute import CONDITIONS, TERMS, Reproduction
+from studies.paper.case import Case
+from studies.paper.printed import CONDITIONS
+from studies.reproduction.recompute import SEARCHES, TERMS, Reproduction
 
-PAPER, VEPSO, NSGA2 = "paper", "VEPSO", "NSGA-II"
-IN_BOX, FREE = "gradient, in the box", "gradient, no box"
-SERIES = (PAPER, VEPSO, NSGA2, IN_BOX, FREE)
-_METHODS = {VEPSO: "vepso", NSGA2: "nsga2"}
+PAPER, IN_BOX, FREE = "paper", "gradient, in the box", "gradient, no box"
+SERIES = (PAPER, *(method.label for method in SEARCHES), IN_BOX, FREE)
 _PRINTED_TERMS = (2, 4, 6)
 LEGEND = (
     "Floor: the least energy over all joint motions that start and end at rest, joint and "
@@ -37,14 +36,14 @@ class Multiple:
     upper: float
 
 
-def multiples(result: Reproduction, condition: Condition) -> list[Multiple]:
+def multiples(result: Reproduction, condition: Case) -> list[Multiple]:
     """All energies of a condition as multiples of its floor, by series and then terms.
 
     Parameters
     ----------
     result : Reproduction
-        What `reproduce` returned.
-    condition : Condition
+        What `recompute_paper` returned.
+    condition : Case
         The driving condition.
 
     Returns
@@ -55,11 +54,11 @@ def multiples(result: Reproduction, condition: Condition) -> list[Multiple]:
     floor = result.floors[condition].energy
     rows = {r.row.terms: r for r in result.rows if r.row.condition == condition}
     found = [_exact(PAPER, terms, r.row.energy / floor) for terms, r in sorted(rows.items())]
-    for series, method in _METHODS.items():
+    for method in SEARCHES:
         for terms, row in sorted(rows.items()):
             spread = row.searched_by(method)
             if isfinite(spread.median):
-                found.append(_of_spread(series, terms, spread, floor))
+                found.append(_of_spread(method.label, terms, spread, floor))
     for series, boxed in ((IN_BOX, True), (FREE, False)):
         for terms in TERMS:
             energy = result.more_terms[condition, terms, boxed].energy
@@ -94,7 +93,7 @@ def floor_table(result: Reproduction, plant: str | None = None) -> Table:
     for series, terms in places:
         heading = f"{series}, N = {terms}"
         columns.append(Column(heading, "{:.3f}".format, _key(series, terms)))
-    rows = [_row(result, c, places) for c in CONDITIONS if plant in (None, c.plant.name)]
+    rows = [_row(result, c, places) for c in CONDITIONS if plant in (None, c.task.plant.name)]
     title = "Energies as multiples of the floor, at rest on arrival"
     if plant is not None:
         title, rows = f"{title}, {plant}", [[None, *row[1:]] for row in rows]
@@ -106,13 +105,11 @@ def _key(series: str, terms: int) -> str:
     return f"{name}_{terms}_terms_over_floor"
 
 
-def _row(
-    result: Reproduction, condition: Condition, places: Sequence[tuple[str, int]]
-) -> list[Cell]:
+def _row(result: Reproduction, condition: Case, places: Sequence[tuple[str, int]]) -> list[Cell]:
     floor = result.floors[condition]
     values = {(m.series, m.terms): m.median for m in multiples(result, condition)}
     head: list[Cell] = [
-        condition.plant.name, condition.label, floor.energy, floor.left, _agreement(floor)
+        condition.task.plant.name, condition.label, floor.energy, floor.left, _agreement(floor)
     ]  # fmt: skip
     return [*head, *(values.get(place) for place in places)]
 
@@ -123,7 +120,7 @@ def _agreement(floor: Floor) -> str:
 
 def floor_tables(result: Reproduction) -> list[Table]:
     """The same, a table a plant, narrow enough for a terminal."""
-    plants = dict.fromkeys(condition.plant.name for condition in CONDITIONS)
+    plants = dict.fromkeys(condition.task.plant.name for condition in CONDITIONS)
     return [floor_table(result, plant) for plant in plants]
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
-from metaheuristics import search
 from metaheuristics.ensemble import Spread, energies_at
 from ocp import (
     CycloidPolynomial,
@@ -17,26 +17,30 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
+from studies.methods import Method
+from studies.paper.case import Case
 from studies.paper.printed import (
     ARM_HALF,
     COEFFICIENTS,
+    CONDITIONS,
     MENDED,
+    PAPER_SEARCH,
     ROWS,
     SINGLE_LINK_SIXTH,
-    Condition,
     Row,
 )
+from studies.runs.pieces import Begin, Done, Piece, run_pieces, searched
 
 BEYOND_SIX = (8, 10)
 """Numbers of terms that check the paper's 'no gain above six'."""
-PAPER_METHOD = {SINGLE_LINK_SIXTH.plant.name: "vepso", ARM_HALF.plant.name: "nsga2"}
-"""The paper's search for each plant: sections 3.1 and 3.2."""
-METHODS = ("vepso", "nsga2")
+SEARCHES = tuple(PAPER_SEARCH.values())
+"""The paper's two searches, in its order."""
 TERMS = (2, 4, 6, *BEYOND_SIX)
 """Numbers of terms that the gradient solves every condition for."""
-CONDITIONS = tuple(dict.fromkeys(row.condition for row in ROWS))
 STUDIED = (SINGLE_LINK_SIXTH, ARM_HALF)
 """The conditions whose number of terms the paper varies: its Figs 2 and 5."""
+SOLVES = tuple(product(CONDITIONS, TERMS, (True, False)))
+"""What the gradient solves: condition, number of terms, whether in the paper's box."""
 
 
 @dataclass(frozen=True)
@@ -53,11 +57,8 @@ class RowResult:
         The same with a misprint mended, where there is one.
     in_box, free : Plan
         The gradient answer at rest on arrival, in the paper's box and without one.
-    fronts : tuple of Front
-        The paper's own search with its settings, a front a seed: VEPSO for the single link,
-        NSGA-II for the arm.
-    other_fronts : tuple of Front
-        The same by the other one of the two.
+    fronts : dict of Method to tuple of Front
+        What VEPSO and NSGA-II find with the paper's settings, one front for each seed.
     residual_level : float
         Residual [m] of the paper's coefficients, or where it prints none, of its N = 6 row for the
         same plant (with the misprint mended).
@@ -68,29 +69,32 @@ class RowResult:
     mended: Plan | None
     in_box: Plan
     free: Plan
-    fronts: tuple[Front, ...]
-    other_fronts: tuple[Front, ...]
+    fronts: Mapping[Method, tuple[Front, ...]]
     residual_level: float
 
     @property
-    def searched(self) -> Spread:
-        """Quartiles over the seeds of the least energy [J] at the residual level."""
-        return energies_at(self.fronts, self.residual_level)
+    def mended_or_printed(self) -> Plan | None:
+        """The paper's coefficients, with a misprint mended; None where it prints none."""
+        return self.mended or self.printed
 
-    def searched_by(self, method: str) -> Spread:
-        """The same for a method by its name."""
-        own = method == PAPER_METHOD[self.row.condition.plant.name]
-        return energies_at(self.fronts if own else self.other_fronts, self.residual_level)
+    @property
+    def own_search(self) -> Method:
+        """The paper's own search for this plant."""
+        return PAPER_SEARCH[self.row.condition.task.plant.name]
+
+    def searched_by(self, method: Method) -> Spread:
+        """Quartiles over the seeds of the least energy [J] at the residual level."""
+        return energies_at(self.fronts[method], self.residual_level)
 
     @property
     def search_seconds(self) -> float:
-        """Median time of a search [s]."""
-        return Spread.of([front.seconds for front in self.fronts]).median
+        """Median time of the paper's own search [s]."""
+        return Spread.of([front.seconds for front in self.fronts[self.own_search]]).median
 
 
 @dataclass(frozen=True)
 class Reproduction:
-    """All that `reproduce` computes.
+    """All that `recompute_paper` computes.
 
     Attributes
     ----------
@@ -105,42 +109,57 @@ class Reproduction:
     """
 
     rows: tuple[RowResult, ...]
-    cycloids: dict[Condition, Plan]
-    more_terms: dict[tuple[Condition, int, bool], Plan]
-    floors: dict[Condition, Floor]
+    cycloids: dict[Case, Plan]
+    more_terms: dict[tuple[Case, int, bool], Plan]
+    floors: dict[Case, Floor]
 
-    def row(self, table: int, condition: Condition, terms: int) -> RowResult:
-        """The result for one row of a table."""
+    def result(self, condition: Case, terms: int) -> RowResult:
+        """The result of the first row for a condition and number of terms; KeyError if none."""
         for result in self.rows:
-            row = result.row
-            if (row.table, row.condition, row.terms) == (table, condition, terms):
+            if (result.row.condition, result.row.terms) == (condition, terms):
                 return result
-        raise KeyError((table, condition, terms))
+        raise KeyError((condition, terms))
 
 
-def solve_keys() -> list[tuple[Condition, int, bool]]:
-    """What the gradient has to solve, each once: (condition, terms, whether in the box)."""
-    return [(c, terms, boxed) for c in CONDITIONS for terms in TERMS for boxed in (True, False)]
+def pieces_of_paper(seeds: int) -> list[Piece]:
+    """Every solve, floor and search, each once; the keys are those of `Reproduction`.
+
+    Parameters
+    ----------
+    seeds : int
+        Seeds of the metaheuristics.
+
+    Returns
+    -------
+    list of Piece
+        Solves under (condition, terms, whether in the box), floors under their condition, and
+        searches under (method, condition, terms, seed).
+    """
+    work: list[Piece] = []
+    for condition, terms, boxed in SOLVES:
+        name = f"gradient: {_label(condition, terms)}{', in the box' * boxed}"
+        solve = partial(_solved, condition, terms, boxed)
+        work.append(Piece((condition, terms, boxed), name, solve))
+    for condition in CONDITIONS:
+        name = f"floor: {condition.task.plant.name}, {condition.label}"
+        work.append(Piece(condition, name, partial(_floor, condition)))
+    for method in SEARCHES:
+        for condition, terms in dict.fromkeys((row.condition, row.terms) for row in ROWS):
+            for seed in range(seeds):
+                name = f"{method.name}: {_label(condition, terms)}, seed {seed}"
+                search = partial(_searched, condition, method, terms, seed)
+                work.append(Piece((method, condition, terms, seed), name, search))
+    return work
 
 
-def search_keys() -> list[tuple[Condition, int]]:
-    """What the metaheuristics have to search, each once: (condition, terms)."""
-    return list(dict.fromkeys((row.condition, row.terms) for row in ROWS))
-
-
-def amount_of_work(seeds: int) -> int:
-    """How many solves, floors and searches `reproduce` begins."""
-    return len(solve_keys()) + len(CONDITIONS) + seeds * len(METHODS) * len(search_keys())
-
-
-def reproduce(begin: Callable[[str], None] = lambda name: None, seeds: int = 1) -> Reproduction:
+def recompute_paper(begin: Begin = lambda name: None, seeds: int = 1) -> Reproduction:
     """Recompute the paper's tables with gradient, metaheuristics and floor beside them.
 
     Parameters
     ----------
     begin : callable, optional
-        Called with the name of every solve, floor and search when it begins; `amount_of_work` says
-        how many there are.
+        Called with the name of every solve, floor and search when it begins; `pieces_of_paper`
+        lists them.
     seeds : int
         Seeds of the metaheuristics.
 
@@ -158,84 +177,61 @@ def reproduce(begin: Callable[[str], None] = lambda name: None, seeds: int = 1) 
     """
     if seeds < 1:
         raise ValueError(f"seeds is {seeds}; give 1 or more")
-    solved = _solve(begin)
-    floors = _floors(begin)
-    fronts = _search(begin, seeds)
-    rows: list[RowResult] = []
-    for row in ROWS:
-        key = (row.condition, row.terms)
-        own = PAPER_METHOD[row.condition.plant.name]
-        (other,) = (method for method in METHODS if method != own)
-        rows.append(
-            RowResult(
-                row,
-                printed=_evaluated(COEFFICIENTS, *key),
-                mended=_evaluated(MENDED, *key),
-                in_box=solved[*key, True],
-                free=solved[*key, False],
-                fronts=fronts[own, *key],
-                other_fronts=fronts[other, *key],
-                residual_level=_residual_level(*key),
-            )
-        )
+    done = run_pieces(pieces_of_paper(seeds), begin)
     return Reproduction(
-        tuple(rows),
+        tuple(_row_result(row, done, seeds) for row in ROWS),
         cycloids={c: evaluate_coefficients(c.task, []) for c in STUDIED},
-        more_terms=solved,
-        floors=floors,
+        more_terms={solve: done.answers[solve] for solve in SOLVES},
+        floors={c: done.answers[c] for c in CONDITIONS},
     )
 
 
-def _solve(begin: Callable[[str], None]) -> dict[tuple[Condition, int, bool], Plan]:
-    solved: dict[tuple[Condition, int, bool], Plan] = {}
-    for condition, terms, boxed in solve_keys():
-        begin(f"gradient: {_label(condition, terms)}{', in the box' * boxed}")
-        bound = condition.box if boxed else None
-        solved[condition, terms, boxed] = plan_move(
-            condition.task, CycloidPolynomial(terms), bound=bound
-        )
-    return solved
+def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
+    key = (row.condition, row.terms)
+    return RowResult(
+        row,
+        printed=_evaluated(COEFFICIENTS, *key),
+        mended=_evaluated(MENDED, *key),
+        in_box=done.answers[*key, True],
+        free=done.answers[*key, False],
+        fronts={
+            method: tuple(done.answers[method, *key, seed] for seed in range(seeds))
+            for method in SEARCHES
+        },
+        residual_level=_residual_level(*key),
+    )
 
 
-def _floors(begin: Callable[[str], None]) -> dict[Condition, Floor]:
-    floors: dict[Condition, Floor] = {}
-    for condition in CONDITIONS:
-        begin(f"floor: {condition.plant.name}, {condition.label}")
-        floors[condition] = energy_floor(condition.task)
-    return floors
+def _solved(condition: Case, terms: int, boxed: bool, done: Done) -> Plan:
+    bound = condition.bound if boxed else None
+    return plan_move(condition.task, CycloidPolynomial(terms), bound=bound)
 
 
-def _search(
-    begin: Callable[[str], None], seeds: int
-) -> dict[tuple[str, Condition, int], tuple[Front, ...]]:
-    found: dict[tuple[str, Condition, int], tuple[Front, ...]] = {}
-    for method, (condition, terms) in product(METHODS, search_keys()):
-        fronts: list[Front] = []
-        for seed in range(seeds):
-            begin(f"{method}: {_label(condition, terms)}, seed {seed}")
-            profile = CycloidPolynomial(terms)
-            front = search(condition.task, method, profile=profile, bound=condition.box, seed=seed)
-            if not front.complete:
-                raise KeyboardInterrupt
-            fronts.append(front)
-        found[method, condition, terms] = tuple(fronts)
-    return found
+def _floor(condition: Case, done: Done) -> Floor:
+    return energy_floor(condition.task)
 
 
-def _label(condition: Condition, terms: int) -> str:
-    return f"{condition.plant.name}, {condition.label}, N = {terms}"
+def _searched(condition: Case, method: Method, terms: int, seed: int, done: Done) -> Front:
+    (front,) = searched(condition, method, terms, seed=seed)
+    return front
+
+
+def _label(condition: Case, terms: int) -> str:
+    return f"{condition.task.plant.name}, {condition.label}, N = {terms}"
 
 
 def _evaluated(
-    table: dict[tuple[Condition, int], tuple[float, ...]], condition: Condition, terms: int
+    table: dict[tuple[Case, int], tuple[float, ...]], condition: Case, terms: int
 ) -> Plan | None:
     coefficients = table.get((condition, terms))
     return None if coefficients is None else evaluate_coefficients(condition.task, coefficients)
 
 
-def _residual_level(condition: Condition, terms: int) -> float:
+def _residual_level(condition: Case, terms: int) -> float:
     key = (condition, terms)
     if key not in COEFFICIENTS:
-        key = next(k for k in COEFFICIENTS if k[0].plant == condition.plant and k[1] == terms)
+        key = next(
+            k for k in COEFFICIENTS if k[0].task.plant == condition.task.plant and k[1] == terms
+        )
     coefficients = MENDED.get(key, COEFFICIENTS[key])
     return evaluate_coefficients(key[0].task, coefficients).residual

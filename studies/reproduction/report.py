@@ -14,10 +14,10 @@ from rich.text import Text
 
 from ocp import Plan
 from ocp.files import write_whole
-from studies.comparison.groups import METHOD_NAMES
 from studies.display.pictures import save_figure
 from studies.display.tables import Cell, Column, Table
-from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH, Condition
+from studies.paper.case import Case
+from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
 from studies.reports.motion_figure import Line, four_panels
 from studies.reproduction.claims import Claim
 from studies.reproduction.floor_dots import floor_dots
@@ -68,7 +68,7 @@ def tables(result: Reproduction) -> list[Table]:
     found: list[Table] = []
     for number, title in _TITLES.items():
         chosen = [row for row in result.rows if row.row.table == number]
-        method = METHOD_NAMES[chosen[0].fronts[0].method]
+        method = chosen[0].own_search.label
         columns = [
             replace(c, heading=c.heading.format(method=method), key=c.key.format(method=method))
             for c in _COLUMNS
@@ -80,8 +80,8 @@ def tables(result: Reproduction) -> list[Table]:
 def _with_mended(result: RowResult) -> list[list[Cell]]:
     row = result.row
     gradient = [*_figures(result.in_box, timed=True), *_figures(result.free, timed=True)]
-    spread = result.searched
-    several = len(result.fronts) > 1
+    spread = result.searched_by(result.own_search)
+    several = len(result.fronts[result.own_search]) > 1
     searched: list[Cell] = [
         spread.median if isfinite(spread.median) else "none",
         f"{spread.lower:.4f}-{spread.upper:.4f}" if several else None,
@@ -104,12 +104,12 @@ def _figures(plan: Plan | None, timed: bool = False) -> list[Cell]:
     return [*figures, plan.provenance.seconds] if timed else figures
 
 
-def redrawn(result: Reproduction, condition: Condition, title: str) -> Figure:
+def redrawn(result: Reproduction, condition: Case, title: str) -> Figure:
     """Fig. 2 or Fig. 5 from the printed coefficients, with the gradient's N = 6 over it."""
     lines = [Line(result.cycloids[condition], "cycloid", "black")]
     for terms, colour in _COLOURS.items():
-        row = next(r for r in result.rows if (r.row.condition, r.row.terms) == (condition, terms))
-        plan = row.mended or row.printed
+        row = result.result(condition, terms)
+        plan = row.mended_or_printed
         if plan is not None:
             mended = ", a_5 mended" if row.mended else ""
             lines.append(Line(plan, f"paper, N = {terms}{mended}", colour))
@@ -118,7 +118,7 @@ def redrawn(result: Reproduction, condition: Condition, title: str) -> Figure:
     return four_panels(lines, title)
 
 
-def show(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> None:
+def print_reproduction(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> None:
     """Print the tables and the claims."""
     for table in tables(result):
         console.print(table.for_screen())
@@ -135,7 +135,7 @@ def show(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> N
             console.print(Padding(Text(line), (0, 0, 0, 11)))
 
 
-def write(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[Path]:
+def write_reproduction(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[Path]:
     """Write report.md, a CSV for every table, and the pictures; return what was written."""
     written: list[Path] = []
 
@@ -145,7 +145,7 @@ def write(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list
 
     for name, condition in (("figure_2.png", SINGLE_LINK_SIXTH), ("figure_5.png", ARM_HALF)):
         number = name.removesuffix(".png").replace("figure_", "Fig. ")
-        title = f"{number} redrawn: {condition.plant.name}, {condition.label}"
+        title = f"{number} redrawn: {condition.task.plant.name}, {condition.label}"
         save_figure(redrawn(result, condition, title), folder / name)
         written.append(folder / name)
     paper_tables = tables(result)

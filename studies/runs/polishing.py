@@ -14,7 +14,8 @@ from ocp.checks import whole
 from ocp.files import write_whole
 from studies.display.progress import count
 from studies.display.tables import Column, Table
-from studies.reports.sweep import failure_lines, interruption, length, print_lines
+from studies.display.words import millimetres, print_lines
+from studies.reports.sweep import failure_lines, interruption
 from studies.runs.files import refuse_same_file, warn_of_workers
 
 _ROWS = 10
@@ -70,7 +71,7 @@ def run_polish(
     gains = [gain for gain in polish.gains if gain.tried]
     if not gains:
         raise KeyboardInterrupt
-    _show(Console(), whole_front, front, polish.front, gains)
+    _print_gains(Console(), whole_front, front, polish.front, gains)
     if output is not None:
         polish.front.save(output)
         yield output
@@ -124,7 +125,7 @@ def gains_table(gains: Sequence[Gain]) -> Table:
     return Table("what each point gained", columns, rows)
 
 
-def _show(
+def _print_gains(
     console: Console, whole_front: Front, front: Front, polished: Front, gains: Sequence[Gain]
 ) -> None:
     number, of = len(front.points), len(whole_front.points)
@@ -142,11 +143,11 @@ def _show(
     if beaten:
         some = "1 point is" if beaten == 1 else f"{beaten} points are"
         lines.append(f"{some} beaten by another of these now, and left out")
-    print_lines(console, [*lines, *failure_lines(polished, number)])
+    print_lines(console, *lines, *failure_lines(polished, number))
 
 
 def _row(gain: Gain) -> str:
     return (
-        f"{length(gain.residual):>12}{f'{gain.before:.4g} J':>12}{f'{gain.after:.4g} J':>12}"
+        f"{millimetres(gain.residual):>12}{f'{gain.before:.4g} J':>12}{f'{gain.after:.4g} J':>12}"
         f"{f'{gain.share:.2%}':>9}"
     )

@@ -23,16 +23,15 @@ from ocp import (
     plan_move,
 )
 from ocp.files import check_writable
-from studies.display.pictures import save_figure
 from studies.display.search_progress import search_display
-from studies.reports.search import show_fronts
-from studies.reports.search_figure import front_figure
+from studies.methods import Method
+from studies.reports.search import print_fronts
 from studies.runs.files import refuse_same_file, warn_of_workers
 
 
 def plan_by_search(
     task: PointToPoint,
-    method: str,
+    method: Method,
     profile: CycloidPolynomial,
     bound: float | None,
     residual_limit: float,
@@ -46,8 +45,8 @@ def plan_by_search(
     ----------
     task : PointToPoint
         The move.
-    method : str
-        ``"nsga2"`` or ``"vepso"``, with the paper's settings.
+    method : Method
+        A metaheuristic, run with the paper's settings.
     profile : CycloidPolynomial
         How the joint moves.
     bound : float or None
@@ -68,7 +67,7 @@ def plan_by_search(
     """
     SolveSettings(residual_limit=residual_limit, seed=seed)  # refused before the search, not after
     with search_display(Console(stderr=True), quiet=quiet) as report:
-        front = search(task, method, profile=profile, bound=bound, seed=seed, report=report)
+        front = search(task, method.name, profile=profile, bound=bound, seed=seed, report=report)
     if not front.complete:
         raise QuietarmError(
             "interrupted; a plan is of a whole search, and nothing was written; `quietarm front` "
@@ -77,7 +76,7 @@ def plan_by_search(
     try:
         point = front.cheapest(residual_limit or STILL)
     except ValueError as error:
-        raise SolverFailedError(f"{method} found no such plan: {error}") from None
+        raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
     settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or STILL}
     if polish:
         polished = plan_move(
@@ -91,17 +90,18 @@ def plan_by_search(
         )
         provenance = replace(
             polished.provenance,
-            method=f"{method}, polished by ipopt",
+            method=f"{method.name}, polished by ipopt",
             settings={**settings, **polished.provenance.settings},
             seconds=front.seconds + polished.provenance.seconds,
         )
         return replace(polished, provenance=provenance)
-    found = evaluate_coefficients(task, point.coefficients, method=method, settings=settings)
+    found = evaluate_coefficients(task, point.coefficients, method=method.name, settings=settings)
     return replace(found, provenance=replace(found.provenance, seconds=front.seconds))
 
 
 def run_front(
     task: PointToPoint,
+    method: Method,
     options: dict[str, Any],
     output: Path | None,
     figure: Path | None,
@@ -113,6 +113,8 @@ def run_front(
     ----------
     task : PointToPoint
         The move.
+    method : Method
+        A metaheuristic.
     options : dict
         The settings of `search`, with ``terms`` for its profile, ``runs`` and ``workers``.
     output : Path or None
@@ -139,20 +141,23 @@ def run_front(
     targets = _targets(output, seeds_of(options["seed"], runs))
     _refuse_same_files(targets, options, figure)
     errors = Console(stderr=True)
-    found, lost, troubles = _fronts(errors, task, {**options, "profile": profile}, quiet)
+    found, lost, troubles = _fronts(errors, task, method, {**options, "profile": profile}, quiet)
     fronts = [front for front in found if front.complete or front.points]
     stopped = "" if lost else _interruption(fronts, runs)
     if not any(front.points for front in fronts):
         if stopped:
             raise KeyboardInterrupt
-        raise lost or SolverFailedError(f"{options['method']}: {fronts[0].why_empty()}")
-    show_fronts(Console(), fronts)
+        raise lost or SolverFailedError(f"{method.name}: {fronts[0].why_empty()}")
+    print_fronts(Console(), fronts)
     for front in fronts if targets else ():
         front.save(targets[front.seed or 0])
         yield targets[front.seed or 0]
     if figure is not None:
+        from studies.display.pictures import save_figure
+        from studies.reports.search_figure import front_figure
+
         seeds = f"{len(fronts)} seed{'s' * (len(fronts) > 1)}"
-        title = f"{options['method']}, {task.plant.name}, {seeds}"
+        title = f"{method.name}, {task.plant.name}, {seeds}"
         save_figure(front_figure(fronts, title), figure)
         yield figure
     if lost or stopped or troubles:
@@ -160,7 +165,7 @@ def run_front(
 
 
 def _fronts(
-    errors: Console, task: PointToPoint, options: Mapping[str, Any], quiet: bool
+    errors: Console, task: PointToPoint, method: Method, options: Mapping[str, Any], quiet: bool
 ) -> tuple[list[Front], LostSeedsError | None, list[str]]:
     """What every seed found, shown as it goes; the error of those whose process died; warnings."""
     runs, troubles = options["runs"], list[str]()
@@ -169,7 +174,8 @@ def _fronts(
         several = {"report": display, "done": display.finish}
         one = {"report": lambda progress, seed: display(progress), "warn": troubles.append}
         try:
-            return search_many(task, **(several if runs > 1 else one), **options), None, troubles
+            how = several if runs > 1 else one
+            return search_many(task, method.name, **how, **options), None, troubles
         except LostSeedsError as error:
             return error.fronts, error, troubles
 

@@ -13,18 +13,16 @@ from ocp import (
     Front,
     PointToPoint,
     SolverFailedError,
-    epsilon_front,
-    weighted_front,
 )
 from studies.display.progress import count
-from studies.reports.sweep import failure_lines, interruption, show_sweep
+from studies.methods import Method
+from studies.reports.sweep import failure_lines, interruption, print_sweep
 from studies.runs.files import refuse_same_file, warn_of_workers
-
-METHODS = {"epsilon": epsilon_front, "weighted": weighted_front}
 
 
 def run_sweep(
     task: PointToPoint,
+    method: Method,
     options: dict[str, Any],
     output: Path | None,
     figure: Path | None,
@@ -36,8 +34,10 @@ def run_sweep(
     ----------
     task : PointToPoint
         The move.
+    method : Method
+        A method of the gradient.
     options : dict
-        ``method`` and its settings, with ``terms`` for the profile.
+        Its settings, with ``terms`` for the profile.
     output : Path or None
         File for the front.
     figure : Path or None
@@ -58,11 +58,11 @@ def run_sweep(
     refuse_same_file([("--output", output), ("--figure", figure)])
     weights = options.get("weights", ())
     asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
-    front = _swept(task, dict(options), quiet)
+    front = _swept(task, method, dict(options), quiet)
     if not front.points:
         reasons = (line.strip() for line in failure_lines(front, asked_for)[1:])
         raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
-    show_sweep(Console(), front, asked_for)
+    print_sweep(Console(), front, asked_for)
     if output is not None:
         front.save(output)
         yield output
@@ -76,8 +76,8 @@ def run_sweep(
         raise interruption()
 
 
-def _swept(task: PointToPoint, options: dict[str, Any], quiet: bool) -> Front:
-    method, errors = options.pop("method"), Console(stderr=True)
+def _swept(task: PointToPoint, method: Method, options: dict[str, Any], quiet: bool) -> Front:
+    errors = Console(stderr=True)
     options["profile"] = CycloidPolynomial(options.pop("terms"))
     weights = options.pop("weights", ())
     if weights:
@@ -85,4 +85,4 @@ def _swept(task: PointToPoint, options: dict[str, Any], quiet: bool) -> Front:
     warn_of_workers(errors, options.get("workers", 1), options["points"] - 2)  # less the ends
     total = len(weights) or options["points"]
     with count(total, "weights" if weights else "points", errors, quiet=quiet) as report:
-        return METHODS[method](task, report=report, **options)
+        return method.sweep(task, report=report, **options)

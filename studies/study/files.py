@@ -7,11 +7,11 @@ from pathlib import Path
 
 from ocp.files import check_writable, write_whole
 from studies.paper.tasks import title_of
-from studies.study.page import report
+from studies.study.page import study_page
 from studies.study.work import Study
 
 
-def write(study: Study, output: Path, folder: Path | None = None) -> list[Path]:
+def write_study(study: Study, output: Path, folder: Path | None = None) -> list[Path]:
     """Write the page, and every front to a folder; return what was written.
 
     Parameters
@@ -33,7 +33,7 @@ def write(study: Study, output: Path, folder: Path | None = None) -> list[Path]:
     ValueError
         When a file cannot be written.
     """
-    content = report(study)
+    content = study_page(study)
     written = [check_writable(output)]
     write_whole(output, content)
     if folder is not None:

@@ -7,13 +7,14 @@ from math import isfinite
 
 import numpy as np
 
-from studies.comparison.groups import method_name
 from studies.comparison.measures import Comparison, Group
 from studies.comparison.staircase import within
-from studies.comparison.tables import millimetres
+from studies.display.words import millimetres
+from studies.methods import WEIGHTED, Kind, Method, methods_of
 from studies.paper.tasks import title_of
-from studies.study.work import SEARCHES, CaseStudy, Study
+from studies.study.work import CaseStudy, Study
 
+SEARCHES = methods_of(Kind.METAHEURISTIC)
 STILL_LEVEL = 1
 """Which of the comparison's residual levels the summary speaks of."""
 _ALIKE = 1e-4
@@ -22,13 +23,13 @@ _REST = 1e-6
 """A residual within this [m] counts as rest."""
 
 
-def group_of(comparison: Comparison, method: str) -> Group | None:
+def group_of(comparison: Comparison, method: Method) -> Group | None:
     """The group of a method; None where it found nothing."""
-    return next((g for g in comparison.groups if g.runs[0].front.method == method), None)
+    return next((group for group in comparison.groups if group.method == method), None)
 
 
 def gap(
-    comparison: Comparison, method: str, level: int = STILL_LEVEL, name: str = "gaps_between"
+    comparison: Comparison, method: Method, level: int = STILL_LEVEL, name: str = "gaps_between"
 ) -> float:
     """Median share by which a method is above the best at a level; NaN where it is not there."""
     group = group_of(comparison, method)
@@ -72,8 +73,8 @@ def _best(comparison: Comparison) -> str:
     )
 
 
-def _search(found: CaseStudy, method: str) -> str:
-    comparison, name = found.comparison, method_name(method)
+def _search(found: CaseStudy, method: Method) -> str:
+    comparison = found.comparison
     group = group_of(comparison, method)
     if group is None:
         return ""
@@ -86,13 +87,13 @@ def _search(found: CaseStudy, method: str) -> str:
         else:
             words.append(f"{millimetres(level)} not reached")
     return (
-        f"{name} needs this much more energy than the best, motions between its points counted: "
+        f"With the motions between its points, {method.label} needs more energy than the best: "
         f"{', '.join(words)}."
     )
 
 
 def _weighted(found: CaseStudy) -> str:
-    group = group_of(found.comparison, "weighted")
+    group = group_of(found.comparison, WEIGHTED)
     if group is None:
         return ""
     gaps = group.runs[0].front.gaps
@@ -102,15 +103,15 @@ def _weighted(found: CaseStudy) -> str:
     return f"No weight of a weighted sum reaches the front between {_listed(holes)}."
 
 
-def _polish(found: CaseStudy, method: str) -> str:
-    polish = found.polishes.get(method)
+def _polish(found: CaseStudy, method: Method) -> str:
+    polish = found.polishes.get(method.name)
     if polish is None:
         return ""
     shares = [gain.share for gain in polish.gains]
     better = sum(share > _ALIKE for share in shares)
     return (
         f"Polished by the gradient, each at its own residual, {better} of the {len(shares)} points "
-        f"of {method_name(method)}'s first front save energy: the median of all "
+        f"of {method.label}'s first front save energy: the median of all "
         f"{percent(float(np.median(shares)))}, the most {percent(max(shares))}."
     )
 
@@ -176,18 +177,18 @@ def _last(item: tuple[str, int]) -> int:
     return -item[1]
 
 
-def _searches(study: Study, method: str) -> str:
+def _searches(study: Study, method: Method) -> str:
     gaps = [gap(found.comparison, method) for found in study.cases]
     finite = [share for share in gaps if isfinite(share)]
     level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
     if not finite:
-        return f"{method_name(method)} never comes within {level}." if study.cases else ""
+        return f"{method.label} never comes within {level}." if study.cases else ""
     worst = study.cases[int(np.nanargmax(gaps))]
     where = f", most for {title_of(worst.case.task)}" if len(finite) > 1 else ""
     found = [gap(case.comparison, method, name="gaps") for case in study.cases]
     alone = percents([share for share in found if isfinite(share)])
     return (
-        f"{method_name(method)} takes {percents(finite)} more energy than the best at {level}"
+        f"{method.label} takes {percents(finite)} more energy than the best at {level}"
         f"{where}; {alone} with the points of its front alone, no motions between them (median of "
         f"{study.settings.runs} seeds)."
     )
@@ -197,19 +198,19 @@ def _polishes(study: Study) -> str:
     words: list[str] = []
     for method in SEARCHES:
         medians = [
-            float(np.median([gain.share for gain in found.polishes[method].gains]))
+            float(np.median([gain.share for gain in found.polishes[method.name].gains]))
             for found in study.cases
-            if method in found.polishes
+            if method.name in found.polishes
         ]
         if medians:
-            words.append(f"{percents(medians)} of that of {method_name(method)}'s")
+            words.append(f"{percents(medians)} of that of {method.label}'s")
     if not words:
         return ""
     return f"Polished by the gradient, the median point saves energy: {_listed(words)}."
 
 
 def _weights(study: Study) -> str:
-    groups = [group_of(found.comparison, "weighted") for found in study.cases]
+    groups = [group_of(found.comparison, WEIGHTED) for found in study.cases]
     holes = [len(group.runs[0].front.gaps) > 0 for group in groups if group is not None]
     if not holes:
         return ""
@@ -232,8 +233,9 @@ def _floors(study: Study) -> str:
 def _times(study: Study) -> str:
     times: dict[str, list[float]] = {}
     for found in study.cases:
-        for run in found.comparison.runs:
-            if "polished" not in run.front.method:
-                times.setdefault(method_name(run.front.method), []).append(run.front.seconds)
+        for group in found.comparison.groups:
+            if not group.method.polished:
+                seconds = (run.front.seconds for run in group.runs)
+                times.setdefault(group.method.label, []).extend(seconds)
     words = ", ".join(f"{name} {np.median(values):.2g} s" for name, values in times.items())
     return f"A front takes, median: {words}."

@@ -9,10 +9,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from studies.comparison.figure import BANDS, PANELS, looks, panel_figure
-from studies.comparison.groups import method_name
-from studies.comparison.tables import how_to_read, millimetres, tables, units
+from studies.comparison.tables import how_to_read, tables, units
 from studies.display.html_page import Markup, bullets, element, joined, page, picture, table_element
 from studies.display.tables import Cell, Column, Table
+from studies.display.words import millimetres
+from studies.methods import Method
 from studies.paper.tasks import title_of
 from studies.study.findings import STILL_LEVEL, at_rest, case_findings, findings, gap
 from studies.study.work import CaseStudy, Study
@@ -38,7 +39,7 @@ _CAPTIONS = {
 }
 
 
-def report(study: Study) -> str:
+def study_page(study: Study) -> str:
     """The study as a page that stands alone.
 
     Parameters
@@ -135,7 +136,7 @@ def overview_table(study: Study) -> Table:
     rows: list[list[Cell]] = []
     for method in _methods(study):
         shares = [100 * gap(found.comparison, method) for found in study.cases]
-        rows.append([method_name(method), *(s if isfinite(s) else None for s in shares)])
+        rows.append([method.label, *(s if isfinite(s) else None for s in shares)])
     best = [f"{found.comparison.best[STILL_LEVEL]:.4g} J" for found in study.cases]
     floors = [found.floor.energy if found.floor else nan for found in study.cases]
     ratios = [at_rest(found) / floor for found, floor in zip(study.cases, floors, strict=True)]
@@ -148,9 +149,9 @@ def overview_table(study: Study) -> Table:
     )
 
 
-def _methods(study: Study) -> list[str]:
+def _methods(study: Study) -> list[Method]:
     """The methods of all cases, in order."""
-    found = [run.front.method for found in study.cases for run in found.comparison.runs]
+    found = [group.method for found in study.cases for group in found.comparison.groups]
     return list(dict.fromkeys(found))
 
 
@@ -160,18 +161,15 @@ def gap_figure(study: Study) -> Figure:
     FigureCanvasAgg(figure)
     axis = figure.subplots()
     marks = dict(zip(_methods(study), "osD^vX*P<>", strict=False))
-    seen: set[str] = set()
+    seen: set[Method] = set()
     for i, found in enumerate(study.cases):
         for group in found.comparison.groups:
-            method = group.runs[0].front.method
-            look, spread = (
-                looks(found.comparison)[group.label],
-                group.spread("gaps_between", STILL_LEVEL),
-            )
+            look = looks(found.comparison)[group.label]
+            spread, method = group.spread("gaps_between", STILL_LEVEL), group.method
             if len(group.runs) > 1:
                 axis.plot([100 * spread.lower, 100 * spread.upper], [i, i], color=look.colour,
                           linewidth=4, alpha=0.35, solid_capstyle="round")  # fmt: skip
-            label = "_" if method in seen else method_name(method)
+            label = "_" if method in seen else method.label
             seen.add(method)
             axis.plot(100 * spread.median, i, marks.get(method, "o"), color=look.colour,
                       markersize=7, markeredgecolor="white", label=label)  # fmt: skip

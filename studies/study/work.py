@@ -1,4 +1,4 @@
-"""The headline study: every method on a task, held against each other and against the floor."""
+"""The work of a study: every method on every case, compared with each other and the floor."""
 
 from __future__ import annotations
 
@@ -6,35 +6,27 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeVar
 
-from metaheuristics import PAPER_BOX
-from metaheuristics.ensemble import search_many
 from ocp import (
     CycloidPolynomial,
+    Floor,
     Front,
     InfeasibleTaskError,
-    PointToPoint,
     Polish,
-    QuietarmError,
     SolverFailedError,
-    epsilon_front,
+    energy_floor,
     polish_front,
-    weighted_front,
 )
-from ocp.checks import positive, whole
-from ocp.floor import energy_floor
-from ocp.floor_answer import Floor
-from studies.comparison.measures import Comparison, compare
+from ocp.checks import whole
+from studies.comparison.measures import Comparison, compare_fronts
+from studies.methods import METHODS, Kind, Method, methods_of
+from studies.paper.case import Case
 from studies.paper.points import PaperPoint, paper_points
-from studies.paper.printed import ROWS
+from studies.paper.printed import CONDITIONS
 from studies.paper.tasks import title_of
+from studies.runs.pieces import Begin, Done, NotTriedError, Piece, run_pieces, searched
 
-Answer = TypeVar("Answer")
-
-SEARCHES = ("nsga2", "vepso")
-"""The metaheuristics of a study; their first seed's front is polished."""
-_PIECES = 3 + 2 * len(SEARCHES)
+FLOOR = "floor"
 
 
 @dataclass(frozen=True)
@@ -80,41 +72,6 @@ class StudySettings:
                 whole(name, getattr(self, name), value)
 
 
-@dataclass(frozen=True)
-class Case:
-    """A task of a study and the box that its coefficients stay in.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    bound : float, optional
-        Largest absolute coefficient; the paper's for its plants.
-
-    Raises
-    ------
-    ValueError
-        When there is no bound, or it is not positive.
-    """
-
-    task: PointToPoint
-    bound: float | None = None
-
-    def __post_init__(self) -> None:
-        bound = PAPER_BOX.get(self.task.plant.name) if self.bound is None else self.bound
-        if bound is None:
-            raise ValueError(
-                f"give a bound on the coefficients: the paper has none for {self.task.plant.name}"
-            )
-        object.__setattr__(self, "bound", positive("bound on the coefficients", bound))
-
-
-PAPER_CASES: tuple[Case, ...] = tuple(
-    Case(condition.task) for condition in dict.fromkeys(row.condition for row in ROWS)
-)
-"""The paper's six conditions, each in its plant's box."""
-
-
 @dataclass(frozen=True, eq=False)
 class CaseStudy:
     """What a study found for one task.
@@ -152,15 +109,15 @@ class Study:
     seconds: float
 
 
-def amount_of_work(cases: Sequence[Case]) -> int:
-    """How many pieces of work `study` begins."""
-    return _PIECES * len(cases)
+def amount_of_work(cases: Sequence[Case], settings: StudySettings) -> int:
+    """How many pieces of work `run_study` begins."""
+    return sum(len(pieces_of(case, settings)) for case in cases)
 
 
-def study(
-    cases: Sequence[Case] = PAPER_CASES,
+def run_study(
+    cases: Sequence[Case] = CONDITIONS,
     settings: StudySettings | None = None,
-    begin: Callable[[str], None] = lambda name: None,
+    begin: Begin = lambda name: None,
 ) -> Study:
     """Run every method on every case and compare what they find.
 
@@ -191,79 +148,86 @@ def study(
     return Study(settings, found, time.perf_counter() - began)
 
 
-def _study_case(case: Case, settings: StudySettings, begin: Callable[[str], None]) -> CaseStudy:
-    task, profile = case.task, CycloidPolynomial(settings.terms)
-    gradient = partial(_gradient, task, profile, bound=case.bound, points=settings.points)
-    log, polishes = _Log(title_of(task), begin), dict[str, Polish]()
-    fronts = log.fronts("epsilon", partial(gradient, epsilon_front, workers=settings.workers))
-    if log.infeasible:  # the weighted method begins with the same end, and would fail alike
-        log.failures.append("weighted: not tried, as epsilon found no motion within the limits")
-    else:
-        fronts += log.fronts("weighted", partial(gradient, weighted_front))
-    for method in SEARCHES:
-        found = log.fronts(method, partial(_searched, case, method, settings))
-        fronts += found
-        for front in found[:1]:
-            polish = partial(_polished, front, settings.workers, polishes)
-            fronts += log.fronts(f"{method}, polished", polish)
-    floor = log.tried("floor", partial(energy_floor, task))
-    if len(fronts) < 2:
-        raise SolverFailedError(f"{log.where}: no two fronts to compare; {'; '.join(log.failures)}")
-    return CaseStudy(
-        case=case,
-        comparison=compare(fronts, floor=None if floor is None else floor.energy),
-        polishes=polishes,
-        floor=floor,
-        paper=tuple(paper_points(task, {settings.terms})),
-        failures=tuple(log.failures),
+def pieces_of(case: Case, settings: StudySettings) -> list[Piece]:
+    """The work on one case; every answer is kept under the name of its method, or `FLOOR`."""
+    work: dict[str, Callable[[Done], object]] = {}
+    for method in methods_of(Kind.GRADIENT):
+        work[method.name] = partial(_swept, case, method, settings)
+    for method in methods_of(Kind.METAHEURISTIC):
+        work[method.name] = partial(_searched, case, method, settings)
+        work[method.then_polished().name] = partial(_polished, method, settings)
+    work[FLOOR] = lambda done: energy_floor(case.task)
+    title = title_of(case.task)
+    return [Piece(name, f"{title}: {name}", one) for name, one in work.items()]
+
+
+def _swept(case: Case, method: Method, settings: StudySettings, done: Done) -> list[Front]:
+    for other in methods_of(Kind.GRADIENT):  # they begin with the same end, and would fail alike
+        if isinstance(done.failures.get(other.name), InfeasibleTaskError):
+            raise NotTriedError(f"not tried, as {other.name} found no motion within the limits")
+    front = method.sweep(
+        case.task,
+        CycloidPolynomial(settings.terms),
+        bound=case.bound,
+        points=settings.points,
+        **({"workers": settings.workers} if method.parallel else {}),
+    )
+    return [_whole(front)]
+
+
+def _searched(case: Case, method: Method, settings: StudySettings, done: Done) -> list[Front]:
+    return searched(
+        case,
+        method,
+        settings.terms,
+        settings.runs,
+        seed=settings.seed,
+        workers=settings.workers,
+        population=settings.population,
+        generations=settings.generations,
     )
 
 
-class _Log:
-    """Says which piece of work begins, and keeps the reasons of those that fail."""
-
-    def __init__(self, where: str, begin: Callable[[str], None]) -> None:
-        self.where, self.failures, self.begin = where, list[str](), begin
-        self.infeasible = False
-
-    def tried(self, name: str, work: Callable[[], Answer]) -> Answer | None:
-        """The answer of a piece of work; None where it fails."""
-        self.begin(f"{self.where}: {name}")
-        try:
-            return work()
-        except QuietarmError as error:
-            self.failures.append(f"{name}: {error}")
-            self.infeasible |= isinstance(error, InfeasibleTaskError)
-            return None
-
-    def fronts(self, name: str, work: Callable[[], list[Front]]) -> list[Front]:
-        """The fronts of a piece of work that have points; KeyboardInterrupt where one was cut."""
-        found = self.tried(name, work) or []
-        if not all(front.complete for front in found):
-            raise KeyboardInterrupt
-        kept = [front for front in found if front.points]
-        if len(kept) < len(found):
-            self.failures.append(f"{name}: {len(found) - len(kept)} of {len(found)} found no point")
-        return kept
+def _polished(method: Method, settings: StudySettings, done: Done) -> Polish:
+    first = next(iter(done.answers.get(method.name, [])), None)
+    if first is None or not first.points:
+        raise NotTriedError(f"not tried, as {method.name} found no front to start from")
+    polish = polish_front(first, workers=settings.workers)
+    _whole(polish.front)
+    return polish
 
 
-def _gradient(
-    task: PointToPoint, profile: CycloidPolynomial, find: Callable[..., Front], **settings: Any
-) -> list[Front]:
-    return [find(task, profile, **settings)]
-
-
-def _polished(front: Front, workers: int, polishes: dict[str, Polish]) -> list[Front]:
-    polishes[front.method] = polish_front(front, workers=workers)
-    return [polishes[front.method].front]
-
-
-def _searched(case: Case, method: str, settings: StudySettings) -> list[Front]:
-    fronts = search_many(
-        case.task, method, settings.runs, workers=settings.workers, seed=settings.seed,
-        profile=CycloidPolynomial(settings.terms), bound=case.bound,
-        population=settings.population, generations=settings.generations,
-    )  # fmt: skip
-    if len(fronts) < settings.runs:
+def _whole(front: Front) -> Front:
+    """The same front; KeyboardInterrupt where it was interrupted."""
+    if not front.complete:
         raise KeyboardInterrupt
-    return fronts
+    return front
+
+
+def _study_case(case: Case, settings: StudySettings, begin: Begin) -> CaseStudy:
+    pieces = pieces_of(case, settings)
+    done = run_pieces(pieces, begin, go_on=True)
+    fronts, failures = list[Front](), list[str]()
+    for name in (str(piece.key) for piece in pieces):
+        if name in done.failures:
+            failures.append(f"{name}: {done.failures[name]}")
+        elif name != FLOOR:
+            answer = done.answers[name]
+            found = [answer.front] if isinstance(answer, Polish) else answer
+            kept = [front for front in found if front.points]
+            if len(kept) < len(found):
+                failures.append(f"{name}: {len(found) - len(kept)} of {len(found)} found no point")
+            fronts += kept
+    if len(fronts) < 2:
+        where = title_of(case.task)
+        raise SolverFailedError(f"{where}: no two fronts to compare; {'; '.join(failures)}")
+    floor = done.answers.get(FLOOR)
+    polishes = {m.name: done.answers.get(m.then_polished().name) for m in METHODS.values()}
+    return CaseStudy(
+        case=case,
+        comparison=compare_fronts(fronts, floor=None if floor is None else floor.energy),
+        polishes={name: polish for name, polish in polishes.items() if polish is not None},
+        floor=floor,
+        paper=tuple(paper_points(case.task, {settings.terms})),
+        failures=tuple(failures),
+    )

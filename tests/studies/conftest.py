@@ -4,6 +4,7 @@ import errno
 import math
 import os
 import shlex
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +20,9 @@ from ocp import (
     plan_move,
 )
 from studies.cli import main
-from studies.reproduction import recompute as reproduce_module
+from studies.methods import METHODS
+from studies.reproduction import recompute
+from studies.runs import pieces
 
 
 @pytest.fixture(scope="session")
@@ -34,16 +37,26 @@ def reproduction(begun):
 
     Searches and floors are cut short: how well they find is tested where they are.
     """
-    search, generations = reproduce_module.search, {"vepso": 60, "nsga2": 5}
-    floor = reproduce_module.energy_floor
+    search, generations = pieces.search_many, {"vepso": 60, "nsga2": 5}
+    floor = recompute.energy_floor
 
-    def short(task, method, **settings):
-        return search(task, method, generations=generations[method], **settings)
+    def short(task, method, runs, **settings):
+        return search(task, method, runs, generations=generations[method], **settings)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reproduce_module, "search", short)
-        patch.setattr(reproduce_module, "energy_floor", lambda task: floor(task, starts=2))
-        return reproduce_module.reproduce(begun.append)
+        patch.setattr(pieces, "search_many", short)
+        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=2))
+        return recompute.recompute_paper(begun.append)
+
+
+@pytest.fixture
+def let_sweep(monkeypatch):
+    """Put another function in the place of what sweeps a gradient's front."""
+
+    def put(name, sweep):
+        monkeypatch.setitem(METHODS, name, replace(METHODS[name], sweep=sweep))
+
+    return put
 
 
 @pytest.fixture

@@ -7,12 +7,13 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from studies.cli.arguments import say_written
 from studies.cli.options import FOLDER
 
 FRONT_FILE = click.Path(path_type=Path)
 
 
-@click.command(short_help="Hold fronts of one task against each other.")
+@click.command()
 @click.argument("fronts", nargs=-1, type=FRONT_FILE, metavar="FRONT FRONT ...")
 @click.option("--reference", type=FRONT_FILE, help="Measure IGD+ and epsilon against this front.")
 @click.option(
@@ -41,23 +42,25 @@ def compare(
       quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.comparison.check import check_figures
-    from studies.comparison.measures import FILL
-    from studies.comparison.measures import compare as measure
-    from studies.comparison.report import load_fronts, show, with_floor, write
+    from studies.comparison.measures import FILL, compare_fronts
+    from studies.comparison.report import (
+        load_fronts,
+        print_comparison,
+        with_floor,
+        write_comparison,
+    )
 
     loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
     for front, name in zip(loaded, names, strict=True):
         check_figures(front, name)
     named = None if reference is None else loaded.pop()
-    comparison = measure(
+    comparison = compare_fronts(
         loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
         fill=0 if as_found else FILL,
     )  # fmt: skip
     if floor:
         comparison = with_floor(comparison, Console(stderr=True))
-    console = Console()
-    show(console, comparison)
+    print_comparison(Console(), comparison)
     if output is not None:
         output.mkdir(exist_ok=True)
-        for path in write(output, comparison):
-            console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+        say_written(*write_comparison(output, comparison))

@@ -10,9 +10,10 @@ from rich.console import Console
 from ocp import evaluate_coefficients
 from studies.cli.arguments import split_options, write_plan
 from studies.cli.options import COEFFICIENTS, output_options, task_options
+from studies.reports.plan import print_plan
 
 
-@click.command(short_help="The figures of given coefficients.")
+@click.command()
 @task_options
 @click.option(
     "--coefficients", type=COEFFICIENTS, required=True,
@@ -26,9 +27,7 @@ def evaluate(coefficients: list[float], **rest: Any) -> None:
     Example, the paper's two terms for the single link:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
     """  # noqa: D301  # \b is click's: do not rewrap
-    from studies.reports.plan import show_plan
-
     task, outputs = split_options(rest)
     found = evaluate_coefficients(task, coefficients)
-    show_plan(Console(), found)
+    print_plan(Console(), found)
     write_plan(found, **outputs)

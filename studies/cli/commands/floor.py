@@ -9,12 +9,13 @@ import click
 from rich.console import Console
 
 from ocp import energy_floor
-from studies.cli.arguments import task_of
+from studies.cli.arguments import say_written, task_of
 from studies.cli.options import OUTPUT, PICTURE, task_options
+from studies.reports.floor import plan_beside, print_floor
 from studies.runs.files import refuse_same_file
 
 
-@click.command(short_help="Find the least energy over all joint motions.")
+@click.command()
 @task_options
 @click.option("--smooth", is_flag=True, help="Keep the acceleration continuous: the jerk is free.")
 @click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
@@ -46,19 +47,15 @@ def floor(
           --figure floor.png --output floor.json
     """  # noqa: D301  # \b is click's: do not rewrap
     refuse_same_file([("--output", output), ("--figure", figure)])
-    found = energy_floor(
-        task_of(rest), smooth=smooth, starts=starts, seed=seed, tolerance=tolerance
-    )
-    from studies.reports.floor import floor_figure, plan_beside, show_floor
-
-    plan, console = plan_beside(found), Console()
-    show_floor(console, found, plan)
+    task = task_of(rest)
+    found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
+    plan = plan_beside(found)
+    print_floor(Console(), found, plan)
     if output is not None:
         found.save(output)
     if figure is not None:
         from studies.display.pictures import save_figure
+        from studies.reports.floor_figure import floor_figure
 
         save_figure(floor_figure(found, plan), figure)
-    for path in (output, figure):
-        if path is not None:
-            console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+    say_written(output, figure)

@@ -7,26 +7,28 @@ from typing import Any
 
 import click
 
-from studies.cli.arguments import refuse_idle, task_of
+from studies.cli.arguments import refuse_idle, say_written, task_of
 from studies.cli.options import INPUT, OUTPUT, PICTURE, WEIGHTS, task_options
+from studies.methods import METHODS, WEIGHTED, Kind, methods_of
 
-GRADIENT, METAHEURISTICS = ("epsilon", "weighted"), ("nsga2", "vepso")
+GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
+METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 _ONLY_FOR = {
     "points": GRADIENT,
     "starts": GRADIENT,
-    "weights": ("weighted",),
-    "workers": ("epsilon", *METAHEURISTICS),
+    "weights": [WEIGHTED.name],
+    "workers": [method.name for method in METHODS.values() if method.parallel],
     **dict.fromkeys(
         ("population", "generations", "runs", "checkpoint", "resume"), METAHEURISTICS
     ),
 }  # fmt: skip
-"""The methods for which an option does something, where not for all."""
+"""For every option that is not for all methods, the methods that it is for."""
 
 
-@click.command(short_help="Find the trade-off of residual and energy.")
+@click.command()
 @task_options
 @click.option(
-    "--method", type=click.Choice([*GRADIENT, *METAHEURISTICS]), required=True,
+    "--method", type=click.Choice(list(METHODS)), required=True,
     help="The gradient at one residual limit after another, or for one weighted sum after "
     "another; or a metaheuristic.",
 )  # fmt: skip
@@ -92,20 +94,20 @@ def front(
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \\
           --runs 5 --workers 2 --output front.json --figure fronts.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    method = rest.pop("method")
-    refuse_idle(context, method, _ONLY_FOR)
+    method = METHODS[rest.pop("method")]
+    refuse_idle(context, method.name, _ONLY_FOR)
     names = ["terms", "bound", "seed"]
-    names += [name for name, methods in _ONLY_FOR.items() if method in methods]
+    names += [name for name, methods in _ONLY_FOR.items() if method.name in methods]
     options = {name: rest[name] for name in names}
     for name in (*_ONLY_FOR, "terms", "bound", "seed"):
         del rest[name]
     task = task_of(rest)
-    if method in GRADIENT:
+    if method.kind is Kind.GRADIENT:
         from studies.runs.sweeping import run_sweep as run
 
         if options.get("weights"):
             refuse_idle(context, "--weights", {"points": ("weights that are found here",)})
     else:
         from studies.runs.searching import run_front as run
-    for path in run(task, {"method": method, **options}, output, figure, quiet):
-        click.echo(f"wrote {path}")
+    for path in run(task, method, options, output, figure, quiet):
+        say_written(path)

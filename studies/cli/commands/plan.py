@@ -10,9 +10,14 @@ from rich.console import Console
 from ocp import CycloidPolynomial, plan_move
 from studies.cli.arguments import refuse_idle, split_options, write_plan
 from studies.cli.options import LENGTH, output_options, task_options
+from studies.methods import METHODS, Kind, methods_of
+from studies.reports.plan import print_plan
+
+IPOPT = "ipopt"
+SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 
 
-@click.command(short_help="Find the still move of least energy.")
+@click.command()
 @task_options
 @click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
 @click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
@@ -23,7 +28,7 @@ from studies.cli.options import LENGTH, output_options, task_options
 @click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random starts.")
 @click.option(
-    "--method", type=click.Choice(["ipopt", "nsga2", "vepso"]), default="ipopt", show_default=True,
+    "--method", type=click.Choice([IPOPT, *SEARCHES]), default=IPOPT, show_default=True,
     help="The gradient, or the cheapest point of a metaheuristic's front within the residual "
     "limit (1mm where that is 0).",
 )  # fmt: skip
@@ -52,23 +57,24 @@ def plan(
       quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \\
           --output plan.json --csv move.csv --figure move.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    from studies.reports.plan import show_plan
-
     task, outputs = split_options(rest)
-    refuse_idle(context, method, {"starts": ["ipopt"]})
-    if method == "ipopt" and polish:
-        raise ValueError("--polish is for a metaheuristic's point; give --method nsga2 or vepso")
+    refuse_idle(context, method, {"starts": [IPOPT]})
+    if method == IPOPT and polish:
+        named = " or ".join(SEARCHES)
+        raise ValueError(f"--polish is for a metaheuristic's point; give --method {named}")
     profile = CycloidPolynomial(terms)
-    if method == "ipopt":
+    if method == IPOPT:
         found = plan_move(
             task, profile, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed
         )
     else:
         from studies.runs.searching import plan_by_search
 
-        found = plan_by_search(task, method, profile, bound, residual_limit, seed, polish, quiet)
-    show_plan(Console(), found)
-    if method != "ipopt" and residual_limit == 0 and not polish:
+        found = plan_by_search(
+            task, METHODS[method], profile, bound, residual_limit, seed, polish, quiet
+        )
+    print_plan(Console(), found)
+    if method != IPOPT and residual_limit == 0 and not polish:
         click.echo(
             "residual limit 0 stands for 1 mm here: no search arrives quite at rest; --polish does"
         )

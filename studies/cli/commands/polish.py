@@ -6,10 +6,11 @@ from pathlib import Path
 
 import click
 
+from studies.cli.arguments import say_written
 from studies.cli.options import OUTPUT, PICTURE
 
 
-@click.command(short_help="Improve a front by the gradient.")
+@click.command()
 @click.argument("front", type=click.Path(path_type=Path), metavar="FRONT")
 @click.option(
     "--points", type=int,
@@ -48,4 +49,4 @@ def polish(
     from studies.runs.polishing import run_polish
 
     for path in run_polish(front, points, workers, output, csv_file, figure, quiet):
-        click.echo(f"wrote {path}")
+        say_written(path)

@@ -7,10 +7,11 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from studies.cli.arguments import say_written
 from studies.cli.options import FOLDER
 
 
-@click.command(short_help="Recompute the paper.")
+@click.command()
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
 @click.option(
     "--seeds",
@@ -29,16 +30,13 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.display.progress import progress
     from studies.reproduction.claims import claims
-    from studies.reproduction.recompute import amount_of_work
-    from studies.reproduction.recompute import reproduce as recompute
-    from studies.reproduction.report import show, write
+    from studies.reproduction.recompute import pieces_of_paper, recompute_paper
+    from studies.reproduction.report import print_reproduction, write_reproduction
 
-    with progress(amount_of_work(seeds), Console(stderr=True), quiet=quiet) as begin:
-        result = recompute(begin, seeds)
+    with progress(len(pieces_of_paper(seeds)), Console(stderr=True), quiet=quiet) as begin:
+        result = recompute_paper(begin, seeds)
     verdicts = claims(result)
-    console = Console()
-    show(console, result, verdicts)
+    print_reproduction(Console(), result, verdicts)
     if output is not None:
         output.mkdir(exist_ok=True)
-        for path in write(output, result, verdicts):
-            console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+        say_written(*write_reproduction(output, result, verdicts))

@@ -10,7 +10,7 @@ import click
 from click.core import ParameterSource
 from rich.console import Console
 
-from studies.cli.arguments import task_of
+from studies.cli.arguments import say_written, task_of
 from studies.cli.options import FOLDER, OUTPUT, task_options
 
 
@@ -22,7 +22,7 @@ def _not_required(command: click.Command) -> click.Command:
 
 
 @_not_required
-@click.command(short_help="Every method on a task, in one report.")
+@click.command()
 @task_options
 @click.option("--bound", type=float, help="Largest coefficient; the paper's for its plants.")
 @click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
@@ -58,31 +58,30 @@ def study(
       quietarm study single-link --target 30deg --duration 0.8 --torque-limit 0.2 --fronts fronts
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.display.progress import progress
-    from studies.study.files import write
+    from studies.paper.case import Case
+    from studies.paper.printed import CONDITIONS
+    from studies.study.files import write_study
     from studies.study.findings import case_findings, findings
-    from studies.study.work import PAPER_CASES, Case, StudySettings, amount_of_work
-    from studies.study.work import study as run
+    from studies.study.work import StudySettings, amount_of_work, run_study
 
     names = ("terms", "points", "runs", "seed", "workers", "population", "generations")
     settings = StudySettings(**{name: rest.pop(name) for name in names})
     bound = rest.pop("bound")
     if rest["plant"] is None:
         _refuse_without_plant(context, ("bound", *rest))
-        cases = PAPER_CASES
+        cases = CONDITIONS
     else:
         _refuse_without_move(rest)
         cases = (Case(task_of(rest), bound),)
-    with progress(amount_of_work(cases), Console(stderr=True), quiet=quiet) as begin:
-        result = run(cases, settings, begin)
+    with progress(amount_of_work(cases, settings), Console(stderr=True), quiet=quiet) as begin:
+        result = run_study(cases, settings, begin)
     console = Console()
     for line in findings(result) if len(cases) > 1 else case_findings(result.cases[0]):
         console.print(f"- {line}", highlight=False, markup=False)
-    written = write(result, output, fronts)
-    console.print(f"wrote {output}", highlight=False, soft_wrap=True)
+    written = write_study(result, output, fronts)
+    say_written(output)
     if fronts is not None:
-        console.print(
-            f"wrote {len(written) - 1} fronts to {fronts}", highlight=False, soft_wrap=True
-        )
+        click.echo(f"wrote {len(written) - 1} fronts to {fronts}")
 
 
 def _refuse_without_plant(context: click.Context, names: Iterable[str]) -> None:

@@ -17,19 +17,21 @@ import numpy as np
 import pytest
 
 import studies.cli.commands.evaluate
+import studies.cli.commands.floor
 import studies.cli.commands.plan
 import studies.comparison.report
 import studies.reproduction.recompute
 import studies.runs.polishing
 import studies.runs.searching
-import studies.runs.sweeping
 import studies.study.work
 from models import __version__
 from ocp import InfeasibleTaskError, Plan
+from studies.cli import quietarm
 from studies.paper.printed import ROWS
-from studies.reproduction.recompute import amount_of_work
+from studies.reproduction.recompute import pieces_of_paper
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
+COMMANDS = sorted(quietarm.commands)
 MOVE = "single-link --target 30deg --duration 0.8"
 TWO_TERMS = "--coefficients=0.003347,-0.1697"  # the paper's Table 1
 EVERY_FILE = "--output plan.json --csv move.csv --figure move.png"
@@ -85,7 +87,7 @@ def no_solve(monkeypatch):
     monkeypatch.setattr(studies.cli.commands.evaluate, "evaluate_coefficients", solve)
     for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
         monkeypatch.setattr(studies.runs.searching, name, solve)
-    monkeypatch.setattr(studies.reproduction.recompute, "reproduce", solve)
+    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", solve)
 
 
 # Answers
@@ -224,31 +226,13 @@ def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call)
 # Help
 
 
-def test_help_does_not_wait_for_what_it_does_not_need():
-    ran = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import sys, studies.cli\nprint(*{name.partition('.')[0] for name in sys.modules})",
-        ],
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    loaded = set(ran.stdout.split())
-    assert {"click", "casadi", "studies"} <= loaded
-    assert loaded.isdisjoint({"matplotlib", "pymoo", "moocore", "scipy"})
-
-
 def examples(text):
     """The commands of a help text, each on a line of its own."""
     lines = re.sub(r" \\\n +", " ", text.split("Example", 1)[1]).splitlines()
     return [line.strip() for line in lines if line.strip().startswith("quietarm ")]
 
 
-@pytest.mark.parametrize(
-    "command", ["", "plan", "evaluate", "front", "polish", "compare", "study", "reproduce"]
-)
+@pytest.mark.parametrize("command", ["", *COMMANDS])
 @pytest.mark.parametrize("flag", ["-h", "--help"])
 def test_help_shows_examples(call, command, flag):
     code, out, err = call(f"{command} {flag}")
@@ -271,8 +255,8 @@ def test_help_names_every_option_of_the_issue(call):
 def test_no_command_is_answered_with_help(call):
     code, out, err = call("")
     assert code == 2
-    assert "quietarm plan single-link" in out + err
-    assert "Traceback" not in out + err
+    assert "quietarm plan single-link" in out
+    assert err == ""
 
 
 @pytest.mark.parametrize("launcher", [[QUIETARM], [sys.executable, "-m", "studies"]])
@@ -281,10 +265,10 @@ def test_the_installed_command_says_its_version(launcher):
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, f"quietarm, version {__version__}\n", "")
 
 
-@pytest.mark.parametrize(
-    "command", ["", "plan", "evaluate", "front", "polish", "compare", "study", "reproduce"]
-)
-def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, folder, command):
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_examples_in_the_help_are_read_without_complaint(
+    call, monkeypatch, let_sweep, folder, command
+):
     _, out, _ = call(f"{command} --help")
     reached = []
 
@@ -298,9 +282,11 @@ def test_examples_in_the_help_are_read_without_complaint(call, monkeypatch, fold
     monkeypatch.setattr(studies.runs.searching, "search_many", note)
     monkeypatch.setattr(studies.comparison.report, "load_fronts", note)
     monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
-    monkeypatch.setattr(studies.study.work, "study", note)
-    monkeypatch.setattr(studies.runs.sweeping, "METHODS", {"epsilon": note, "weighted": note})
-    monkeypatch.setattr(studies.reproduction.recompute, "reproduce", note)
+    monkeypatch.setattr(studies.study.work, "run_study", note)
+    monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)
+    for name in ("epsilon", "weighted"):
+        let_sweep(name, note)
+    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", note)
     shown = examples(out)
     assert shown
     for example in shown:
@@ -517,24 +503,23 @@ def test_a_reproduction_finds_a_bad_folder_before_its_solves(
 
 
 @pytest.mark.parametrize(
-    ("line", "value"),
+    ("line", "words"),
     [
-        ("plan single-link --target 1e300 --duration 1", "1e+300"),
-        ("plan single-link --target 1 --duration 1e-300", "1e-300"),
-        ("plan single-link --target 1 --duration 1e300", "1e+300"),
-        (f"evaluate single-link --target 1 --duration 1e300 {TWO_TERMS}", "1e+300"),
-        (f"evaluate single-link --target 1e300 --duration 1 {TWO_TERMS}", "1e+300"),
-        (f"evaluate {MOVE} --coefficients=1e300", "1e+300"),
+        ("plan single-link --target 1e300 --duration 1", "target is 1e+300 rad; give an angle"),
+        ("plan single-link --target 1 --duration 1e-300", "duration is 1e-300 s; give 1e-06 to"),
+        ("plan single-link --target 1 --duration 1e300", "duration is 1e+300 s; give 1e-06 to"),
+        (f"evaluate single-link --target 1 --duration 1e300 {TWO_TERMS}", "duration is 1e+300 s"),
+        (f"evaluate single-link --target 1e300 --duration 1 {TWO_TERMS}", "target is 1e+300 rad"),
     ],
 )
-def test_values_beyond_all_reason_end_in_one_line_too(call, folder, line, value):
-    code, out, err = call(f"{line} {EVERY_FILE}")
-    assert code in (1, 2)  # whether it is refused or the solve fails
-    assert out == ""
-    assert err.startswith("quietarm: ")
-    assert err.count("\n") == 1
-    assert value in err
-    assert list(folder.iterdir()) == []
+def test_values_beyond_all_reason_are_refused(refused, no_solve, line, words):
+    assert words in refused(f"{line} {EVERY_FILE}", status=2)
+
+
+def test_coefficients_beyond_all_reason_fail_in_one_line(refused):
+    message = refused(f"evaluate {MOVE} --coefficients=1e300 {EVERY_FILE}", status=1)
+    assert "CVODES could not follow this motion" in message
+    assert "largest is 1e+300" in message
 
 
 # Solves that fail: status 1
@@ -585,6 +570,8 @@ def test_a_full_disk_leaves_nothing_half_written(call, folder, monkeypatch):
 # Ctrl-C
 
 INTERRUPTED = "quietarm: interrupted; nothing was written"
+GUARD = 120
+"""Seconds after which a process that does not end has hung, on any machine."""
 # The command, which says when it begins to solve, so that the signal comes then and not before.
 ANNOUNCED = """
 import studies.cli
@@ -610,7 +597,7 @@ def interrupt(process, delay):
             process.send_signal(signal.SIGINT)
         else:
             pytest.fail("the solves were over before the interrupt")
-        return process.communicate(timeout=15)
+        return process.communicate(timeout=GUARD)
     finally:
         process.kill()
         process.communicate()  # closes its pipes
@@ -661,12 +648,12 @@ def reproduced(reproduction, monkeypatch):
         begin("the only solve")
         return reproduction
 
-    monkeypatch.setattr(studies.reproduction.recompute, "reproduce", at_once)
+    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", at_once)
 
 
 def test_reproduce_prints_every_printed_and_recomputed_energy(call, reproduced, reproduction):
     code, out, err = call("reproduce")
-    assert (code, err) == (0, f"[1/{amount_of_work(seeds=1)}] the only solve\n")
+    assert (code, err) == (0, f"[1/{len(pieces_of_paper(seeds=1))}] the only solve\n")
     for number in (2, 3, 5, 6):
         assert f"Table {number}: " in out
     for row in ROWS:

@@ -17,14 +17,14 @@ from models import ArmOnFlexibleLink
 from ocp import FrontPoint, PointToPoint, SolverFailedError, evaluate_coefficients
 from studies.comparison.check import check_figures
 from studies.comparison.figure import BANDS, PANELS, comparison_figure, looks, panel_figure
-from studies.comparison.report import FILES, write
+from studies.comparison.report import FILES, write_comparison
 from studies.comparison.tables import runs_table, tables
 from studies.paper.points import paper_points
 from studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
 from studies.paper.tasks import condition_of, title_of
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
-compare = partial(studies.comparison.measures.compare, fill=0)
+compare = partial(studies.comparison.measures.compare_fronts, fill=0)
 
 
 @pytest.fixture
@@ -311,5 +311,5 @@ def of_points(front_of, points):
 def test_nothing_is_half_written(comparison, tmp_path, monkeypatch):
     (tmp_path / "runs.csv").mkdir()
     with pytest.raises(ValueError, match="is a folder"):
-        write(tmp_path, comparison)
+        write_comparison(tmp_path, comparison)
     assert [path.name for path in tmp_path.iterdir()] == ["runs.csv"]

@@ -10,7 +10,8 @@ import pytest
 from models import ArmOnFlexibleLink
 from ocp import Floor, PointToPoint, SolverFailedError, energy_floor
 from studies.cli import main
-from studies.reports.floor import floor_figure, plan_beside
+from studies.reports.floor import plan_beside
+from studies.reports.floor_figure import floor_figure
 from studies.reports.motion_figure import Line, four_panels
 
 MOVE = "arm-on-flexible-link --target pi/2 --duration 0.8"

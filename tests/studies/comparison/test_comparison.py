@@ -10,12 +10,11 @@ import pytest
 import studies.comparison.measures
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import CycloidPolynomial, PointToPoint, epsilon_front, evaluate_coefficients
-from studies.comparison.groups import method_name
 from studies.comparison.measures import FILL
 from studies.comparison.staircase import evenly_spaced, filled
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
-compare = partial(studies.comparison.measures.compare, fill=0)
+compare = partial(studies.comparison.measures.compare_fronts, fill=0)
 # Corners are (10 mm, 1 J); `good` and `poor` stand in conftest.py.
 
 
@@ -134,11 +133,6 @@ def test_methods_are_named_with_what_tells_them_apart(poor, front_of, other, lab
     assert [group.label for group in comparison.groups] == labels
 
 
-def test_methods_have_names_for_people():
-    assert method_name("nsga2, polished") == "NSGA-II polished"
-    assert method_name("MOEAD") == "MOEAD"
-
-
 OTHERS = {
     "plant is arm-on-flexible-link, not single-link": {"plant": ArmOnFlexibleLink()},
     "plant parameter zeta is 0.5, not 0.009636": {"plant": SingleLinkManipulator(zeta=0.5)},
@@ -238,7 +232,8 @@ def test_the_number_of_points_does_not_decide(real):
     """Every other point left out: as found the front seems far worse, filled it is the same."""
     thinned = dataclasses.replace(real, points=real.points[::2], method="thinned")
     whole, few = (
-        group.runs[0] for group in studies.comparison.measures.compare([real, thinned]).groups
+        group.runs[0]
+        for group in studies.comparison.measures.compare_fronts([real, thinned]).groups
     )
     lost_as_found = whole.hypervolume_found - few.hypervolume_found
     assert lost_as_found > 0.004

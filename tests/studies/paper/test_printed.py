@@ -39,7 +39,7 @@ HALF = (ArmOnFlexibleLink(), 0.0, PI / 2, 0.8)
 
 
 def described(condition):
-    return (condition.plant, condition.start, condition.target, condition.duration)
+    return (condition.task.plant, *condition.task.move)
 
 
 def printed(number):
@@ -95,22 +95,20 @@ def test_one_exponent_is_mended_and_nothing_else():
 
 def test_search_boxes_are_those_of_eqs_12_and_17():
     for row in ROWS:
-        eq = 0.2 if isinstance(row.condition.plant, SingleLinkManipulator) else 0.5
-        assert row.condition.box == eq
+        eq = 0.2 if isinstance(row.condition.task.plant, SingleLinkManipulator) else 0.5
+        assert row.condition.bound == eq
 
 
 def test_printed_coefficients_lie_in_their_box():
     for (condition, terms), values in COEFFICIENTS.items():
         assert len(values) == terms
-        assert max(map(abs, values)) <= condition.box
+        assert max(map(abs, values)) <= condition.bound
 
 
-def test_conditions_become_tasks_without_limits():
+def test_conditions_are_tasks_without_limits():
     for condition in {row.condition for row in ROWS}:
-        task = condition.task
-        assert (task.plant, *task.move) == described(condition)
-        assert task.limits == {}
-        assert task.residual_window == 1.0  # eqs (11) and (16): TE <= t <= TE + 1 s
+        assert condition.task.limits == {}
+        assert condition.task.residual_window == 1.0  # eqs (11) and (16): TE <= t <= TE + 1 s
 
 
 def test_labels_say_the_condition():
@@ -118,5 +116,5 @@ def test_labels_say_the_condition():
         0.0: "0", PI / 6: "pi/6", PI / 4: "pi/4", PI / 2: "pi/2", -PI / 2: "-pi/2"
     }  # fmt: skip
     for condition in {row.condition for row in ROWS}:
-        start, target = names[condition.start], names[condition.target]
-        assert condition.label == f"{start} to {target}, {condition.duration} s"
+        start, target = names[condition.task.start], names[condition.task.target]
+        assert condition.label == f"{start} to {target}, {condition.task.duration} s"

@@ -9,22 +9,20 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from studies.paper.printed import ARM_HALF, ROWS, SINGLE_LINK_SIXTH
+from studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
 from studies.reproduction.claims import claims
 from studies.reproduction.floor_dots import floor_dots
 from studies.reproduction.floor_table import (
     FREE,
     IN_BOX,
-    NSGA2,
     PAPER,
-    VEPSO,
     finding,
     floor_table,
     floor_tables,
     multiples,
 )
-from studies.reproduction.recompute import CONDITIONS
-from studies.reproduction.report import show
+from studies.reproduction.recompute import SEARCHES
+from studies.reproduction.report import print_reproduction
 
 TERMS = (2, 4, 6, 8, 10)
 
@@ -42,7 +40,7 @@ def test_there_are_six_floors_at_rest(reproduction):
         assert 0 < floor.left < 0.01 * floor.energy
 
 
-@pytest.mark.parametrize("condition", CONDITIONS, ids=lambda c: f"{c.plant.name} {c.label}")
+@pytest.mark.parametrize("condition", CONDITIONS, ids=lambda c: f"{c.task.plant.name} {c.label}")
 def test_nothing_is_below_the_floor(reproduction, condition):
     # Not the gradient, nor anything within the paper's residuals (which are nearly rest).
     found = multiples(reproduction, condition)
@@ -66,14 +64,11 @@ def test_every_row_and_every_number_of_terms_has_its_multiple(reproduction):
 def test_each_search_is_judged_by_its_own_fronts(reproduction):
     for result in reproduction.rows:
         found = by_place(reproduction, result.row.condition)
-        for series, method in ((VEPSO, "vepso"), (NSGA2, "nsga2")):
-            fronts = {front.method: front for front in (*result.fronts, *result.other_fronts)}
-            energies = [
-                point.energy
-                for point in fronts[method].points
-                if point.residual <= result.residual_level
-            ]
-            place = (series, result.row.terms)
+        for method in SEARCHES:
+            (front,) = result.fronts[method]
+            assert front.method == method.name
+            energies = [p.energy for p in front.points if p.residual <= result.residual_level]
+            place = (method.label, result.row.terms)
             if not energies:
                 assert place not in found
                 continue
@@ -85,7 +80,7 @@ def test_the_table_has_a_row_a_condition_and_csv_all_of_it(reproduction):
     table = floor_table(reproduction)
     rows = list(csv.DictReader(io.StringIO(table.csv())))
     assert [(row["plant"], row["move"]) for row in rows] == [
-        (c.plant.name, c.label) for c in CONDITIONS
+        (c.task.plant.name, c.label) for c in CONDITIONS
     ]
     for row, condition in zip(rows, CONDITIONS, strict=True):
         floor = reproduction.floors[condition]
@@ -103,7 +98,7 @@ def test_a_table_a_plant_for_the_screen(reproduction):
     assert [row[1] for row in single.rows] == [c.label for c in CONDITIONS[:3]]
     assert [row[1] for row in arm.rows] == [c.label for c in CONDITIONS[3:]]
     console = Console(file=io.StringIO(), width=80)
-    show(console, reproduction, claims(reproduction))
+    print_reproduction(console, reproduction, claims(reproduction))
     text = console.file.getvalue()
     for condition in CONDITIONS:
         for m in multiples(reproduction, condition):

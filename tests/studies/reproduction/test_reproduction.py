@@ -4,7 +4,8 @@ import csv
 import dataclasses
 import io
 import re
-from itertools import pairwise
+from collections import Counter
+from itertools import pairwise, product
 
 import pytest
 from rich.console import Console
@@ -15,6 +16,7 @@ from studies.paper.printed import (
     ARM_THREE_QUARTERS,
     ARM_WHOLE,
     COEFFICIENTS,
+    CONDITIONS,
     MENDED,
     ROWS,
     SINGLE_LINK_HALF_1_0,
@@ -22,8 +24,13 @@ from studies.paper.printed import (
     SINGLE_LINK_SIXTH,
 )
 from studies.reproduction.claims import claims
-from studies.reproduction.recompute import amount_of_work, reproduce, search_keys, solve_keys
-from studies.reproduction.report import redrawn, show, tables, write
+from studies.reproduction.recompute import SEARCHES, pieces_of_paper, recompute_paper
+from studies.reproduction.report import (
+    print_reproduction,
+    redrawn,
+    tables,
+    write_reproduction,
+)
 
 LAST_DIGIT = {2: 1e-4, 5: 1e-3}
 """The last digit that Tables 2 and 5 print [J]."""
@@ -55,13 +62,6 @@ GRADIENT = {
 }
 
 
-def found(reproduction, condition, terms):
-    """The result for a condition and number of terms, whichever table it stands in."""
-    return next(
-        r for r in reproduction.rows if (r.row.condition, r.row.terms) == (condition, terms)
-    )
-
-
 def costing(plan, **figures):
     """The same plan with other figures."""
     return dataclasses.replace(plan, motion=dataclasses.replace(plan.motion, **figures))
@@ -76,17 +76,23 @@ def test_every_row_of_the_paper_is_there(reproduction):
 
 
 def test_every_problem_is_solved_once_and_announced(reproduction, begun):
-    assert len(begun) == len(set(begun)) == amount_of_work(seeds=1)
-    assert len(solve_keys()) == len(set(solve_keys()))
-    gradient = [name for name in begun if "gradient" in name]
-    assert len(gradient) == len(solve_keys())
-    assert sum("in the box" in name for name in gradient) == len(gradient) / 2
-    assert len(search_keys()) == 2 * 3 + 4  # Tables 2 and 5; 3 and 6
-    assert sum(name.startswith("floor: ") for name in begun) == 6  # conditions
-    for method in ("vepso", "nsga2"):
-        assert sum(name.startswith(f"{method}: ") for name in begun) == len(search_keys())
-    assert len(begun) - len(gradient) == 6 + 2 * len(search_keys())
-    assert len(reproduction.more_terms) == 6 * 5 * 2  # conditions, N = 2 to 10, with and without
+    assert len(begun) == len(set(begun)) == len(pieces_of_paper(seeds=1))
+    kinds = Counter(name.partition(": ")[0] for name in begun)
+    assert kinds == {
+        "gradient": 6 * 5 * 2,  # conditions, N = 2 to 10, with and without the box
+        "floor": 6,  # conditions
+        "vepso": 2 * 3 + 4,  # Tables 2 and 5; what 3 and 6 have beyond them
+        "nsga2": 2 * 3 + 4,
+    }
+    gradient = [name for name in begun if name.startswith("gradient")]
+    assert sum(name.endswith("in the box") for name in gradient) == len(gradient) / 2
+    assert len(reproduction.more_terms) == len(gradient)
+
+
+def test_every_seed_is_a_piece_of_its_own():
+    one, three = (pieces_of_paper(seeds) for seeds in (1, 3))
+    assert len(three) - len(one) == 2 * len(SEARCHES) * (2 * 3 + 4)
+    assert len({piece.key for piece in three}) == len({piece.name for piece in three}) == len(three)
 
 
 def test_printed_coefficients_are_evaluated_where_there_are_any(reproduction):
@@ -103,14 +109,14 @@ def test_printed_coefficients_are_evaluated_where_there_are_any(reproduction):
     ids=lambda value: getattr(value, "label", value),
 )
 def test_printed_coefficients_give_the_printed_energy(reproduction, condition, terms):
-    result = found(reproduction, condition, terms)
+    result = reproduction.result(condition, terms)
     # To one unit of the last digit, not half: Table 2 prints 0.0629 and 0.0515 J where its own
     # coefficients give 0.06297 and 0.05143 J, by physics.md's integrator as by this one.
     assert abs(result.printed.energy - result.row.energy) < LAST_DIGIT[result.row.table]
 
 
 def test_the_misprint_agrees_only_mended(reproduction):
-    result = found(reproduction, ARM_HALF, 6)
+    result = reproduction.result(ARM_HALF, 6)
     assert abs(result.printed.energy - result.row.energy) > 5 * LAST_DIGIT[5]
     assert abs(result.mended.energy - result.row.energy) < LAST_DIGIT[5] / 2
     # physics.md, 'Misprints': 0.1492 J and max |W| = 6.6e-4 m
@@ -123,7 +129,7 @@ def test_the_misprint_agrees_only_mended(reproduction):
 )
 def test_printed_coefficients_give_what_another_integrator_gives(reproduction, condition, terms):
     plan = (
-        found(reproduction, condition, terms).printed if terms else reproduction.cycloids[condition]
+        reproduction.result(condition, terms).printed if terms else reproduction.cycloids[condition]
     )
     energy, residual = PRINTED[condition, terms]
     assert plan.energy == pytest.approx(energy, abs=0.6e-5)  # printed there to 1e-5
@@ -150,15 +156,15 @@ def test_the_gradient_answers_are_at_rest_on_arrival_and_verified(reproduction):
 def test_the_box_is_kept(reproduction):
     for result in reproduction.rows:
         largest = max(map(abs, result.in_box.coefficients))
-        assert largest <= result.row.condition.box * (1 + 1e-6)
-        assert result.in_box.provenance.settings["bound"] == result.row.condition.box
+        assert largest <= result.row.condition.bound * (1 + 1e-6)
+        assert result.in_box.provenance.settings["bound"] == result.row.condition.bound
         assert result.free.provenance.settings["bound"] is None
 
 
 @pytest.mark.parametrize("condition", GRADIENT, ids=lambda value: value.label)
 def test_the_gradient_reaches_the_energies_asked_for(reproduction, condition):
     in_box, free = GRADIENT[condition]
-    result = found(reproduction, condition, 6)
+    result = reproduction.result(condition, 6)
     assert result.in_box.energy <= in_box
     assert result.free.energy <= free
     assert result.free.energy < result.in_box.energy
@@ -179,12 +185,12 @@ def test_with_the_printed_residual_the_gradient_is_never_dearer(reproduction, co
     # two, which are not at rest (0.06307 J against 0.06297 J with 0.26 mm). With the residual that
     # the printed coefficients leave, the same box and the same integrator, they are one point of
     # the gradient's search, which must then find no worse.
-    printed = found(reproduction, condition, terms).printed
+    printed = reproduction.result(condition, terms).printed
     fair = plan_move(
         condition.task,
         CycloidPolynomial(terms),
         residual_limit=printed.residual,
-        bound=condition.box,
+        bound=condition.bound,
     )
     assert fair.residual <= printed.residual * ROUNDED
     assert fair.energy <= printed.energy * ROUNDED
@@ -219,41 +225,47 @@ def test_more_terms_never_cost_more(reproduction, condition, boxed):
 
 def test_each_plant_is_searched_as_in_the_paper(reproduction):
     for result in reproduction.rows:
-        (front,) = result.fronts  # one seed
+        (front,) = result.fronts[result.own_search]  # one seed
         # 3.1: vector evaluated particle swarm optimization; 3.2: NSGA-II
         methods = {"single-link": "vepso", "arm-on-flexible-link": "nsga2"}
-        assert front.method == methods[result.row.condition.plant.name]
+        assert front.method == methods[result.row.condition.task.plant.name]
         assert front.task == result.row.condition.task
         for point in front.points:
             assert len(point.coefficients) == result.row.terms
-            assert max(map(abs, point.coefficients)) <= result.row.condition.box
+            assert max(map(abs, point.coefficients)) <= result.row.condition.bound
 
 
 def test_a_search_is_judged_at_the_residual_of_the_papers_own_coefficients(reproduction):
     for result in reproduction.rows:
-        own = result.mended or result.printed
+        own = result.mended_or_printed
         if own is None:  # issue 3, item 7: else that of the N = 6 row for the same plant, mended
-            single = result.row.condition.plant == SINGLE_LINK_SIXTH.plant
-            six = found(reproduction, SINGLE_LINK_SIXTH if single else ARM_HALF, 6)
+            single = result.row.condition.task.plant == SINGLE_LINK_SIXTH.task.plant
+            six = reproduction.result(SINGLE_LINK_SIXTH if single else ARM_HALF, 6)
             own = six.mended or six.printed
         assert result.residual_level == own.residual
-        energies = [p.energy for p in result.fronts[0].points if p.residual <= own.residual]
-        if energies:
-            assert result.searched.median == min(energies)
-    assert any(result.searched.median > 0 for result in reproduction.rows)
+        for method, (front,) in result.fronts.items():
+            energies = [p.energy for p in front.points if p.residual <= own.residual]
+            spread = result.searched_by(method)
+            assert spread.count == bool(energies)
+            if energies:
+                assert spread.median == min(energies)
+    assert any(result.searched_by(result.own_search).count for result in reproduction.rows)
 
 
 @pytest.mark.parametrize("seeds", [0, -1])
 def test_a_reproduction_needs_a_seed(seeds):
     with pytest.raises(ValueError, match=f"seeds is {seeds}; give 1 or more"):
-        reproduce(seeds=seeds)
+        recompute_paper(seeds=seeds)
 
 
-def test_rows_are_found_by_table_condition_and_terms(reproduction):
-    result = reproduction.row(5, ARM_HALF, 4)
-    assert (result.row.table, result.row.condition, result.row.terms) == (5, ARM_HALF, 4)
-    with pytest.raises(KeyError):
-        reproduction.row(2, ARM_HALF, 4)
+def test_every_row_is_found_by_its_condition_and_terms(reproduction):
+    for row in ROWS:
+        result = reproduction.result(row.condition, row.terms)
+        assert (result.row.condition, result.row.terms) == (row.condition, row.terms)
+    printed = {(row.condition, row.terms) for row in ROWS}
+    for absent in set(product(CONDITIONS, (2, 4, 6, 8))) - printed:
+        with pytest.raises(KeyError):
+            reproduction.result(*absent)
 
 
 # Claims
@@ -396,7 +408,7 @@ def test_the_tuned_coefficients_would_be_optimal_if_the_gradient_found_no_less(r
 def report(reproduction, tmp_path_factory):
     """The folder that `write` filled, and what it says it wrote."""
     folder = tmp_path_factory.mktemp("results")
-    return folder, write(folder, reproduction, claims(reproduction))
+    return folder, write_reproduction(folder, reproduction, claims(reproduction))
 
 
 def test_the_report_says_what_it_wrote_and_writes_nothing_else(report):
@@ -495,7 +507,7 @@ def test_the_mended_coefficients_stand_in_a_column_of_their_own(reproduction):
 @pytest.mark.parametrize("width", [80, 120])
 def test_the_screen_shows_every_figure_whole(reproduction, width):
     console = Console(file=io.StringIO(), width=width)
-    show(console, reproduction, claims(reproduction))
+    print_reproduction(console, reproduction, claims(reproduction))
     text = console.file.getvalue()
     assert max(map(len, text.splitlines())) <= width
     assert "…" not in text

@@ -11,11 +11,13 @@ import pytest
 
 import studies.study.work as study_module
 from ocp import Front, InfeasibleTaskError, PointToPoint, SolverFailedError
-from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
-from studies.study.files import _file_name, write
+from studies.paper.case import Case
+from studies.paper.printed import ARM_HALF, CONDITIONS, SINGLE_LINK_SIXTH
+from studies.runs import pieces
+from studies.study.files import _file_name, write_study
 from studies.study.findings import case_findings, findings, percent, percents
-from studies.study.page import report
-from studies.study.work import PAPER_CASES, Case, StudySettings, amount_of_work, study
+from studies.study.page import study_page
+from studies.study.work import Study, StudySettings, amount_of_work, run_study
 
 QUICK = StudySettings(terms=2, points=6, runs=2, population=24, generations=8)
 CASES = (Case(SINGLE_LINK_SIXTH.task), Case(ARM_HALF.task))
@@ -41,12 +43,12 @@ def begun():
 @pytest.fixture(scope="module")
 def small(_floor_at_once, begun):
     """Two tasks, with searches cut short."""
-    return study(CASES, QUICK, begun.append)
+    return run_study(CASES, QUICK, begun.append)
 
 
 @pytest.fixture(scope="module")
 def text(small):
-    return report(small)
+    return study_page(small)
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +65,7 @@ def test_every_method_runs_on_every_task(small, begun):
         assert [run.front.method for run in found.comparison.runs] == METHODS
         assert found.failures == ()
         assert {run.front.settings["bound"] for run in found.comparison.runs} == {found.case.bound}
-    assert len(begun) == amount_of_work(CASES) == 14
+    assert len(begun) == amount_of_work(CASES, QUICK) == 14
     assert begun[0] == "single-link, 0 to pi/6, 0.8 s: epsilon"
 
 
@@ -80,8 +82,8 @@ def test_polish_never_makes_worse_what_it_starts_from(small):
 
 
 def test_the_papers_six_conditions_are_the_default():
-    assert len(PAPER_CASES) == 6
-    assert {case.bound for case in PAPER_CASES} == {0.2, 0.5}  # eqs (12) and (17)
+    assert len(CONDITIONS) == 6
+    assert {case.bound for case in CONDITIONS} == {0.2, 0.5}  # eqs (12) and (17)
 
 
 def test_a_plant_of_ones_own_needs_a_bound(two_links):
@@ -103,32 +105,32 @@ def test_settings_out_of_range_are_refused(wrong):
         StudySettings(**wrong)
 
 
-def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch):
+def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch, let_sweep):
     def fail(*arguments, **settings):
         raise SolverFailedError("it would not")
 
-    monkeypatch.setattr(study_module, "weighted_front", fail)
+    let_sweep("weighted", fail)
     monkeypatch.setattr(study_module, "energy_floor", fail)
-    (found,) = study(CASES[:1], QUICK).cases
+    (found,) = run_study(CASES[:1], QUICK).cases
     assert "weighted" not in {run.front.method for run in found.comparison.runs}
     assert found.failures == ("weighted: it would not", "floor: it would not")
     assert found.floor is None
     assert set(found.failures) <= set(case_findings(found))
 
 
-def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(monkeypatch, small):
+def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(monkeypatch, let_sweep, small):
     def infeasible(*arguments, **settings):
         raise InfeasibleTaskError("found no motion")
 
     found = [run.front for run in small.cases[0].comparison.runs if run.front.seed is not None]
-    monkeypatch.setattr(study_module, "epsilon_front", infeasible)
-    monkeypatch.setattr(study_module, "weighted_front", lambda *given, **_: pytest.fail("asked"))
+    let_sweep("epsilon", infeasible)
+    let_sweep("weighted", lambda *given, **_: pytest.fail("asked"))
     monkeypatch.setattr(
-        study_module, "search_many", lambda task, method, *given, **settings: [
+        pieces, "search_many", lambda task, method, *given, **settings: [
             front for front in found if front.method == method
         ],
     )  # fmt: skip
-    (case,) = study(CASES[:1], QUICK).cases
+    (case,) = run_study(CASES[:1], QUICK).cases
     assert case.failures == (
         "epsilon: found no motion",
         "weighted: not tried, as epsilon found no motion within the limits",
@@ -138,9 +140,9 @@ def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(monkeypatch, sma
 def test_a_search_that_is_interrupted_interrupts_the_study(monkeypatch, small):
     front = small.cases[0].comparison.runs[2].front
     cut = Front(**{**vars(front), "complete": False})
-    monkeypatch.setattr(study_module, "search_many", lambda *given, **settings: [cut, cut])
+    monkeypatch.setattr(pieces, "search_many", lambda *given, **settings: [cut, cut])
     with pytest.raises(KeyboardInterrupt):
-        study(CASES[:1], QUICK)
+        run_study(CASES[:1], QUICK)
 
 
 # What it says
@@ -232,7 +234,7 @@ def test_html_of_every_tag_is_closed(text):
 
 def test_one_task_needs_no_overview(small):
     (case, _) = small.cases
-    alone = ElementTree.fromstring(report(study_module.Study(QUICK, (case,), 1.0)))
+    alone = ElementTree.fromstring(study_page(Study(QUICK, (case,), 1.0)))
     assert [element.tag for element in alone.find("body")][:2] == ["h1", "section"]
 
 
@@ -286,9 +288,9 @@ def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
 
     def at_once(cases, settings, begin):
         asked.update(cases=cases, settings=settings)
-        return study_module.Study(settings, small.cases[:1], 1.0)
+        return Study(settings, small.cases[:1], 1.0)
 
-    monkeypatch.setattr(study_module, "study", at_once)
+    monkeypatch.setattr(study_module, "run_study", at_once)
     code, out, err = call(
         f"{MOVE} --bound 0.3 --terms 2 --points 6 --runs 2 --population 24 --generations 8 "
         "--fronts fronts --quiet"
@@ -307,7 +309,7 @@ def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
 
 
 def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small, tmp_path):
-    written = write(small, tmp_path / "a.html", tmp_path / "fronts")
+    written = write_study(small, tmp_path / "a.html", tmp_path / "fronts")
     names = [path.name for path in written[1:]]
     assert len(names) == len(set(names)) == 16
     assert "arm-on-flexible-link-0-to-pi-2-0.8-s-nsga2-polished-seed0.json" in names
@@ -321,10 +323,10 @@ def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkey
         asked.update(cases=cases)
         return small
 
-    monkeypatch.setattr(study_module, "study", at_once)
+    monkeypatch.setattr(study_module, "run_study", at_once)
     code, out, _ = call("study --quiet --output all.html")
     assert code == 0
-    assert asked["cases"] == PAPER_CASES
+    assert asked["cases"] == CONDITIONS
     assert f"- {findings(small)[0]}" in out
 
 
@@ -346,7 +348,7 @@ def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkey
     ],
 )
 def test_bad_input_is_refused_in_a_line_before_any_work(call, folder, monkeypatch, line, words):
-    monkeypatch.setattr(study_module, "study", lambda *given: pytest.fail("work was begun"))
+    monkeypatch.setattr(study_module, "run_study", lambda *given: pytest.fail("work was begun"))
     code, out, err = call(line)
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert words in err
@@ -364,7 +366,7 @@ def test_an_interrupt_leaves_no_file(call, folder, monkeypatch):
     def interrupted(*given):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(study_module, "study", interrupted)
+    monkeypatch.setattr(study_module, "run_study", interrupted)
     code, _, err = call(f"{MOVE} --quiet")
     assert (code, err.strip()) == (1, "quietarm: interrupted; nothing was written")
     assert list(folder.iterdir()) == []
@@ -374,7 +376,7 @@ def test_nothing_is_half_written(small, tmp_path, monkeypatch):
     def fail(*given):
         raise RuntimeError("drawing failed")
 
-    monkeypatch.setattr("studies.study.files.report", fail)
+    monkeypatch.setattr("studies.study.files.study_page", fail)
     with pytest.raises(RuntimeError, match="drawing failed"):
-        write(small, tmp_path / "study.html", tmp_path / "fronts")
+        write_study(small, tmp_path / "study.html", tmp_path / "fronts")
     assert list(tmp_path.iterdir()) == []
