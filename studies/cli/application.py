@@ -1,4 +1,4 @@
-"""The command `quietarm`: its group of commands, and what becomes of errors."""
+"""The group of commands, each loaded when it is asked for, and what becomes of errors."""
 
 from __future__ import annotations
 
@@ -8,29 +8,54 @@ from importlib import import_module
 
 import click
 
-from models import __version__
 from ocp import FileFormatError, QuietarmError
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
-COMMANDS = (
-    "plan",
-    "evaluate",
-    "front",
-    "polish",
-    "compare",
-    "floor",
-    "study",
-    "reproduce",
-)
-"""Each is of this name in the file of this name in `studies.cli.commands`."""
+COMMANDS = {
+    "plan": "Find the still move of least energy.",
+    "evaluate": "The figures of given coefficients.",
+    "front": "Find the trade-off of residual and energy.",
+    "polish": "Improve a front by the gradient.",
+    "compare": "Hold fronts of one task against each other.",
+    "floor": "Find the least energy over all joint motions.",
+    "study": "Every method on a task, in one report.",
+    "reproduce": "Recompute the paper.",
+}
+"""What each does; it is of this name in the file of this name in `studies.cli.commands`."""
+
+
+class LazyGroup(click.Group):
+    """A group that knows only what its commands do, and loads one when it is asked for."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The name and the command that was asked for, and the other words."""
+        name, command, others = super().resolve_command(ctx, args)
+        if name is not None:
+            command = getattr(import_module(f"studies.cli.commands.{name}"), name)
+        return name, command, others
+
+
+def _say_version(ctx: click.Context, param: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        from models import __version__
+
+        click.echo(f"quietarm, version {__version__}")
+        ctx.exit()
 
 
 @click.group(
+    cls=LazyGroup,
+    commands=[click.Command(name, short_help=does) for name, does in COMMANDS.items()],
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     no_args_is_help=True,
 )
-@click.version_option(__version__, prog_name="quietarm")
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_say_version,
+    help="Show the version and exit.",
+)  # fmt: skip
 def quietarm() -> None:
     """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
 
@@ -46,10 +71,6 @@ def quietarm() -> None:
       quietarm evaluate single-link --target pi/6 --duration 0.8 \\
           --coefficients=0.003347,-0.1697
     """  # noqa: D301  # \b is click's: do not rewrap
-
-
-for _name in COMMANDS:
-    quietarm.add_command(getattr(import_module(f"studies.cli.commands.{_name}"), _name))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
