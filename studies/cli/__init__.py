@@ -1,4 +1,4 @@
-"""The command `quietarm`: its commands, their options, and what is said of errors.
+"""The command `quietarm`: its commands, their options, and its error messages.
 
 May import every room; no other room imports this one or knows click.
 """

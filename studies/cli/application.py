@@ -1,4 +1,4 @@
-"""The group of commands, each loaded when it is asked for, and what becomes of errors."""
+"""The group of commands, each loaded when it is asked for, and the handling of errors."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ BAD_INPUT, NOT_SOLVED = 2, 1
 
 COMMANDS = {
     "plan": "Find the still move of least energy.",
-    "evaluate": "The figures of given coefficients.",
+    "evaluate": "Compute the figures of given coefficients.",
     "front": "Find the trade-off of residual and energy.",
     "polish": "Improve a front by the gradient.",
-    "compare": "Hold fronts of one task against each other.",
+    "compare": "Compare fronts of one task.",
     "floor": "Find the least energy over all joint motions.",
-    "study": "Every method on a task, in one report.",
+    "study": "Run every method on a task, and write one report.",
     "reproduce": "Recompute the paper.",
 }
-"""What each does; it is of this name in the file of this name in `studies.cli.commands`."""
+"""What each command does; `NAME` is the function `NAME` of `studies.cli.commands.NAME`."""
 
 
 class LazyGroup(click.Group):

@@ -48,14 +48,14 @@ def write_plan(
 
 
 def say_written(*files: Path | None) -> None:
-    """Say which files were written, a line for each; None is a file that was not asked for."""
+    """Print the names of the files that were written; None is a file that was not asked for."""
     for path in files:
         if path is not None:
             click.echo(f"wrote {path}")
 
 
 def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequence[str]]) -> None:
-    """Make sure that no option was typed that does nothing here; ValueError says for what it is.
+    """Refuse an option that was typed and has no effect; ValueError says what it is for.
 
     Parameters
     ----------

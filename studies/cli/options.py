@@ -25,7 +25,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 class Parsed(click.ParamType):
-    """A value read by a function that raises ValueError with a message for people."""
+    """A value read by a function that raises ValueError with a message for the user."""
 
     def __init__(self, name: str, parse: Callable[[str], Any]) -> None:
         self.name, self.parse = name, parse
@@ -101,7 +101,7 @@ _TASK_OPTIONS = (
     click.option("--acceleration-limit", type=float, help="Largest joint acceleration [rad/s^2]."),
     click.option("--deflection-limit", type=LENGTH, help="Largest tip displacement on the way."),
     click.option("--residual-window", type=TIME, default=1.0, show_default=True,
-                 help="How long the residual is watched after arrival."),
+                 help="Time after arrival in which the residual is measured."),
 )  # fmt: skip
 _OUTPUT_OPTIONS = (
     click.option("--output", type=OUTPUT, help="Write the plan to this JSON file."),

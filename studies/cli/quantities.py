@@ -1,4 +1,4 @@
-"""Angles, lengths and times as people write them: 30deg, -pi/2, 1mm, 800ms."""
+"""Angles, lengths and times as they are typed: 30deg, -pi/2, 1mm, 800ms."""
 
 from __future__ import annotations
 

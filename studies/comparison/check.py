@@ -14,9 +14,9 @@ REST = 1e-6
 
 
 def check_figures(front: Front, name: str) -> None:
-    """Evaluate a few motions of a front again, and refuse it where they cost something else.
+    """Evaluate a few motions of a front again, and refuse it where the figures differ.
 
-    The first point, the middle one and the last: who edits a file, or converts one, rarely leaves
+    The first point, the middle one and the last: a file that was edited or converted rarely keeps
     all three as they were.
 
     Parameters

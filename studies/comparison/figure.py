@@ -1,4 +1,4 @@
-"""Fronts over each other in a picture: whole, the nearly still end, and how far above the best."""
+"""Fronts in one picture: whole, the nearly still end, and how far above the best."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ _DASHES = {
     VEPSO.then_polished(): (0, (4, 1, 1, 1)),
 }
 _STILLEST = 1e-6
-"""Residuals below this [m] are alike to the eye: the logarithmic axes begin here."""
+"""The logarithmic axes begin at this residual [m]: below it, differences do not matter."""
 _TALLEST = 1.6
 """Panels end at this multiple of the energy of the best nearly still motion."""
 
 BANDS = (
-    "Of several seeds: what half of them reach (of two,\n"
-    "the better one), in a band from the best to the worst"
+    "Several seeds: the line is what half of them reach\n"
+    "(of two, the better one), the band best to worst"
 )
 
 Array = NDArray[np.float64]

@@ -21,12 +21,12 @@ def check_fronts(fronts: Sequence[Front], names: Sequence[str], *, twice: bool =
     names : sequence of str
         What to call each in a message.
     twice : bool
-        Whether one may stand among them twice.
+        Whether one may be given twice.
 
     Raises
     ------
     ValueError
-        When there are fewer than two, one is empty, one stands twice, or their tasks differ; in
+        When there are fewer than two, one is empty, one is given twice, or their tasks differ; in
         one line, with what differs.
     """
     if len(fronts) < 2:
@@ -62,8 +62,8 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
     Returns
     -------
     dict of str to list of int
-        Positions in `fronts` by the label of their group: the method, with the settings that tell
-        it from another group of the same method.
+        Positions in `fronts` by the label of their group: the method, with the settings in
+        which it differs from another group of the same method.
     """
     groups: dict[str, list[int]] = {}
     for i, front in enumerate(fronts):
@@ -83,7 +83,7 @@ def _settings(front: Front) -> dict[str, object]:
 
 
 def _label(front: Front, alike: Sequence[Front]) -> str:
-    """The method, with the settings that tell it from those of the same method."""
+    """The method, with the settings in which it differs from others of the same method."""
     words = [method_of(front.method).label]
     for name, value in _settings(front).items():
         others = [_settings(other).get(name) for other in alike]

@@ -1,4 +1,4 @@
-"""Fronts of one task held against each other: by how much each misses what the best found."""
+"""Fronts of one task compared: how far each is from the best of all."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ Array = NDArray[np.float64]
 class Measured:
     """One front and its figures in a comparison.
 
-    A front is read as a staircase: within a residual only motions count that were found with that
-    residual or less. A front of few points would lose by its steps alone, so indicators are those
-    of the front filled with the motions between its points, as `filled` does for all alike.
+    A front is read as a staircase: its energy at a residual is the least that was found with that
+    residual or less. The steps of a front of few points would count against it, so the indicators
+    are those of the front filled with motions between its points, by `filled`.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Measured:
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """The runs of one method with one set of settings, a seed each.
+    """The runs of one method with one set of settings, one for each seed.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Group:
         Its fronts.
     best, median, worst : ndarray, shape (points, 2), read-only
         Attainment surfaces, residual [m] and energy [J]: what at least one run, half of the runs
-        and every run attained. Alike for a single run.
+        and every run attained. The three are equal for a single run.
     """
 
     label: str
@@ -105,13 +105,13 @@ class Group:
         return Spread.of(values)
 
     def reached(self, level: int) -> int:
-        """How many runs have a motion within this one of the residual levels."""
+        """How many runs have a motion within one of the residual levels, by its position."""
         return sum(bool(np.isfinite(run.energies[level])) for run in self.runs)
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Fronts of one task, measured alike.
+    """Fronts of one task, all measured in the same way.
 
     Attributes
     ----------
@@ -123,14 +123,14 @@ class Comparison:
         What IGD+ and epsilon are measured against.
     corner : tuple of float
         Residual [m] and energy [J] that hypervolumes are measured from: the largest reference of
-        the fronts, or a tenth beyond the best front's ends where these lie farther out.
+        the fronts, or a tenth beyond the ends of the best front if that is larger.
     extent : tuple of float
         Residual [m] and energy [J] between the ends of the reference front: the units of IGD+ and
-        epsilon, so that both objectives weigh alike.
+        epsilon, so that both objectives have the same weight.
     levels : tuple of float
         Residuals [m] at which energies are compared.
     best_front : ndarray, shape (n, 2), read-only
-        What no filled front beats: residuals [m], rising, and energies [J].
+        What no filled front dominates: residuals [m], rising, and energies [J].
     best : tuple of float
         Its least energy [J] within each level; NaN where it has none.
     coverage : ndarray, shape (groups, groups), read-only
@@ -179,8 +179,8 @@ def compare_fronts(
 ) -> Comparison:
     """Measure fronts of one task against each other.
 
-    Indicators are moocore's; the front that IGD+ and epsilon are measured against is what no point
-    of any front beats, thinned to even distances, so that the front of most points does not decide.
+    The indicators are moocore's. IGD+ and epsilon are measured against the points that none of any
+    front dominates, thinned to even distances, so that the front of most points does not decide.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def compare_fronts(
     Raises
     ------
     ValueError
-        When there are fewer than two fronts, one is empty, one stands twice, or their tasks differ.
+        When there are fewer than two fronts, one is empty or given twice, or their tasks differ.
     """
     names = list(names) or [f"front {i}" for i in range(1, len(fronts) + 1)]
     check_fronts(fronts, names)

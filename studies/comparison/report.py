@@ -27,7 +27,7 @@ def load_fronts(paths: list[Path]) -> tuple[list[Front], list[str]]:
 
 
 def with_floor(comparison: Comparison, console: Console) -> Comparison:
-    """The comparison with the floor of its task; the console says so where it cannot be found."""
+    """The comparison with the floor of its task; the console says so if it is not found."""
     try:
         floor = energy_floor(comparison.task)
     except QuietarmError as error:

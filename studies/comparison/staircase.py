@@ -16,7 +16,7 @@ from ocp.rollout import default_steps
 
 Array = NDArray[np.float64]
 _KEPT = 1e-6
-"""Share by which a limit may be passed, as where a search verifies its points."""
+"""Share by which a limit may be exceeded, as when a search verifies its points."""
 _STATIONS = 101
 
 
@@ -28,22 +28,22 @@ def objectives(front: Front) -> Array:
 def filled(front: Front, points: int) -> Array:
     """Residual and energy of a front and of motions between its points.
 
-    So fronts are not judged by how many points they hold. The coefficients of neighbours are
-    interpolated and the motions evaluated: each can be driven, stays in the box, and keeps the
-    task's limits or does not count.
+    So that a front is not judged by its number of points. The coefficients of neighbouring points
+    are interpolated and the motions evaluated: each is a motion that can be driven and stays in the
+    box; those that break a limit of the task do not count.
 
     Parameters
     ----------
     front : Front
         The front.
     points : int
-        About how many points and motions between there are to be; a front that has them stays as
-        it is.
+        About how many points and motions between them to return; a front of that many points stays
+        as it is.
 
     Returns
     -------
     ndarray, shape (n, 2)
-        Residuals [m], rising, and energies [J], falling, of what no other of them beats.
+        Residuals [m], rising, and energies [J], falling, of those that no other dominates.
     """
     own = objectives(front)
     between = ceil(points / max(len(own) - 1, 1)) - 1
@@ -59,7 +59,7 @@ def filled(front: Front, points: int) -> Array:
 
 
 def best_of(fronts: list[Array]) -> Array:
-    """The points of several fronts that none of them beats; residuals rise."""
+    """The points of several fronts that none of them dominates; residuals rise."""
     best = moocore.filter_dominated(np.vstack(fronts))
     return best[np.argsort(best[:, 0])]
 

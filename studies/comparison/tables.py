@@ -15,7 +15,7 @@ _MISS = "{:.2g}".format
 
 
 def tables(comparison: Comparison) -> dict[str, Table]:
-    """The tables for people, by the name of their file: fronts, energies, coverage."""
+    """The tables that are shown, by name: fronts, energies, coverage."""
     return {
         "fronts": _fronts(comparison),
         "energies": _energies(comparison),
@@ -132,26 +132,28 @@ def runs_table(comparison: Comparison) -> Table:
 def how_to_read(comparison: Comparison) -> list[str]:
     """What the figures of any comparison mean, a sentence or two each."""
     lines = [
-        "A front is a staircase: within a residual only those motions count that were found with "
+        "A front is read as a staircase: its energy at a residual is the least that was found with "
         "that residual or less."
     ]
     if comparison.fill:
         lines[0] += (
-            " A front of few points would lose by its steps alone. So fronts are filled, all "
-            "alike: motions with coefficients between those of neighbours are evaluated, until "
-            f"there are about {comparison.fill}. Indicators, and the best that energies are "
-            "measured against, are those of filled fronts."
+            " The steps of a front of few points would count against it. So every front is "
+            "filled: between neighbouring points, motions with interpolated coefficients are "
+            f"evaluated, about {comparison.fill} for each front. The indicators, and the best that "
+            "energies are compared with, are those of filled fronts."
         )
     else:
-        lines[0] += " Motions between them do not count: fronts of few points lose by their steps."
+        lines[0] += (
+            " Motions between points do not count, so a front of few points loses by its steps."
+        )
     lines.append(
         "Coverage: share of the points found that the other front, filled, dominates or equals."
     )
     if any(len(group.runs) > 1 for group in comparison.groups):
         lines.append(
-            "Of several seeds the tables show the median, over those that reach the residual (of "
-            "two the middle between them); the picture shows what at least half of them reach (of "
-            "two the better one)."
+            "For several seeds the tables show the median over those that reach the residual (for "
+            "two, their mean); the picture shows what at least half of the seeds reach (for two, "
+            "the better one)."
         )
     return lines
 
@@ -162,8 +164,8 @@ def units(comparison: Comparison) -> list[str]:
     lines = [
         f"Hypervolume: share of the box up to {millimetres(residual)} and {energy:.4g} J, the same "
         "for all, that a front dominates.",
-        f"IGD+ and (additive) epsilon are against {comparison.reference}, thinned to even "
-        "distances. Both objectives weigh alike: 1 is the extent of that front, "
+        f"IGD+ and (additive) epsilon are measured against {comparison.reference}, thinned to even "
+        "distances. Both objectives are scaled: 1 is the extent of that front, "
         f"{millimetres(length)} or {joules:.4g} J. IGD+ is the mean distance by which a front "
         "misses it, epsilon the least shift in both objectives that makes up for the worst miss.",
     ]

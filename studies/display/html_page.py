@@ -117,7 +117,7 @@ def bullets(lines: Iterable[str]) -> Markup:
 
 
 def table_element(table: Table) -> Markup:
-    """A table with its title above it, that scrolls within itself where it is too wide."""
+    """A table with its title above it, with a scroll bar of its own where it is too wide."""
     heading, *lines = table.upright()
     head = element("tr", *(element("th", cell, scope="col") for cell in heading))
     rows = [

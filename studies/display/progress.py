@@ -22,7 +22,7 @@ from studies.display.words import print_lines
 Display = TypeVar("Display")
 
 PLAIN_SECONDS = 2.0
-"""Between the plain lines of work whose pieces are too many for a line each."""
+"""Seconds between plain lines, where the pieces are too many for one line each."""
 _COLUMNS = (
     BarColumn(),
     MofNCompleteColumn(),
@@ -59,9 +59,9 @@ def shown(
     columns : sequence of ProgressColumn
         Of the bars.
     nothing, lines : Display
-        What shows nothing, and what prints plain lines elsewhere than on a terminal.
+        What shows nothing, and what prints plain lines where there is no terminal.
     bar : callable
-        Makes of a terminal's bars what draws in them.
+        Takes the bars of a terminal and returns what draws in them.
 
     Yields
     ------
@@ -136,8 +136,8 @@ def count(
     Yields
     ------
     callable
-        To be called with the number of pieces done and of all; on no terminal that is a line every
-        two seconds.
+        To be called with the number of pieces done and of all. Where there is no terminal, it
+        prints a line every two seconds.
     """
     said = time.monotonic()
 

@@ -1,4 +1,4 @@
-"""How searches are going: lines that renew themselves on a terminal, plain lines elsewhere."""
+"""Progress of searches: bars on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from studies.display.progress import PLAIN_SECONDS, shown
 from studies.display.words import millimetres, print_lines
 
 _WIDE = 120
-"""Columns of a terminal from which every figure has its name."""
+"""A terminal of this many columns shows every figure with its name."""
 
 
 class SearchDisplay:
-    """Hears of every generation, and of every search that is done; shows nothing of it."""
+    """Is told of every generation, and of every search that ends; shows nothing."""
 
     def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
         """Show where a search is; the seed tells one of several."""
@@ -74,7 +74,7 @@ class _Bars(SearchDisplay):
 
 
 class _Lines(SearchDisplay):
-    """A line every few seconds for every search, and one for its last generation."""
+    """A line every few seconds for each search, and one for its last generation."""
 
     def __init__(self, console: Console) -> None:
         self._console = console

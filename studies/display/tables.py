@@ -25,7 +25,7 @@ class Column:
     key: str = ""
 
     def text(self, cell: Cell) -> str:
-        """A cell for people; a dash where there is nothing."""
+        """A cell as it is shown; a dash where it is empty."""
         if cell is None:
             return "-"
         return self.form(cell) if isinstance(cell, float) else str(cell)
@@ -33,10 +33,11 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells under columns; CSV keeps every digit, the other forms are for people.
+    """Rows of cells under columns; CSV keeps every digit, the other forms are rounded.
 
-    For people a row stands upright, beside the others: a table has few rows and many quantities,
-    and so fits a narrow terminal. The first column names the rows; empty ones are left out.
+    On screen and in Markdown the table is turned: each column becomes a line. There are few rows
+    and many quantities, so it fits a narrow terminal. The first column names the rows; columns
+    that are empty are left out.
     """
 
     title: str
@@ -64,7 +65,7 @@ class Table:
         return "\n".join([f"**{self.title}**", "", *rows]) + "\n"
 
     def csv(self) -> str:
-        """The table as comma-separated values, a row a line, numbers in full."""
+        """The table as comma-separated values, one line for each row, with every digit."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow([column.key or column.heading for column in self.columns])
@@ -72,7 +73,7 @@ class Table:
         return text.getvalue()
 
     def upright(self) -> list[list[str]]:
-        """The table as people read it: a line a quantity, its heading first; the names on top."""
+        """The table turned: one line for each quantity, its heading first; the names on top."""
         return [
             [column.heading, *(column.text(row[i]) for row in self.rows)]
             for i, column in enumerate(self.columns)
@@ -88,7 +89,7 @@ def print_table(console: Console, table: Table) -> None:
     console : rich.console.Console
         Where to.
     table : Table
-        The table; no word of it is cut as long as one row and the headings fit.
+        The table; no word of it is cut, as long as one row fits beside the headings.
     """
     wide = console.options.update(max_width=_WIDEST)
     if console.measure(table.for_screen(), options=wide).maximum <= console.width:

@@ -1,4 +1,4 @@
-"""Tasks in words: in what two of them differ, which the paper has, and what to call one."""
+"""Tasks in words: where two of them differ, which are the paper's, and what to call one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SAME = 1e-9
 
 
 def task_difference(one: PointToPoint, other: PointToPoint) -> str:
-    """Every quantity in which two tasks differ, in words; empty where they are one.
+    """Every quantity in which two tasks differ, in words; empty where they are equal.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
 from studies.reports.plan import add_figures, add_move, upright_table
 
 TERMS = 6
-"""Terms of the plan that a floor is held against."""
+"""Terms of the plan that a floor is compared with."""
 
 
 def plan_beside(floor: Floor) -> Plan | None:
@@ -29,7 +29,7 @@ def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
     floor : Floor
         The floor.
     plan : Plan or None
-        The plan to hold against it.
+        The plan to compare it with.
     """
     motion, check = floor.motion, floor.verification
     table = upright_table()
@@ -55,7 +55,7 @@ def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
     table.add_row("status", floor.status.text + unsettled)
     table.add_row(
         "verified",
-        f"by CVODES, anew at every jump: {check.steps} intervals differ by "
+        f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
         f"{abs(check.energy_difference) / motion.energy:.0e} in energy",
     )
     table.add_row("time", f"{floor.provenance.seconds:.2f} s")
@@ -72,8 +72,8 @@ def _left(floor: Floor) -> str:
     if floor.change < 0:
         falls = "; on the last grid the energy rose"
     elif floor.ratio is not None:
-        falls = f"; the last grid gained {floor.ratio:.2f} of the one before"
+        falls = f"; the last grid gained {floor.ratio:.2f} of what the one before gained"
     return (
-        f"about {floor.left:.2g} J ({floor.left / floor.energy:.2%}) to be gained by ever finer "
-        f"grids{falls}"
+        f"about {floor.left:.2g} J ({floor.left / floor.energy:.2%}) to be gained by finer grids"
+        f"{falls}"
     )

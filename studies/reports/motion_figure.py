@@ -14,7 +14,7 @@ from ocp import Floor, Plan, Trajectory, evaluate_coefficients
 
 _SAMPLES = 1500
 _SHOWN, _ABOVE = 0.99, 1.15
-"""The torque panel reaches this far above what the torque stays below 99 % of the time."""
+"""The torque panel ends at this multiple of the torque that is not exceeded 99 % of the time."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def _sampled(motion: Plan | Floor) -> Trajectory:
 
 
 def _leave_out_jolts(axis: Axes, lines: Sequence[Line]) -> None:
-    """Let a floor's jolts, a thousand times its other torque for a moment, leave the panel."""
+    """Cut off a floor's jolts: for a moment their torque is a thousand times the rest."""
     peaks, usual = [0.0], [0.0]
     for line in lines:
         sampled = _sampled(line.plan)

@@ -1,4 +1,4 @@
-"""A plan on screen."""
+"""A plan on the screen, and the lines that it shares with a floor."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def upright_table() -> Table:
 
 
 def add_move(table: Table, task: PointToPoint, motion: Motion) -> None:
-    """Add the move and its limits, with what the motion makes of them."""
+    """Add the move and its limits, and where the motion breaks one."""
     table.add_row(
         "move",
         f"{task.plant.name}, {_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s",

@@ -1,4 +1,4 @@
-"""Fronts in words: what each holds, and the spread over seeds."""
+"""Fronts of searches on the screen: what each holds, and the spread over seeds."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def quartiles(spread: Spread, form: str, unit: str = "") -> str:
 
 
 def reached(spread: Spread) -> str:
-    """How many of the seeds the quartiles of the energy at `STILL` are of."""
+    """How many seeds have an energy at `STILL`."""
     return f"{spread.count} of {spread.seeds} seeds reach {millimetres(STILL)}"
 
 

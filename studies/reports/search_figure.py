@@ -1,4 +1,4 @@
-"""Fronts on paper: energy against residual, how they grew, and how they spread over seeds."""
+"""Fronts of searches as a picture: energy against residual, hypervolume, spread over seeds."""
 
 from __future__ import annotations
 
@@ -20,12 +20,11 @@ _MOST_NAMED = 10
 _LOGARITHMIC_FROM = 5.0
 """Residuals that span less than this factor are drawn on a linear axis."""
 _LEAST_SPAN = 0.01
-"""The axis of energies spans at least this share of their median, so that seeds that agree look so.
-"""
+"""The axis of energies spans at least this share of their median: seeds that agree lie close."""
 
 
 def front_figure(fronts: Sequence[Front], title: str = "") -> Figure:
-    """Draw fronts of one method: a line a seed, their hypervolume, and their spread.
+    """Draw fronts of one method: a line for each seed, their hypervolume, and their spread.
 
     Parameters
     ----------
@@ -77,7 +76,7 @@ def _draw_fronts(axis: Axes, fronts: Sequence[Front], colours: dict[int | None, 
 
 
 def scale_residuals(axis: Axes, residuals: Sequence[float]) -> None:
-    """A logarithmic axis whose labels stay apart, or a linear one where the range is narrow.
+    """Make the axis of residuals logarithmic, or linear where their range is narrow.
 
     Parameters
     ----------

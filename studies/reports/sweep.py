@@ -1,4 +1,4 @@
-"""The gradient's fronts in words: ends, knee, energies, and what is missing."""
+"""The gradient's fronts on the screen: ends, knee, energies, and what is missing."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def print_sweep(console: Console, front: Front, asked_for: int) -> None:
 
 
 def point_lines(front: Front) -> list[str]:
-    """The ends, the knee, and the least energy within some residuals, a line each."""
+    """The ends, the knee, and the least energy within some residuals, one line for each."""
     chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
     if len(front.points) < 3:
         del chosen["knee"]  # it would be an end
@@ -64,16 +64,16 @@ def failure_lines(front: Front, asked_for: int) -> list[str]:
 
 
 def gap_lines(front: Front) -> list[str]:
-    """The ranges of the residual that no weight reaches, a line each."""
+    """The ranges of the residual that no weight reaches, one line for each."""
     return [
         f"no weight reaches residuals from {millimetres(begin)} to {millimetres(end)}: the front "
-        "bends the wrong way there"
+        "is not convex there"
         for begin, end in front.gaps
     ]
 
 
 def interruption() -> QuietarmError:
-    """What to end with after Ctrl-C."""
+    """The error to raise after Ctrl-C."""
     return QuietarmError("interrupted; what was found until then is kept")
 
 

@@ -1,4 +1,4 @@
-"""The gradient's fronts on paper: what was found, what failed, what polish gained."""
+"""The gradient's fronts as a picture: what was found, what failed, what polish gained."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _draw_gaps(axis: Axes, front: Front) -> None:
 
 
 def _draw_failures(axis: Axes, front: Front) -> None:
-    """A cross at the foot for every residual limit that failed; weights have no place there."""
+    """Draw a cross on the axis at every residual limit that failed; weights have no residual."""
     limits = [one.asked[RESIDUAL_LIMIT] for one in front.failures if RESIDUAL_LIMIT in one.asked]
     label = f"{len(front.failures)} not found"
     if limits:

@@ -31,7 +31,7 @@ class Claim:
 
 
 def claims(result: Reproduction) -> list[Claim]:
-    """Hold the paper's claims against the recomputed figures.
+    """Judge the paper's claims by the recomputed figures.
 
     Parameters
     ----------

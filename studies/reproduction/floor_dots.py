@@ -1,4 +1,4 @@
-"""The multiples of the floor as a picture: a band a condition, a line of dots a method."""
+"""The multiples of the floor as a picture: a band for each condition, dots for each method."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _BAND = len(SERIES) - 1 + 2 * _MARGIN
 def floor_dots(result: Reproduction) -> Figure:
     """Draw every multiple as a dot with its number of terms in it.
 
-    The distance above the floor is drawn on a logarithmic scale, which tells the dots near the
-    floor apart; the axis is marked in multiples.
+    The distance above the floor is drawn on a logarithmic scale, which separates the dots near the
+    floor; the axis is marked in multiples.
 
     Parameters
     ----------

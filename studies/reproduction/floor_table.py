@@ -18,8 +18,8 @@ SERIES = (PAPER, *(method.label for method in SEARCHES), IN_BOX, FREE)
 _PRINTED_TERMS = (2, 4, 6)
 LEGEND = (
     "Floor: the least energy over all joint motions that start and end at rest, joint and "
-    "structure, without limits; it starts and stops with jolts. Left: what ever finer grids would "
-    "still take off it, estimated; starts that agree: how many of the solver's starts end within "
+    "structure, without limits; it starts and stops with jolts. Left: an estimate of what finer "
+    "grids would still take off it. Starts that agree: how many of the solver's starts end within "
     "0.5 % of the best. The paper's energies are the printed ones, with the paper's residual; "
     "VEPSO and NSGA-II are judged at that residual, the gradient and the floor at rest."
 )
@@ -77,7 +77,7 @@ def _of_spread(series: str, terms: int, spread: Spread, floor: float) -> Multipl
 
 
 def floor_table(result: Reproduction, plant: str | None = None) -> Table:
-    """The multiples as a table: a row a condition; of one plant, whose name is in the title."""
+    """The multiples as a table, one row for each condition: all, or those of one plant."""
     columns = [
         Column("plant", key="plant"),
         Column("move", key="move"),
@@ -119,7 +119,7 @@ def _agreement(floor: Floor) -> str:
 
 
 def floor_tables(result: Reproduction) -> list[Table]:
-    """The same, a table a plant, narrow enough for a terminal."""
+    """The same, one table for each plant, narrow enough for a terminal."""
     plants = dict.fromkeys(condition.task.plant.name for condition in CONDITIONS)
     return [floor_table(result, plant) for plant in plants]
 
@@ -137,7 +137,7 @@ def finding(result: Reproduction) -> str:
         return f"{min(values):.2f} to {max(values):.2f}"
 
     return (
-        f"The paper's plans need {span(PAPER)} times the least energy that its plants permit; the "
-        f"gradient's with six terms in the paper's box {span(IN_BOX, 6)} times, with ten terms and "
-        f"no box {span(FREE, 10)} times."
+        f"The paper's plans need {span(PAPER)} times the least energy of any joint motion. The "
+        f"gradient's plans need {span(IN_BOX, 6)} times that energy with six terms in the paper's "
+        f"box, and {span(FREE, 10)} times with ten terms and no box."
     )

@@ -55,11 +55,12 @@ _TITLES = {
 _COLOURS = {2: "tab:green", 4: "tab:red", 6: "tab:blue"}  # those of the paper's Figs 2 and 5
 LEGEND = (
     "Printed: as in the paper; printed coefficients: the same recomputed here. Gradient: the least "
-    "energy at rest on arrival, within the paper's bound on the coefficients or without one; rest "
-    "may cost a little more than the paper's small residual. VEPSO, NSGA-II: the cheapest point of "
-    "a front found with the paper's settings whose residual is no larger than that of the paper's "
-    "own coefficients (where none are printed, of its N = 6 row for the same plant). Energies F2 "
-    "and residuals F1 (at the tip) of coefficients and gradient are by CVODES."
+    "energy at rest on arrival, within the paper's bound on the coefficients or without one; "
+    "arriving at rest may cost a little more than the paper's small residual does. VEPSO, NSGA-II: "
+    "the cheapest point of a front found with the paper's settings whose residual is no larger "
+    "than that of the paper's own coefficients (where none are printed, of its N = 6 row for the "
+    "same plant). Energies F2 and residuals F1 (at the tip) of coefficients and gradient are by "
+    "CVODES."
 )
 
 

@@ -18,7 +18,9 @@ def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
 
 
 def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
-    """Say where more workers will start than there are cores; never more than pieces of work."""
+    """Warn where more workers start than there are cores; no more start than pieces of work."""
     cores, workers = os.cpu_count() or 1, min(workers, pieces)
     if workers > cores:
-        console.print(f"{workers} workers on {cores} cores: they will share them", highlight=False)
+        console.print(
+            f"{workers} workers will share {cores} core{'s' * (cores > 1)}", highlight=False
+        )

@@ -89,7 +89,7 @@ def run_polish(
 
 
 def thinned(front: Front, points: int) -> Front:
-    """A front of fewer points, evenly many apart, its ends among them.
+    """A front of fewer points, evenly spaced along it, its ends among them.
 
     Parameters
     ----------
@@ -108,13 +108,13 @@ def thinned(front: Front, points: int) -> Front:
 
 
 def _spread(items: Sequence, number: int) -> tuple:
-    """At most this many of the items, evenly many apart, with the first and the last."""
+    """At most this many of the items, evenly spaced, with the first and the last."""
     places = np.linspace(0, len(items) - 1, min(number, len(items))).round().astype(int)
     return tuple(items[i] for i in places)
 
 
 def gains_table(gains: Sequence[Gain]) -> Table:
-    """A row a point: residual, energy before and after, and the share that was saved."""
+    """For each point: residual, energy before and after, and the share that was saved."""
     columns = [
         Column("residual [m]", key="residual_m"),
         Column("before [J]", key="before_J"),
@@ -142,7 +142,7 @@ def _print_gains(
     beaten = number - len(polished.points)
     if beaten:
         some = "1 point is" if beaten == 1 else f"{beaten} points are"
-        lines.append(f"{some} beaten by another of these now, and left out")
+        lines.append(f"{some} dominated by another now, and left out")
     print_lines(console, *lines, *failure_lines(polished, number))
 
 

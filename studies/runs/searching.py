@@ -167,7 +167,7 @@ def run_front(
 def _fronts(
     errors: Console, task: PointToPoint, method: Method, options: Mapping[str, Any], quiet: bool
 ) -> tuple[list[Front], LostSeedsError | None, list[str]]:
-    """What every seed found, shown as it goes; the error of those whose process died; warnings."""
+    """What every seed found, the error of those whose process died, and warnings."""
     runs, troubles = options["runs"], list[str]()
     warn_of_workers(errors, options["workers"], runs)
     with search_display(errors, quiet=quiet) as display:
@@ -181,7 +181,7 @@ def _fronts(
 
 
 def _interruption(fronts: Sequence[Front], runs: int) -> str:
-    """What to say of searches that were interrupted; nothing where none was."""
+    """The message for searches that were interrupted; empty where none was."""
     done = sum(front.complete for front in fronts)
     if done == runs:
         return ""
@@ -201,7 +201,7 @@ def _refuse_same_files(
 ) -> None:
     written = [*(("--output", path) for path in targets.values()), ("--figure", figure)]
     refuse_same_file([*written, ("--checkpoint", options["checkpoint"])])
-    # a checkpoint may be gone on in, but not become a front
+    # a checkpoint may be continued in the same file, but not overwritten by a front
     refuse_same_file([*written, ("--resume", options["resume"])])
 
 

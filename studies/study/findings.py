@@ -1,4 +1,4 @@
-"""What a study found, in sentences that are computed from it."""
+"""What a study found, in sentences with its figures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SEARCHES = methods_of(Kind.METAHEURISTIC)
 STILL_LEVEL = 1
 """Which of the comparison's residual levels the summary speaks of."""
 _ALIKE = 1e-4
-"""Energies within this share of each other count as one: filled fronts are no finer."""
+"""Energies within this share of each other count as equal: filled fronts are no finer."""
 _REST = 1e-6
 """A residual within this [m] counts as rest."""
 
@@ -99,8 +99,8 @@ def _weighted(found: CaseStudy) -> str:
     gaps = group.runs[0].front.gaps
     if not gaps:
         return "The weighted sum reaches the whole front."
-    holes = [f"{millimetres(low)} and {millimetres(high)}" for low, high in gaps]
-    return f"No weight of a weighted sum reaches the front between {_listed(holes)}."
+    holes = [f"between {millimetres(low)} and {millimetres(high)}" for low, high in gaps]
+    return f"No weighted sum reaches the front {_listed(holes)}."
 
 
 def _polish(found: CaseStudy, method: Method) -> str:
@@ -155,7 +155,7 @@ def _floor(found: CaseStudy) -> str:
 
 
 def findings(study: Study) -> list[str]:
-    """What the whole study found, in a few sentences for someone in a hurry."""
+    """What the whole study found, in a few sentences."""
     lines = [_whose_hypervolume(study), *(_searches(study, method) for method in SEARCHES)]
     lines += [_polishes(study), _weights(study), _floors(study), _times(study)]
     return [line for line in lines if line]
@@ -203,10 +203,13 @@ def _polishes(study: Study) -> str:
             if method.name in found.polishes
         ]
         if medians:
-            words.append(f"{percents(medians)} of that of {method.label}'s")
+            words.append(f"{percents(medians)} for {method.label}")
     if not words:
         return ""
-    return f"Polished by the gradient, the median point saves energy: {_listed(words)}."
+    return (
+        "Polished by the gradient, the median point saves this share of its energy: "
+        f"{_listed(words)}."
+    )
 
 
 def _weights(study: Study) -> str:
@@ -214,7 +217,7 @@ def _weights(study: Study) -> str:
     holes = [len(group.runs[0].front.gaps) > 0 for group in groups if group is not None]
     if not holes:
         return ""
-    return f"The weighted sum leaves holes in {sum(holes)} of {len(holes)} fronts."
+    return f"The weighted sum leaves gaps in {sum(holes)} of {len(holes)} fronts."
 
 
 def _floors(study: Study) -> str:
@@ -238,4 +241,4 @@ def _times(study: Study) -> str:
                 seconds = (run.front.seconds for run in group.runs)
                 times.setdefault(group.method.label, []).extend(seconds)
     words = ", ".join(f"{name} {np.median(values):.2g} s" for name, values in times.items())
-    return f"A front takes, median: {words}."
+    return f"Median time of a front: {words}."

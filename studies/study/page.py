@@ -1,4 +1,4 @@
-"""The study as one page of HTML: findings first, then a section a task."""
+"""The study as one page of HTML: findings first, then a section for each task."""
 
 from __future__ import annotations
 
@@ -19,15 +19,16 @@ from studies.study.findings import STILL_LEVEL, at_rest, case_findings, findings
 from studies.study.work import CaseStudy, Study
 
 _METHODS = (
-    "epsilon constraint: the least energy at each of a row of residual limits, by IPOPT.",
-    "weighted sum: the least weighted sum of residual and energy, by IPOPT, for a row of weights.",
+    "epsilon constraint: the least energy at each of a series of residual limits, by IPOPT.",
+    "weighted sum: the least weighted sum of residual and energy, by IPOPT, for a series of "
+    "weights.",
     "NSGA-II and VEPSO: the paper's searches with the paper's settings, from several seeds.",
     "polished: each point of the first seed's front improved by IPOPT at its own residual.",
-    "floor: the least energy of any joint motion at all that arrives at rest, on a grid refined "
-    "until its energy stands.",
+    "floor: the least energy of any joint motion at all that arrives at rest, on a grid "
+    "refined until its energy no longer changes.",
 )
 _ALTERNATIVES = {
-    "whole": "Energy against residual vibration, a staircase a method, for {0}.",
+    "whole": "Energy against residual vibration, one staircase for each method, for {0}.",
     "still": "The nearly still end of the same fronts with a logarithmic residual, for {0}.",
     "gaps": "How far each method's energy is above the best, against residual, for {0}.",
 }
@@ -69,8 +70,8 @@ def _findings(lines: list[str]) -> Markup:
 def _overview(study: Study) -> Markup:
     level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
     words = (
-        f"Energy above the best of all fronts at {level}, motions between points counted: a row a "
-        "task and a mark a method. Bars: quartiles over the seeds."
+        f"Energy above the best of all fronts at {level}, motions between points counted: one row "
+        "for each task, one mark for each method. Bars: quartiles over the seeds."
     )
     overview = picture(gap_figure(study), words, words)
     return joined(
@@ -127,7 +128,7 @@ def _reading(study: Study) -> Markup:
 
 
 def overview_table(study: Study) -> Table:
-    """Energy above the best at the level of the summary: a line a task, a column a method."""
+    """Energy above the best at the residual of the summary, for each task and method."""
     level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
     columns = [
         Column("task"),
@@ -156,7 +157,7 @@ def _methods(study: Study) -> list[Method]:
 
 
 def gap_figure(study: Study) -> Figure:
-    """Draw the energy above the best at the level of the summary: a row a task, a mark a method."""
+    """Draw the energy above the best: one row for each task, one mark for each method."""
     figure = Figure(figsize=(4.8, 1.6 + 0.45 * len(study.cases)), layout="constrained")
     FigureCanvasAgg(figure)
     axis = figure.subplots()

@@ -89,7 +89,7 @@ class CaseStudy:
     paper : tuple of PaperPoint
         The paper's own points.
     failures : tuple of str
-        What did not work, a line each.
+        What failed, one line for each.
     """
 
     case: Case

@@ -1,1 +1,1 @@
-"""The commands, a file each: the command of `quietarm NAME` is `NAME` in `NAME.py`."""
+"""The commands, one file for each: `quietarm NAME` runs the function `NAME` of `NAME.py`."""

@@ -1,4 +1,4 @@
-"""`quietarm compare`: fronts of one task held against each other."""
+"""`quietarm compare`: compare fronts of one task."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ FRONT_FILE = click.Path(path_type=Path)
     "--floor/--no-floor", default=True, show_default=True,
     help="Find the least energy over all joint motions as well: some seconds.",
 )  # fmt: skip
-@click.option("--as-found", is_flag=True, help="Count no motions between the points of a front.")
+@click.option(
+    "--as-found", is_flag=True, help="Do not count motions between the points of a front."
+)
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
 def compare(
     fronts: tuple[Path, ...],
@@ -29,12 +31,12 @@ def compare(
     as_found: bool,
     output: Path | None,
 ) -> None:
-    """Hold fronts of one task, by any methods, against each other.
+    """Compare fronts of one task, found by any methods.
 
-    Hypervolume, IGD+, additive epsilon, coverage, the energies at residuals of 0.1, 1 and 5 mm,
-    candidates evaluated and time. So that a front is not judged by how many points it holds, the
-    motions between its points count as well, for all alike. Files of one method with other seeds
-    are taken together: medians, quartiles and attainment surfaces.
+    By hypervolume, IGD+, additive epsilon, coverage, the energies at residuals of 0.1, 1 and 5 mm,
+    candidates evaluated and time. The motions between the points of a front count as well, so that
+    it is not judged by its number of points. Fronts of one method from several seeds are grouped:
+    medians, quartiles and attainment surfaces.
 
     \b
     Examples:

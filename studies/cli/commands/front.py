@@ -29,8 +29,8 @@ _ONLY_FOR = {
 @task_options
 @click.option(
     "--method", type=click.Choice(list(METHODS)), required=True,
-    help="The gradient at one residual limit after another, or for one weighted sum after "
-    "another; or a metaheuristic.",
+    help="epsilon: the gradient, at one residual limit after another; weighted: the gradient, for "
+    "one weighted sum after another; nsga2, vepso: a metaheuristic.",
 )  # fmt: skip
 @click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
 @click.option("--bound", type=float, help="Largest coefficient; a metaheuristic requires it.")
@@ -43,20 +43,20 @@ _ONLY_FOR = {
 @click.option(
     "--weights", type=WEIGHTS, multiple=True, metavar="R:E",
     help="weighted: weights of residual and energy, both scaled to the ends of the front, in "
-    "place of --points; may be given again, as in --weights 1:1 --weights 1:3.",
+    "place of --points; may be repeated, as in --weights 1:1 --weights 1:3.",
 )  # fmt: skip
 @click.option(
     "--population", type=int,
     help="Metaheuristic: individuals, or particles a swarm; the paper's by default.",
 )  # fmt: skip
 @click.option("--generations", type=int, help="Metaheuristic: generations; the paper's by default.")
-@click.option("--seed", type=int, default=0, show_default=True, help="(First) seed.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed; of several, the first.")
 @click.option(
-    "--runs", type=int, default=1, show_default=True, help="Metaheuristic: independent seeds."
+    "--runs", type=int, default=1, show_default=True, help="Metaheuristic: number of seeds."
 )
 @click.option(
     "--workers", type=int, default=1, show_default=True,
-    help="Processes for the runs; for epsilon, that share the points.",
+    help="Processes: a metaheuristic's share the runs, epsilon's the points.",
 )  # fmt: skip
 @click.option(
     "--checkpoint", type=OUTPUT, help="Metaheuristic: write the state here every few seconds."
@@ -64,7 +64,7 @@ _ONLY_FOR = {
 @click.option(
     "--resume",
     type=INPUT,
-    help="Metaheuristic: go on from this checkpoint; what is found further is saved only with "
+    help="Metaheuristic: continue from this checkpoint. To save what follows as well, give "
     "--checkpoint, which may name the same file.",
 )
 @click.option(
@@ -106,7 +106,7 @@ def front(
         from studies.runs.sweeping import run_sweep as run
 
         if options.get("weights"):
-            refuse_idle(context, "--weights", {"points": ("weights that are found here",)})
+            refuse_idle(context, "--weights", {"points": ("weights that the sweep chooses",)})
     else:
         from studies.runs.searching import run_front as run
     for path in run(task, method, options, output, figure, quiet):

@@ -76,6 +76,7 @@ def plan(
     print_plan(Console(), found)
     if method != IPOPT and residual_limit == 0 and not polish:
         click.echo(
-            "residual limit 0 stands for 1 mm here: no search arrives quite at rest; --polish does"
+            "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; --polish "
+            "does"
         )
     write_plan(found, **outputs)

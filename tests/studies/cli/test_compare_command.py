@@ -108,7 +108,7 @@ def test_of_two_seeds_the_picture_shows_what_the_better_reaches_and_says_so(good
     two = compare([good, *seeds[:2]])
     np.testing.assert_allclose(drawn(comparison_figure(two).axes[0], "NSGA-II")[0], [1, 0.95])
     assert cells(tables(two)["energies"])["energy at 1 mm [J]"][1] == "0.96"  # the middle
-    assert "of two,\nthe better one" in BANDS
+    assert "of two, the better one" in BANDS
 
 
 def test_points_are_held_against_the_best_within_their_residual(comparison):
@@ -203,7 +203,7 @@ def test_compare_fills_a_folder(call, files, good, poor):
 def test_compare_measures_against_a_named_front(call, files, good):
     code, out, _ = call("compare good.json poor.json --as-found --no-floor --reference good.json")
     assert code == 0
-    assert "epsilon are against good.json" in " ".join(out.split())
+    assert "epsilon are measured against good.json" in " ".join(out.split())
 
 
 def test_the_floor_is_found_and_shown(call, files, monkeypatch):

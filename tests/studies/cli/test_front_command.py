@@ -246,7 +246,7 @@ def test_more_workers_than_cores_are_warned_of(call, monkeypatch, front_of, work
         studies.runs.searching, "search_many", lambda *_, **__: [front_of([(1, 0.2)])]
     )
     _, _, err = call(f"{SMALL} --runs 2 --workers {workers}")
-    assert ("2 workers on 1 cores: they will share them\n" in err) == warned
+    assert ("2 workers will share 1 core\n" in err) == warned
 
 
 def test_a_checkpoint_that_is_lost_on_the_way_is_told_at_the_end(call, folder, monkeypatch):
@@ -320,7 +320,7 @@ def test_a_plan_by_search_is_the_cheapest_point_within_the_limit(call, quick):
 
 def test_a_plan_by_search_says_what_a_limit_of_zero_stands_for(call, quick):
     _, out, err = call(f"plan {MOVE} --method vepso --output plan.json")
-    assert "residual limit 0 stands for 1 mm here: no search arrives quite at rest" in out
+    assert "residual limit 0 stands for 1 mm here: no search arrives exactly at rest" in out
     assert err.startswith("generation 30/30, ")
     _, out, _ = call(f"plan {MOVE} --method vepso --polish --output polished.json")
     assert "stands for" not in out

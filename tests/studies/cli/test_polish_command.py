@@ -116,7 +116,7 @@ def test_points_that_fail_or_are_beaten_are_told(call, monkeypatch, front_of):
     _, out, _ = call("polish f.json")
     assert out.splitlines()[-4:] == [
         "saved: median 0.00%, least 0.00%, most 40.00%",
-        "1 point is beaten by another of these now, and left out",
+        "1 point is dominated by another now, and left out",
         "1 of 3 points could not be found:",
         "  residual <= 0 mm: no optimum",
     ]

@@ -78,7 +78,7 @@ def test_what_no_weight_reaches_is_told_in_words(call, answer, good):
     answer(replace(good, method="weighted", gaps=((0.0, 4e-3),)))
     _, out, _ = call(f"front {MOVE} --method weighted")
     assert out.splitlines()[-1] == (
-        "no weight reaches residuals from 0 mm to 4 mm: the front bends the wrong way there"
+        "no weight reaches residuals from 0 mm to 4 mm: the front is not convex there"
     )
 
 
@@ -182,7 +182,7 @@ def test_the_picture_shows_points_gaps_and_failures(good):
         ("--method weighted --weights inf:1", "weight is inf; give a finite number"),
         (
             "--method weighted --weights 1:1 --points 9",
-            "--points is for weights that are found",
+            "--points is for weights that the sweep chooses",
         ),
         ("--method weighted --workers 1", "--workers is for epsilon, nsga2 and vepso, not for"),
         ("--method epsilon --weights 1:1", "--weights is for weighted, not for epsilon"),
@@ -208,6 +208,6 @@ def test_more_workers_than_cores_are_warned_of(call, answer, good, monkeypatch):
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
     answer(good)
     _, _, err = call(f"front {MOVE} --method epsilon --workers 2")
-    assert err == "2 workers on 1 cores: they will share them\n"
+    assert err == "2 workers will share 1 core\n"
     _, _, err = call(f"front {MOVE} --method epsilon --workers 2 --points 3")
     assert err == ""  # two of the points are the ends, found before: one worker starts
