@@ -189,8 +189,8 @@ def _searched(case: Case, method: Method, settings: StudySettings, done: Done) -
 
 
 def _polished(method: Method, settings: StudySettings, done: Done) -> Polish:
-    first = next(iter(done.answers.get(method.name, [])), None)
-    if first is None or not first.points:
+    first = next((front for front in done.answers.get(method.name, []) if front.points), None)
+    if first is None:
         raise NotTriedError(f"not tried, as {method.name} found no front to start from")
     polish = polish_front(first, workers=settings.workers)
     _whole(polish.front)

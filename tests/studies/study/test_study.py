@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import types
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 
 import pytest
 
@@ -125,11 +126,7 @@ def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(monkeypatch, let
     found = [run.front for run in small.cases[0].comparison.runs if run.front.seed is not None]
     let_sweep("epsilon", infeasible)
     let_sweep("weighted", lambda *given, **_: pytest.fail("asked"))
-    monkeypatch.setattr(
-        pieces, "search_many", lambda task, method, *given, **settings: [
-            front for front in found if front.method == method
-        ],
-    )  # fmt: skip
+    searches_that_find(monkeypatch, lambda method: [f for f in found if f.method == method])
     (case,) = run_study(CASES[:1], QUICK).cases
     assert case.failures == (
         "epsilon: found no motion",
@@ -137,10 +134,45 @@ def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(monkeypatch, let
     )
 
 
+def searches_that_find(monkeypatch, answer):
+    """Let every search of a study answer so, by its method."""
+    monkeypatch.setattr(pieces, "search_many", lambda task, method, *given, **_: answer(method))
+
+
+def test_without_a_front_to_start_from_there_is_no_polish(monkeypatch):
+    def fail(method):
+        raise SolverFailedError("it would not")
+
+    searches_that_find(monkeypatch, fail)
+    begun = []
+    (case,) = run_study(CASES[:1], QUICK, begun.append).cases
+    assert case.failures == (
+        "nsga2: it would not",
+        "nsga2, polished: not tried, as nsga2 found no front to start from",
+        "vepso: it would not",
+        "vepso, polished: not tried, as vepso found no front to start from",
+    )
+    assert case.polishes == {}
+    assert len(begun) == amount_of_work(CASES[:1], QUICK)
+
+
+def test_the_first_front_that_has_points_is_polished(monkeypatch, small):
+    fronts = {run.front.method: run.front for run in small.cases[0].comparison.runs}
+
+    def first_empty(method):
+        return [replace(fronts[method], points=()), fronts[method]]
+
+    searches_that_find(monkeypatch, first_empty)
+    (case,) = run_study(CASES[:1], QUICK).cases
+    assert case.failures == ("nsga2: 1 of 2 found no point", "vepso: 1 of 2 found no point")
+    for method in ("nsga2", "vepso"):
+        assert len(case.polishes[method].gains) == len(fronts[method].points)
+
+
 def test_a_search_that_is_interrupted_interrupts_the_study(monkeypatch, small):
     front = small.cases[0].comparison.runs[2].front
     cut = Front(**{**vars(front), "complete": False})
-    monkeypatch.setattr(pieces, "search_many", lambda *given, **settings: [cut, cut])
+    searches_that_find(monkeypatch, lambda method: [cut, cut])
     with pytest.raises(KeyboardInterrupt):
         run_study(CASES[:1], QUICK)
 
