@@ -205,7 +205,9 @@ def test_ctrl_c_at_a_terminal_ends_processes_and_keeps_their_fronts(folder):
     try:
         heard = set()
         while heard != {"seed 0", "seed 1"}:
-            heard.add(process.stderr.readline().partition(",")[0])
+            line = process.stderr.readline()
+            assert line, "the searches ended before the interrupt"
+            heard.add(line.partition(",")[0])
         os.killpg(process.pid, signal.SIGINT)
         # both pipes end with the last of its processes; the limit is a guard
         out, err = process.communicate(timeout=120)
