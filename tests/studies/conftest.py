@@ -4,6 +4,9 @@ import errno
 import math
 import os
 import shlex
+import signal
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -71,6 +74,52 @@ def call(capfd):
         return ended.value.code, out, err
 
     return run_here
+
+
+# The command, which after Ctrl-C waits for what its processes found however slow the machine is.
+PATIENT = """
+import ocp.workers
+import studies.cli
+
+assert ocp.workers._PATIENCE > 0
+ocp.workers._PATIENCE = 60.0
+studies.cli.main()
+"""
+
+
+@pytest.fixture
+def at_a_terminal():
+    """Start a line as a process with a group of its own, as a shell does; killed at the end."""
+    begun = []
+
+    def start(line):
+        begun.append(
+            subprocess.Popen(
+                [sys.executable, "-c", PATIENT, *shlex.split(line)],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                start_new_session=True,
+            )
+        )
+        return begun[-1]
+
+    yield start
+    for process in begun:
+        process.kill()
+        process.communicate()  # closes its pipes
+
+
+@pytest.fixture
+def ctrl_c():
+    """Send Ctrl-C to a process and to those that it started; what it says until all have ended."""
+
+    def press(process):
+        os.killpg(process.pid, signal.SIGINT)
+        # both pipes end with the last of the processes; the limit is a guard against hanging
+        return process.communicate(timeout=240)
+
+    return press
 
 
 @pytest.fixture

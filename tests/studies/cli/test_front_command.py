@@ -3,10 +3,7 @@
 import math
 import os
 import re
-import shlex
 import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +16,6 @@ from models import SingleLinkManipulator
 from ocp import CycloidPolynomial, Front, Plan, PointToPoint
 from studies.display.search_progress import SearchDisplay
 
-QUIETARM = str(Path(sys.executable).parent / "quietarm")
 MOVE = "single-link --target 30deg --duration 0.8 --bound 0.2 --terms 2"
 SMALL = f"front {MOVE} --method vepso --population 8 --generations 4"
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
@@ -192,28 +188,14 @@ def test_ctrl_c_keeps_the_seeds_that_are_done(call, interrupted_at):
     assert "median" not in out  # of one seed
 
 
-def test_ctrl_c_at_a_terminal_ends_processes_and_keeps_their_fronts(folder):
-    # as a terminal does it: the signal goes to the command and to its processes alike
-    line = f"{SMALL} --generations 1000000 --runs 3 --workers 2 --output f.json"
-    process = subprocess.Popen(
-        [QUIETARM, *shlex.split(line)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    try:
-        heard = set()
-        while heard != {"seed 0", "seed 1"}:
-            line = process.stderr.readline()
-            assert line, "the searches ended before the interrupt"
-            heard.add(line.partition(",")[0])
-        os.killpg(process.pid, signal.SIGINT)
-        # both pipes end with the last of its processes; the limit is a guard
-        out, err = process.communicate(timeout=120)
-    finally:
-        process.kill()
-        process.communicate()
+def test_ctrl_c_ends_all_processes_and_keeps_their_fronts(folder, at_a_terminal, ctrl_c):
+    process = at_a_terminal(f"{SMALL} --generations 1000000 --runs 3 --workers 2 --output f.json")
+    heard = set()
+    while heard != {"seed 0", "seed 1"}:
+        line = process.stderr.readline()
+        assert line, "the searches ended before the interrupt"
+        heard.add(line.partition(",")[0])
+    out, err = ctrl_c(process)
     assert process.returncode == 1
     assert "Traceback" not in err
     assert err.splitlines()[-1] == (

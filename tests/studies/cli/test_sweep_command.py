@@ -1,10 +1,7 @@
 """`quietarm front` by the gradient: whole runs of a small size, and what is refused."""
 
 import os
-import shlex
-import signal
-import subprocess
-import sys
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +12,6 @@ from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, FailedPoint, Front, PointToPoint, epsilon_front, weighted_front
 from studies.reports.sweep_figure import sweep_figure
 
-QUIETARM = str(Path(sys.executable).parent / "quietarm")
 MOVE = "arm-on-flexible-link --target 90deg --duration 0.8 --terms 3"
 TASK, PROFILE = PointToPoint(ArmOnFlexibleLink(), np.pi / 2, 0.8), CycloidPolynomial(3)
 
@@ -118,25 +114,15 @@ def test_a_front_without_a_point_is_an_error_that_says_why(call, answer, good, f
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_ctrl_c_keeps_and_writes_what_was_found(folder, workers):
+def test_ctrl_c_keeps_and_writes_what_was_found(folder, at_a_terminal, ctrl_c, workers):
     # far more points than are found before the signal comes
     line = f"front {MOVE} --method epsilon --points 20000 --output f.json --figure f.png"
-    line += f" --workers {workers}"
-    process = subprocess.Popen(
-        [QUIETARM, *shlex.split(line)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    try:
-        assert process.stderr.readline().endswith(" of 20000 points\n")
-        os.killpg(process.pid, signal.SIGINT)
-        # both pipes end with the last of its processes; the limit is a guard
-        out, err = process.communicate(timeout=240)
-    finally:
-        process.kill()
-        process.communicate()
+    process = at_a_terminal(f"{line} --workers {workers}")
+    found = 0
+    while found <= 10:  # of which the ends of the front are two
+        found, total = map(int, re.findall(r"\d+", process.stderr.readline()))
+        assert total == 20000
+    out, err = ctrl_c(process)
     assert process.returncode == 1
     assert err.splitlines()[-1] == "quietarm: interrupted; what was found until then is kept"
     assert "(interrupted: what was found until then)" in out
