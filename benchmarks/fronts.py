@@ -36,7 +36,7 @@ from rich.table import Table
 from metaheuristics import SearchProgress, search
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import CycloidPolynomial, Front, PointToPoint, epsilon_front, plan_move
-from studies.comparison_staircase import filled, objectives
+from studies.comparison.staircase import filled, objectives
 
 PROFILE = CycloidPolynomial(6)
 CASES = {

@@ -23,13 +23,13 @@ from rich.table import Table
 from metaheuristics import PRESETS, PopulationObjective, search, search_many
 from metaheuristics.ensemble import energies_at, energy_at
 from ocp import evaluate_coefficients
-from studies.paper import (
+from studies.paper.case import Case
+from studies.paper.printed import (
     ARM_HALF,
     COEFFICIENTS,
     MENDED,
     ROWS,
     SINGLE_LINK_SIXTH,
-    Condition,
 )
 
 METHODS = {"vepso": SINGLE_LINK_SIXTH, "nsga2": ARM_HALF}
@@ -67,7 +67,7 @@ def times(repetitions: int) -> Table:
             began = perf_counter()
             processor, _ = timed(
                 lambda method=method, condition=condition, seed=seed: search(
-                    condition.task, method, bound=condition.box, seed=seed
+                    condition.task, method, bound=condition.bound, seed=seed
                 ),
                 process_time,
             )
@@ -96,11 +96,11 @@ def energies(seeds: int, workers: int) -> Table:
     for method, first in METHODS.items():
         level = levels[method]
         for row in ROWS:
-            if row.earlier_energy is None or row.condition.plant != first.plant:
+            if row.earlier_energy is None or row.condition.task.plant != first.task.plant:
                 continue
             condition = row.condition
             fronts = search_many(
-                condition.task, method, seeds, workers=workers, bound=condition.box
+                condition.task, method, seeds, workers=workers, bound=condition.bound
             )
             found = np.array([energy_at(front, level) for front in fronts])
             spread = energies_at(fronts, level)
@@ -115,7 +115,7 @@ def energies(seeds: int, workers: int) -> Table:
     return table
 
 
-def residual_level(first: Condition) -> float:
+def residual_level(first: Case) -> float:
     """Residual [m] of the paper's own coefficients for a plant's first condition."""
     coefficients = {**COEFFICIENTS, **MENDED}[first, 6]
     return evaluate_coefficients(first.task, coefficients).residual

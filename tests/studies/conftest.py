@@ -4,6 +4,10 @@ import errno
 import math
 import os
 import shlex
+import signal
+import subprocess
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,8 +22,10 @@ from ocp import (
     non_dominated,
     plan_move,
 )
-from studies import reproduce as reproduce_module
 from studies.cli import main
+from studies.methods import METHODS
+from studies.reproduction import recompute
+from studies.runs import pieces
 
 
 @pytest.fixture(scope="session")
@@ -34,16 +40,26 @@ def reproduction(begun):
 
     Searches and floors are cut short: how well they find is tested where they are.
     """
-    search, generations = reproduce_module.search, {"vepso": 60, "nsga2": 5}
-    floor = reproduce_module.energy_floor
+    search, generations = pieces.search_many, {"vepso": 60, "nsga2": 5}
+    floor = recompute.energy_floor
 
-    def short(task, method, **settings):
-        return search(task, method, generations=generations[method], **settings)
+    def short(task, method, runs, **settings):
+        return search(task, method, runs, generations=generations[method], **settings)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reproduce_module, "search", short)
-        patch.setattr(reproduce_module, "energy_floor", lambda task: floor(task, starts=2))
-        return reproduce_module.reproduce(begun.append)
+        patch.setattr(pieces, "search_many", short)
+        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=2))
+        return recompute.recompute_paper(begun.append)
+
+
+@pytest.fixture
+def let_sweep(monkeypatch):
+    """Put another function in the place of what sweeps a gradient's front."""
+
+    def put(name, sweep):
+        monkeypatch.setitem(METHODS, name, replace(METHODS[name], sweep=sweep))
+
+    return put
 
 
 @pytest.fixture
@@ -58,6 +74,52 @@ def call(capfd):
         return ended.value.code, out, err
 
     return run_here
+
+
+# The command, which after Ctrl-C waits for what its processes found however slow the machine is.
+PATIENT = """
+import ocp.workers
+import studies.cli
+
+assert ocp.workers._PATIENCE > 0
+ocp.workers._PATIENCE = 60.0
+studies.cli.main()
+"""
+
+
+@pytest.fixture
+def at_a_terminal():
+    """Start a line as a process with a group of its own, as a shell does; killed at the end."""
+    begun = []
+
+    def start(line):
+        begun.append(
+            subprocess.Popen(
+                [sys.executable, "-c", PATIENT, *shlex.split(line)],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                start_new_session=True,
+            )
+        )
+        return begun[-1]
+
+    yield start
+    for process in begun:
+        process.kill()
+        process.communicate()  # closes its pipes
+
+
+@pytest.fixture
+def ctrl_c():
+    """Send Ctrl-C to a process and to those that it started; what it says until all have ended."""
+
+    def press(process):
+        os.killpg(process.pid, signal.SIGINT)
+        # both pipes end with the last of the processes; the limit is a guard against hanging
+        return process.communicate(timeout=240)
+
+    return press
 
 
 @pytest.fixture

@@ -1,0 +1,117 @@
+"""The group of commands, each loaded when it is asked for, and the handling of errors."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+import click
+
+from ocp import FileFormatError, QuietarmError
+
+BAD_INPUT, NOT_SOLVED = 2, 1
+
+COMMANDS = {
+    "plan": "Find the still move of least energy.",
+    "evaluate": "Compute the figures of given coefficients.",
+    "front": "Find the trade-off of residual and energy.",
+    "polish": "Improve a front by the gradient.",
+    "compare": "Compare fronts of one task.",
+    "floor": "Find the least energy over all joint motions.",
+    "study": "Run every method on a task, and write one report.",
+    "reproduce": "Recompute the paper.",
+}
+"""What each command does; `NAME` is the function `NAME` of `studies.cli.commands.NAME`."""
+
+
+class LazyGroup(click.Group):
+    """A group that knows only what its commands do, and loads one when it is asked for."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The name and the command that was asked for, and the other words."""
+        name, command, others = super().resolve_command(ctx, args)
+        if name is not None:
+            command = getattr(import_module(f"studies.cli.commands.{name}"), name)
+        return name, command, others
+
+
+def _say_version(ctx: click.Context, param: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        from models import __version__
+
+        click.echo(f"quietarm, version {__version__}")
+        ctx.exit()
+
+
+@click.group(
+    cls=LazyGroup,
+    commands=[click.Command(name, short_help=does) for name, does in COMMANDS.items()],
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    no_args_is_help=True,
+)
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_say_version,
+    help="Show the version and exit.",
+)  # fmt: skip
+def quietarm() -> None:
+    """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
+
+    PLANT is single-link or arm-on-flexible-link. Angles are radians, or 30deg, pi/6, -pi/2;
+    lengths are metres, or 1mm; times are seconds, or 800ms.
+
+    \b
+    Examples:
+      quietarm reproduce --output results
+      quietarm plan single-link --target 30deg --duration 0.8 --figure move.png
+      quietarm plan arm-on-flexible-link --start=-pi/2 --target pi/4 --duration 1.0 \\
+          --torque-limit 0.4 --output plan.json --csv move.csv
+      quietarm evaluate single-link --target pi/6 --duration 0.8 \\
+          --coefficients=0.003347,-0.1697
+    """  # noqa: D301  # \b is click's: do not rewrap
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command and end the process with its status.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The words after ``quietarm``; those of the process by default.
+
+    Raises
+    ------
+    SystemExit
+        0 when done, 2 for bad input or a file that fails, 1 where a solve failed or was
+        interrupted.
+    """
+    try:
+        status = quietarm.main(arguments, prog_name="quietarm", standalone_mode=False)
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        status = BAD_INPUT
+    except click.ClickException as error:
+        status = _complain(error.format_message(), BAD_INPUT)
+    except (FileFormatError, ValueError) as error:
+        status = _complain(str(error), BAD_INPUT)
+    except QuietarmError as error:
+        status = _complain(str(error), NOT_SOLVED)
+    except (KeyboardInterrupt, click.Abort):
+        status = _complain("interrupted; nothing was written", NOT_SOLVED)
+    except MemoryError:
+        status = _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
+    except OSError as error:
+        status = _complain(f"{error.filename or ''} {error.strerror or error}".strip(), BAD_INPUT)
+    sys.exit(status or 0)
+
+
+def _complain(message: str, status: int) -> int:
+    line = " ".join(message.split())
+    click.echo(f"quietarm: {line}", err=True)
+    return status
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""`quietarm compare`: compare fronts of one task."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from studies.cli.arguments import say_written
+from studies.cli.options import FOLDER
+
+FRONT_FILE = click.Path(path_type=Path)
+
+
+@click.command()
+@click.argument("fronts", nargs=-1, type=FRONT_FILE, metavar="FRONT FRONT ...")
+@click.option("--reference", type=FRONT_FILE, help="Measure IGD+ and epsilon against this front.")
+@click.option(
+    "--floor/--no-floor", default=True, show_default=True,
+    help="Find the least energy over all joint motions as well: some seconds.",
+)  # fmt: skip
+@click.option(
+    "--as-found", is_flag=True, help="Do not count motions between the points of a front."
+)
+@click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
+def compare(
+    fronts: tuple[Path, ...],
+    reference: Path | None,
+    floor: bool,
+    as_found: bool,
+    output: Path | None,
+) -> None:
+    """Compare fronts of one task, found by any methods.
+
+    By hypervolume, IGD+, additive epsilon, coverage, the energies at residuals of 0.1, 1 and 5 mm,
+    candidates evaluated and time. The motions between the points of a front count as well, so that
+    it is not judged by its number of points. Fronts of one method from several seeds are grouped:
+    medians, quartiles and attainment surfaces.
+
+    \b
+    Examples:
+      quietarm compare nsga2.json vepso.json
+      quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from studies.comparison.check import check_figures
+    from studies.comparison.measures import FILL, compare_fronts
+    from studies.comparison.report import (
+        load_fronts,
+        print_comparison,
+        with_floor,
+        write_comparison,
+    )
+
+    loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
+    for front, name in zip(loaded, names, strict=True):
+        check_figures(front, name)
+    named = None if reference is None else loaded.pop()
+    comparison = compare_fronts(
+        loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
+        fill=0 if as_found else FILL,
+    )  # fmt: skip
+    if floor:
+        comparison = with_floor(comparison, Console(stderr=True))
+    print_comparison(Console(), comparison)
+    if output is not None:
+        output.mkdir(exist_ok=True)
+        say_written(*write_comparison(output, comparison))

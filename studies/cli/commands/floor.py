@@ -1,0 +1,61 @@
+"""`quietarm floor`: the least energy over all joint motions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+
+from ocp import energy_floor
+from studies.cli.arguments import say_written, task_of
+from studies.cli.options import OUTPUT, PICTURE, task_options
+from studies.reports.floor import plan_beside, print_floor
+from studies.runs.files import refuse_same_file
+
+
+@click.command()
+@task_options
+@click.option("--smooth", is_flag=True, help="Keep the acceleration continuous: the jerk is free.")
+@click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random starts.")
+@click.option(
+    "--tolerance", type=float, default=0.005, show_default=True,
+    help="Refine the grid until the energy changes by less than this share.",
+)  # fmt: skip
+@click.option("--output", type=OUTPUT, help="Write the floor to this JSON file.")
+@click.option("--figure", type=PICTURE, help="Draw it over the plan (.png, .pdf or .svg).")
+def floor(
+    smooth: bool,
+    starts: int,
+    seed: int,
+    tolerance: float,
+    output: Path | None,
+    figure: Path | None,
+    **rest: Any,
+) -> None:
+    """Find the least energy of a move over all joint motions, at rest on arrival.
+
+    No profile: the joint's acceleration is free. What a plan needs beyond this floor is the price
+    of its profile; without an acceleration limit the floor begins and ends with a jolt.
+
+    \b
+    Examples:
+      quietarm floor arm-on-flexible-link --target pi/2 --duration 0.8
+      quietarm floor single-link --target 30deg --duration 0.8 --acceleration-limit 80 \\
+          --figure floor.png --output floor.json
+    """  # noqa: D301  # \b is click's: do not rewrap
+    refuse_same_file([("--output", output), ("--figure", figure)])
+    task = task_of(rest)
+    found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
+    plan = plan_beside(found)
+    print_floor(Console(), found, plan)
+    if output is not None:
+        found.save(output)
+    if figure is not None:
+        from studies.display.pictures import save_figure
+        from studies.reports.floor_figure import floor_figure
+
+        save_figure(floor_figure(found, plan), figure)
+    say_written(output, figure)

@@ -1,0 +1,113 @@
+"""`quietarm front`: the trade-off of residual and energy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from studies.cli.arguments import refuse_idle, say_written, task_of
+from studies.cli.options import INPUT, OUTPUT, PICTURE, WEIGHTS, task_options
+from studies.methods import METHODS, WEIGHTED, Kind, methods_of
+
+GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
+METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
+_ONLY_FOR = {
+    "points": GRADIENT,
+    "starts": GRADIENT,
+    "weights": [WEIGHTED.name],
+    "workers": [method.name for method in METHODS.values() if method.parallel],
+    **dict.fromkeys(
+        ("population", "generations", "runs", "checkpoint", "resume"), METAHEURISTICS
+    ),
+}  # fmt: skip
+"""For every option that is not for all methods, the methods that it is for."""
+
+
+@click.command()
+@task_options
+@click.option(
+    "--method", type=click.Choice(list(METHODS)), required=True,
+    help="epsilon: the gradient, at one residual limit after another; weighted: the gradient, for "
+    "one weighted sum after another; nsga2, vepso: a metaheuristic.",
+)  # fmt: skip
+@click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
+@click.option("--bound", type=float, help="Largest coefficient; a metaheuristic requires it.")
+@click.option(
+    "--points", type=int, default=50, show_default=True, help="Gradient: points of the front."
+)
+@click.option(
+    "--starts", type=int, default=4, show_default=True, help="Gradient: starts of its ends."
+)
+@click.option(
+    "--weights", type=WEIGHTS, multiple=True, metavar="R:E",
+    help="weighted: weights of residual and energy, both scaled to the ends of the front, in "
+    "place of --points; may be repeated, as in --weights 1:1 --weights 1:3.",
+)  # fmt: skip
+@click.option(
+    "--population", type=int,
+    help="Metaheuristic: individuals, or particles a swarm; the paper's by default.",
+)  # fmt: skip
+@click.option("--generations", type=int, help="Metaheuristic: generations; the paper's by default.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed; of several, the first.")
+@click.option(
+    "--runs", type=int, default=1, show_default=True, help="Metaheuristic: number of seeds."
+)
+@click.option(
+    "--workers", type=int, default=1, show_default=True,
+    help="Processes: a metaheuristic's share the runs, epsilon's the points.",
+)  # fmt: skip
+@click.option(
+    "--checkpoint", type=OUTPUT, help="Metaheuristic: write the state here every few seconds."
+)
+@click.option(
+    "--resume",
+    type=INPUT,
+    help="Metaheuristic: continue from this checkpoint. To save what follows as well, give "
+    "--checkpoint, which may name the same file.",
+)
+@click.option(
+    "--output", type=OUTPUT,
+    help="Write the front to this JSON file; with --runs one for every seed: front.json gives "
+    "front-seed0.json, front-seed1.json, ...",
+)  # fmt: skip
+@click.option(
+    "--figure", type=PICTURE, help="Draw the fronts, all in one picture (.png, .pdf or .svg)."
+)
+@click.option("--quiet", is_flag=True, help="Show no progress.")
+@click.pass_context
+def front(
+    context: click.Context, output: Path | None, figure: Path | None, quiet: bool, **rest: Any
+) -> None:
+    """Find the trade-off of residual and energy by the gradient, or with NSGA-II or VEPSO.
+
+    Ctrl-C ends the work early and keeps what was found.
+
+    \b
+    Examples; the metaheuristics with the paper's settings:
+      quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --method epsilon \\
+          --output epsilon.json --figure epsilon.png
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method weighted
+      quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --method nsga2 \\
+          --output front.json --figure front.png
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \\
+          --runs 5 --workers 2 --output front.json --figure fronts.png
+    """  # noqa: D301  # \b is click's: do not rewrap
+    method = METHODS[rest.pop("method")]
+    refuse_idle(context, method.name, _ONLY_FOR)
+    names = ["terms", "bound", "seed"]
+    names += [name for name, methods in _ONLY_FOR.items() if method.name in methods]
+    options = {name: rest[name] for name in names}
+    for name in (*_ONLY_FOR, "terms", "bound", "seed"):
+        del rest[name]
+    task = task_of(rest)
+    if method.kind is Kind.GRADIENT:
+        from studies.runs.sweeping import run_sweep as run
+
+        if options.get("weights"):
+            refuse_idle(context, "--weights", {"points": ("weights that the sweep chooses",)})
+    else:
+        from studies.runs.searching import run_front as run
+    for path in run(task, method, options, output, figure, quiet):
+        say_written(path)

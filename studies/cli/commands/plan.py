@@ -1,0 +1,82 @@
+"""`quietarm plan`: the still move of least energy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+from rich.console import Console
+
+from ocp import CycloidPolynomial, plan_move
+from studies.cli.arguments import refuse_idle, split_options, write_plan
+from studies.cli.options import LENGTH, output_options, task_options
+from studies.methods import METHODS, Kind, methods_of
+from studies.reports.plan import print_plan
+
+IPOPT = "ipopt"
+SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
+
+
+@click.command()
+@task_options
+@click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
+@click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
+@click.option(
+    "--residual-limit", type=LENGTH, default=0.0, show_default=True,
+    help="Largest tip displacement after arrival; 0 is at rest.",
+)  # fmt: skip
+@click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random starts.")
+@click.option(
+    "--method", type=click.Choice([IPOPT, *SEARCHES]), default=IPOPT, show_default=True,
+    help="The gradient, or the cheapest point of a metaheuristic's front within the residual "
+    "limit (1mm where that is 0).",
+)  # fmt: skip
+@click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
+@click.option("--quiet", is_flag=True, help="Show no progress of a metaheuristic.")
+@output_options
+@click.pass_context
+def plan(
+    context: click.Context,
+    terms: int,
+    bound: float | None,
+    residual_limit: float,
+    starts: int,
+    seed: int,
+    method: str,
+    polish: bool,
+    quiet: bool,
+    **rest: Any,
+) -> None:
+    """Find the move of least energy whose residual vibration is within a limit.
+
+    \b
+    Examples:
+      quietarm plan single-link --target 30deg --duration 0.8
+      quietarm plan single-link --target pi/2 --duration 1.0 --bound 0.2 --residual-limit 1mm
+      quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \\
+          --output plan.json --csv move.csv --figure move.png
+    """  # noqa: D301  # \b is click's: do not rewrap
+    task, outputs = split_options(rest)
+    refuse_idle(context, method, {"starts": [IPOPT]})
+    if method == IPOPT and polish:
+        named = " or ".join(SEARCHES)
+        raise ValueError(f"--polish is for a metaheuristic's point; give --method {named}")
+    profile = CycloidPolynomial(terms)
+    if method == IPOPT:
+        found = plan_move(
+            task, profile, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed
+        )
+    else:
+        from studies.runs.searching import plan_by_search
+
+        found = plan_by_search(
+            task, METHODS[method], profile, bound, residual_limit, seed, polish, quiet
+        )
+    print_plan(Console(), found)
+    if method != IPOPT and residual_limit == 0 and not polish:
+        click.echo(
+            "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; --polish "
+            "does"
+        )
+    write_plan(found, **outputs)

@@ -1,0 +1,52 @@
+"""`quietarm polish`: a front improved by the gradient."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from studies.cli.arguments import say_written
+from studies.cli.options import OUTPUT, PICTURE
+
+
+@click.command()
+@click.argument("front", type=click.Path(path_type=Path), metavar="FRONT")
+@click.option(
+    "--points", type=int,
+    help="Only this many points, spread evenly along the front; all of them by default, which "
+    "takes about 50 ms each.",
+)  # fmt: skip
+@click.option(
+    "--workers", type=int, default=1, show_default=True, help="Processes that share the points."
+)
+@click.option("--output", type=OUTPUT, help="Write the improved front to this JSON file.")
+@click.option("--csv", "csv_file", type=OUTPUT, help="Write every point's gain to this CSV file.")
+@click.option(
+    "--figure", type=PICTURE, help="Draw the front before and after (.png, .pdf or .svg)."
+)
+@click.option("--quiet", is_flag=True, help="Show no progress.")
+def polish(
+    front: Path,
+    points: int | None,
+    workers: int,
+    output: Path | None,
+    csv_file: Path | None,
+    figure: Path | None,
+    quiet: bool,
+) -> None:
+    """Improve the points of a front that was written by `quietarm front`.
+
+    From each the gradient looks for a cheaper motion of no larger residual. How much a
+    metaheuristic's front gains tells how far it was from the best there is. Ctrl-C ends the work
+    early and keeps what was improved.
+
+    \b
+    Examples:
+      quietarm polish front.json
+      quietarm polish front.json --points 50 --output polished.json --figure polished.png
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from studies.runs.polishing import run_polish
+
+    for path in run_polish(front, points, workers, output, csv_file, figure, quiet):
+        say_written(path)

@@ -1,0 +1,100 @@
+"""`quietarm study`: every method on a task, or on all of the paper's, in one report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+from click.core import ParameterSource
+from rich.console import Console
+
+from studies.cli.arguments import say_written, task_of
+from studies.cli.options import FOLDER, OUTPUT, task_options
+
+
+def _not_required(command: click.Command) -> click.Command:
+    """A command whose task may be left out."""
+    for parameter in command.params:
+        parameter.required = False
+    return command
+
+
+@_not_required
+@click.command()
+@task_options
+@click.option("--bound", type=float, help="Largest coefficient; the paper's for its plants.")
+@click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
+@click.option(
+    "--points", type=int, default=50, show_default=True, help="Points of the gradient's fronts."
+)
+@click.option("--runs", type=int, default=3, show_default=True, help="Seeds of each metaheuristic.")
+@click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
+@click.option("--workers", type=int, default=1, show_default=True, help="Processes.")
+@click.option(
+    "--population", type=int, help="Individuals, or particles a swarm; the paper's by default."
+)
+@click.option("--generations", type=int, help="Generations; the paper's by default.")
+@click.option(
+    "--output", type=OUTPUT, default="study.html", show_default=True, help="Write the report here."
+)
+@click.option("--fronts", type=FOLDER, help="Write every front to this folder.")
+@click.option("--quiet", is_flag=True, help="Show no progress.")
+@click.pass_context
+def study(
+    context: click.Context, output: Path, fronts: Path | None, quiet: bool, **rest: Any
+) -> None:
+    """Run every method on a task, compare what they find, and write one page of HTML.
+
+    Without PLANT, on all six conditions of the paper, which takes some minutes. The methods:
+    fronts by gradient (epsilon-constraint and weighted sum), NSGA-II and VEPSO from several seeds,
+    both polished by the gradient, and the floor. The page stands alone: pictures are inside.
+
+    \b
+    Examples:
+      quietarm study --output study.html
+      quietarm study arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --runs 5
+      quietarm study single-link --target 30deg --duration 0.8 --torque-limit 0.2 --fronts fronts
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from studies.display.progress import progress
+    from studies.paper.case import Case
+    from studies.paper.printed import CONDITIONS
+    from studies.study.files import write_study
+    from studies.study.findings import case_findings, findings
+    from studies.study.work import StudySettings, amount_of_work, run_study
+
+    names = ("terms", "points", "runs", "seed", "workers", "population", "generations")
+    settings = StudySettings(**{name: rest.pop(name) for name in names})
+    bound = rest.pop("bound")
+    if rest["plant"] is None:
+        _refuse_without_plant(context, ("bound", *rest))
+        cases = CONDITIONS
+    else:
+        _refuse_without_move(rest)
+        cases = (Case(task_of(rest), bound),)
+    with progress(amount_of_work(cases, settings), Console(stderr=True), quiet=quiet) as begin:
+        result = run_study(cases, settings, begin)
+    console = Console()
+    for line in findings(result) if len(cases) > 1 else case_findings(result.cases[0]):
+        console.print(f"- {line}", highlight=False, markup=False)
+    written = write_study(result, output, fronts)
+    say_written(output)
+    if fronts is not None:
+        click.echo(f"wrote {len(written) - 1} fronts to {fronts}")
+
+
+def _refuse_without_plant(context: click.Context, names: Iterable[str]) -> None:
+    for name in names:
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            raise click.UsageError(
+                f"--{name.replace('_', '-')} is for a task of your own: give its plant as well"
+            )
+
+
+def _refuse_without_move(rest: Mapping[str, Any]) -> None:
+    for name in ("target", "duration"):
+        if rest[name] is None:
+            raise click.UsageError(
+                f"give --{name} with the plant, or no plant for the paper's tasks"
+            )

@@ -1,0 +1,128 @@
+"""The command line's types and the options that its commands share."""
+
+from __future__ import annotations
+
+import difflib
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from models import Plant, known_plants
+from ocp.files import check_writable
+from studies.cli.quantities import (
+    parse_angle,
+    parse_coefficients,
+    parse_length,
+    parse_time,
+    parse_weights,
+)
+from studies.display.picture_names import check_figure
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class Parsed(click.ParamType):
+    """A value read by a function that raises ValueError with a message for the user."""
+
+    def __init__(self, name: str, parse: Callable[[str], Any]) -> None:
+        self.name, self.parse = name, parse
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read the text; a click error names the option."""
+        if not isinstance(value, str):
+            return value
+        try:
+            return self.parse(value)
+        except ValueError as error:
+            self.fail(str(error), param, ctx)
+
+
+def parse_plant(name: str) -> Plant:
+    """A plant by its name, with the paper's parameters; ValueError suggests the nearest name."""
+    plants = known_plants()
+    if name in plants:
+        return plants[name]()
+    part = [plant for plant in plants if name and name.lower() in plant]
+    near = part or difflib.get_close_matches(name.lower(), plants, n=1, cutoff=0.3)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    raise ValueError(f"unknown plant {name!r}; {hint}(known: {', '.join(sorted(plants))})")
+
+
+def _is_output(text: str) -> Path:
+    return check_writable(text)
+
+
+def _is_folder(text: str) -> Path:
+    folder = Path(text)
+    place = folder
+    if folder.is_dir():
+        check_writable(folder / "any")
+    elif folder.exists():
+        raise ValueError(f"{folder} is a file; give a folder")
+    else:
+        check_writable(folder)  # it will be made; the folder around it must be there
+        place = folder.parent
+    try:  # permissions do not tell of all places, such as /proc, that nothing can be made there
+        tempfile.TemporaryDirectory(dir=place, prefix=".quietarm-").cleanup()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ValueError(f"{folder} cannot be written: {reason}; choose another place") from None
+    return folder
+
+
+def _is_input(text: str) -> Path:
+    if not text:
+        raise ValueError("the name of the file is empty; give one")
+    return Path(text)
+
+
+PLANT = Parsed("plant", parse_plant)
+ANGLE = Parsed("angle", parse_angle)
+LENGTH = Parsed("length", parse_length)
+TIME = Parsed("time", parse_time)
+COEFFICIENTS = Parsed("numbers", parse_coefficients)
+WEIGHTS = Parsed("weights", parse_weights)
+INPUT = Parsed("file", _is_input)
+OUTPUT = Parsed("file", _is_output)
+PICTURE = Parsed("picture", check_figure)
+FOLDER = Parsed("folder", _is_folder)
+
+_TASK_OPTIONS = (
+    click.argument("plant", type=PLANT),
+    click.option("--start", type=ANGLE, default=0.0, show_default=True,
+                 help="Joint angle at the start."),
+    click.option("--target", type=ANGLE, required=True, help="Joint angle at the end."),
+    click.option("--duration", type=TIME, required=True, help="Travelling time."),
+    click.option("--torque-limit", type=float, help="Largest joint torque on the way [N m]."),
+    click.option("--speed-limit", type=float, help="Largest joint speed on the way [rad/s]."),
+    click.option("--acceleration-limit", type=float, help="Largest joint acceleration [rad/s^2]."),
+    click.option("--deflection-limit", type=LENGTH, help="Largest tip displacement on the way."),
+    click.option("--residual-window", type=TIME, default=1.0, show_default=True,
+                 help="Time after arrival in which the residual is measured."),
+)  # fmt: skip
+_OUTPUT_OPTIONS = (
+    click.option("--output", type=OUTPUT, help="Write the plan to this JSON file."),
+    click.option("--csv", "csv_file", type=OUTPUT, help="Write the move to this CSV file."),
+    click.option("--sample-rate", type=float, default=1000.0, show_default=True,
+                 help="Rows per second of the CSV file [Hz]."),
+    click.option("--figure", type=PICTURE, help="Draw the four panels (.png, .pdf or .svg)."),
+)  # fmt: skip
+
+
+def task_options(command: F) -> F:
+    """Add the plant and the options that describe a task."""
+    return _with(_TASK_OPTIONS, command)
+
+
+def output_options(command: F) -> F:
+    """Add the options for what to write."""
+    return _with(_OUTPUT_OPTIONS, command)
+
+
+def _with(options: tuple[Callable[[F], F], ...], command: F) -> F:
+    for option in reversed(options):
+        command = option(command)
+    return command

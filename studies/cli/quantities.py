@@ -1,0 +1,89 @@
+"""Angles, lengths and times as they are typed: 30deg, -pi/2, 1mm, 800ms."""
+
+from __future__ import annotations
+
+import math
+import re
+
+_NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
+_PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
+_PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ]*)")
+_LENGTHS = {"": 1.0, "m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
+_TIMES = {"": 1.0, "s": 1.0, "ms": 1e3}
+_ANGLES = {"": 1.0, "rad": 1.0, "deg": 180 / math.pi}
+# Units a metre, second or radian: dividing by 1000 is exact where multiplying by 0.001 is not.
+
+
+def parse_angle(text: str) -> float:
+    """Read an angle.
+
+    Parameters
+    ----------
+    text : str
+        Radians, or degrees with ``deg``, or a multiple of pi: ``0.5``, ``30deg``, ``-pi/2``.
+
+    Returns
+    -------
+    float
+        The angle [rad].
+
+    Raises
+    ------
+    ValueError
+        When it is none of these.
+    """
+    match = _PI.fullmatch(text.strip())
+    if match:
+        sign, factor, divisor = match.groups()
+        if divisor is None or float(divisor) != 0:
+            size = float(factor or 1) * math.pi / float(divisor or 1)
+            return -size if sign == "-" else size
+    return _with_unit(text, _ANGLES, "an angle", "radians (0.5), 30deg, pi/6 or -pi/2")
+
+
+def parse_length(text: str) -> float:
+    """Read a length: metres, or with m, cm, mm or um. ValueError when it is none."""
+    return _with_unit(text, _LENGTHS, "a length", "metres (0.001) or 1mm")
+
+
+def parse_time(text: str) -> float:
+    """Read a time: seconds, or with s or ms. ValueError when it is none."""
+    return _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")
+
+
+def parse_coefficients(text: str) -> list[float]:
+    """Read numbers that are separated by commas. ValueError when one is not a finite number."""
+    values: list[float] = []
+    for i, entry in enumerate(text.split(","), start=1):
+        try:
+            value = float(entry)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise ValueError(
+                f"coefficient {i} is {entry.strip()!r}; give finite numbers separated by commas"
+            )
+        values.append(value)
+    return values
+
+
+def parse_weights(text: str) -> tuple[float, float]:
+    """Read a pair of weights, of residual and energy: ``1:3``. ValueError when it is none."""
+    parts = text.split(":")
+    try:
+        of_residual, of_energy = (float(part) for part in parts)
+    except ValueError:
+        raise ValueError(
+            f"{text!r} is no pair of weights; give those of residual and energy as in 1:3"
+        ) from None
+    return of_residual, of_energy
+
+
+def _with_unit(text: str, units: dict[str, float], kind: str, examples: str) -> float:
+    match = _PLAIN.fullmatch(text.strip())
+    if match and match.group(2) in units:
+        return float(match.group(1)) / units[match.group(2)]
+    try:
+        return float(text)  # nan and inf, for the task to refuse with its own words
+    except ValueError:
+        raise ValueError(f"{text!r} is not {kind}; give {examples}") from None

@@ -1,0 +1,4 @@
+"""Fronts of one task measured against each other, in tables and pictures.
+
+May import `paper`, `methods` and `display`.
+"""

@@ -1,0 +1,96 @@
+"""Which fronts may be compared, and which of them are runs of one method."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+from ocp import Front
+from ocp.documents import profile_to_document
+from studies.methods import method_of
+from studies.paper.tasks import task_difference
+
+
+def check_fronts(fronts: Sequence[Front], names: Sequence[str], *, twice: bool = False) -> None:
+    """Refuse fronts that cannot be compared.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        The fronts.
+    names : sequence of str
+        What to call each in a message.
+    twice : bool
+        Whether one may be given twice.
+
+    Raises
+    ------
+    ValueError
+        When there are fewer than two, one is empty, one is given twice, or their tasks differ; in
+        one line, with what differs.
+    """
+    if len(fronts) < 2:
+        raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given")
+    for front, name in zip(fronts, names, strict=True):
+        if not front.points:
+            raise ValueError(f"{name} has no finite point; leave it out, or search longer")
+        difference = task_difference(front.task, fronts[0].task)
+        if difference:
+            raise ValueError(
+                f"{name} is of another task than {names[0]}: its {difference}; compare fronts of "
+                "one task"
+            )
+    for i, front in enumerate(fronts):
+        if not twice and front in fronts[:i]:
+            first = names[list(fronts).index(front)]
+            raise ValueError(f"{name_of_twin(names[i], first)}; give every front once")
+
+
+def name_of_twin(name: str, first: str) -> str:
+    """Two names of one front, in words."""
+    return f"{name} is given twice" if name == first else f"{name} is the same front as {first}"
+
+
+def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
+    """Which fronts are runs of one method with one set of settings.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        The fronts.
+
+    Returns
+    -------
+    dict of str to list of int
+        Positions in `fronts` by the label of their group: the method, with the settings in
+        which it differs from another group of the same method.
+    """
+    groups: dict[str, list[int]] = {}
+    for i, front in enumerate(fronts):
+        groups.setdefault(json.dumps([front.method, _settings(front)], sort_keys=True), []).append(
+            i
+        )
+    firsts = [fronts[members[0]] for members in groups.values()]
+    return {
+        _label(front, [o for o in firsts if o.method == front.method]): members
+        for front, members in zip(firsts, groups.values(), strict=True)
+    }
+
+
+def _settings(front: Front) -> dict[str, object]:
+    profile = profile_to_document(front.profile)
+    return {**front.settings, "profile": profile.pop("name"), **profile, "whole": front.complete}
+
+
+def _label(front: Front, alike: Sequence[Front]) -> str:
+    """The method, with the settings in which it differs from others of the same method."""
+    words = [method_of(front.method).label]
+    for name, value in _settings(front).items():
+        others = [_settings(other).get(name) for other in alike]
+        if any(other != value for other in others):
+            if name == "whole":
+                words += [] if value else ["interrupted"]
+            else:
+                shown = f"{value:g}" if isinstance(value, float) else str(value)
+                words.append(f"{name} {shown}")
+    return ", ".join(words)

@@ -1,0 +1,287 @@
+"""Fronts of one task compared: how far each is from the best of all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+
+from metaheuristics.ensemble import Spread
+from ocp import Front, PointToPoint
+from studies.comparison.groups import check_fronts, grouped
+from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
+from studies.methods import Method, method_of
+
+LEVELS = (1e-4, 1e-3, 5e-3)
+"""Residuals [m] at which energies are compared."""
+FILL = 1000
+"""About how many points a filled front has."""
+_MARGIN = 1.1
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """One front and its figures in a comparison.
+
+    A front is read as a staircase: its energy at a residual is the least that was found with that
+    residual or less. The steps of a front of few points would count against it, so the indicators
+    are those of the front filled with motions between its points, by `filled`.
+
+    Attributes
+    ----------
+    name : str
+        Name of its file, or of the run.
+    front : Front
+        The front.
+    between : ndarray, shape (n, 2), read-only
+        The filled front: residuals [m] and energies [J].
+    hypervolume : float
+        Share of the box from the origin to `Comparison.corner` that the filled front dominates.
+    hypervolume_found : float
+        The same of the front as it was found.
+    igd_plus : float
+        Mean distance by which the filled front misses the reference front, in `Comparison.extent`.
+    epsilon : float
+        Least shift of the filled front in both objectives after which nothing of the reference
+        front is better, in `Comparison.extent`.
+    energies : tuple of float
+        Least energy [J] found within each of `Comparison.levels`; NaN where there is none.
+    gaps : tuple of float
+        How far these are above `Comparison.best`, as a share of it.
+    gaps_between : tuple of float
+        The same for the filled front.
+    """
+
+    name: str
+    front: Front
+    between: Array
+    hypervolume: float
+    hypervolume_found: float
+    igd_plus: float
+    epsilon: float
+    energies: tuple[float, ...]
+    gaps: tuple[float, ...]
+    gaps_between: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """The runs of one method with one set of settings, one for each seed.
+
+    Attributes
+    ----------
+    label : str
+        The method, with its settings where another group has the same method.
+    runs : tuple of Measured
+        Its fronts.
+    best, median, worst : ndarray, shape (points, 2), read-only
+        Attainment surfaces, residual [m] and energy [J]: what at least one run, half of the runs
+        and every run attained. The three are equal for a single run.
+    """
+
+    label: str
+    runs: tuple[Measured, ...]
+    best: Array
+    median: Array
+    worst: Array
+
+    @property
+    def method(self) -> Method:
+        """The method that found them."""
+        return method_of(self.runs[0].front.method)
+
+    def spread(self, figure: str, level: int | None = None) -> Spread:
+        """Quartiles over the runs of a figure of `Measured`, or of its front, by name."""
+        values: list[float] = []
+        for run in self.runs:
+            value = getattr(run if hasattr(run, figure) else run.front, figure)
+            values.append(float(value if level is None else value[level]))
+        return Spread.of(values)
+
+    def reached(self, level: int) -> int:
+        """How many runs have a motion within one of the residual levels, by its position."""
+        return sum(bool(np.isfinite(run.energies[level])) for run in self.runs)
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Fronts of one task, all measured in the same way.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move.
+    groups : tuple of Group
+        Methods, in the order in which they were given.
+    reference : str
+        What IGD+ and epsilon are measured against.
+    corner : tuple of float
+        Residual [m] and energy [J] that hypervolumes are measured from: the largest reference of
+        the fronts, or a tenth beyond the ends of the best front if that is larger.
+    extent : tuple of float
+        Residual [m] and energy [J] between the ends of the reference front: the units of IGD+ and
+        epsilon, so that both objectives have the same weight.
+    levels : tuple of float
+        Residuals [m] at which energies are compared.
+    best_front : ndarray, shape (n, 2), read-only
+        What no filled front dominates: residuals [m], rising, and energies [J].
+    best : tuple of float
+        Its least energy [J] within each level; NaN where it has none.
+    coverage : ndarray, shape (groups, groups), read-only
+        Share of the column's points, as found, that the row's filled front dominates or equals (the
+        C-metric); the median over the pairs of runs.
+    fill : int
+        About how many points a filled front has; 0 where fronts were left as they were found.
+    floor : float or None
+        Least energy [J] of any joint motion at rest on arrival, where it is known.
+    """
+
+    task: PointToPoint
+    groups: tuple[Group, ...]
+    reference: str
+    corner: tuple[float, float]
+    extent: tuple[float, float]
+    levels: tuple[float, ...]
+    best_front: Array
+    best: tuple[float, ...]
+    coverage: Array
+    fill: int
+    floor: float | None = None
+
+    @property
+    def runs(self) -> tuple[Measured, ...]:
+        """The runs of all groups."""
+        return tuple(run for group in self.groups for run in group.runs)
+
+    def group(self, label: str) -> Group:
+        """The group of this label; KeyError where there is none."""
+        for group in self.groups:
+            if group.label == label:
+                return group
+        raise KeyError(label)
+
+
+def compare_fronts(
+    fronts: Sequence[Front],
+    names: Sequence[str] = (),
+    *,
+    reference: Front | None = None,
+    reference_name: str = "the reference front",
+    floor: float | None = None,
+    levels: Sequence[float] = LEVELS,
+    fill: int = FILL,
+) -> Comparison:
+    """Measure fronts of one task against each other.
+
+    The indicators are moocore's. IGD+ and epsilon are measured against the points that none of any
+    front dominates, thinned to even distances, so that the front of most points does not decide.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        Two or more, of one task, by any methods.
+    names : sequence of str, optional
+        What to call them in messages and tables; numbered by default.
+    reference : Front, optional
+        Measure IGD+ and epsilon against this front.
+    reference_name : str
+        What to call it.
+    floor : float, optional
+        Least energy [J] of any joint motion at rest on arrival.
+    levels : sequence of float
+        Residuals [m] at which energies are compared.
+    fill : int
+        About how many points a filled front has; 0 leaves fronts as they were found.
+
+    Returns
+    -------
+    Comparison
+        The figures of every front, grouped by method.
+
+    Raises
+    ------
+    ValueError
+        When there are fewer than two fronts, one is empty or given twice, or their tasks differ.
+    """
+    names = list(names) or [f"front {i}" for i in range(1, len(fronts) + 1)]
+    check_fronts(fronts, names)
+    if reference is not None:
+        check_fronts([fronts[0], reference], [names[0], reference_name], twice=True)
+    found, between = [objectives(front) for front in fronts], [filled(f, fill) for f in fronts]
+    best_front = best_of(between)
+    known = best_front if reference is None else filled(reference, fill)
+    corner = np.max([*(front.reference for front in fronts), _MARGIN * best_front.max(0)], axis=0)
+    extent = np.where(np.ptp(known, axis=0) > 0, np.ptp(known, axis=0), corner)
+    stations = evenly_spaced(known / extent)
+    best = within(best_front, levels)
+
+    def measured(i: int) -> Measured:
+        scaled, energies = between[i] / extent, within(found[i], levels)
+        return Measured(
+            name=names[i],
+            front=fronts[i],
+            between=_frozen(between[i]),
+            hypervolume=_share(between[i] / corner),
+            hypervolume_found=_share(found[i] / corner),
+            igd_plus=float(moocore.igd_plus(scaled, ref=stations)),
+            epsilon=float(moocore.epsilon_additive(scaled, ref=stations)),
+            energies=_floats(energies),
+            gaps=_floats(energies / best - 1),
+            gaps_between=_floats(within(between[i], levels) / best - 1),
+        )
+
+    groups = tuple(
+        Group(label, tuple(measured(i) for i in members), *_surfaces([found[i] for i in members]))
+        for label, members in grouped(fronts).items()
+    )
+    return Comparison(
+        task=fronts[0].task,
+        groups=groups,
+        reference="the best of all fronts" if reference is None else reference_name,
+        corner=(float(corner[0]), float(corner[1])),
+        extent=(float(extent[0]), float(extent[1])),
+        levels=tuple(levels),
+        best_front=_frozen(best_front),
+        best=_floats(best),
+        coverage=_frozen([[_coverage(one, other) for other in groups] for one in groups]),
+        fill=fill,
+        floor=floor,
+    )
+
+
+def _surfaces(clouds: Sequence[Array]) -> tuple[Array, Array, Array]:
+    points, sets = np.vstack(clouds), np.repeat(np.arange(len(clouds)), [len(c) for c in clouds])
+    table = moocore.eaf(points, sets, percentiles=[0, 50, 100])
+    best, median, worst = (_frozen(table[table[:, 2] == share, :2]) for share in (0, 50, 100))
+    return best, median, worst
+
+
+def _coverage(one: Group, other: Group) -> float:
+    """Median over the pairs of runs of the share of `other` that `one` dominates or equals."""
+    if one is other:
+        return np.nan
+    shares: list[float] = []
+    for a, b in product(one.runs, other.runs):
+        mine = within(a.between, b.front.residuals, np.inf)
+        shares.append(float(np.mean(mine <= b.front.energies)))
+    return float(np.median(shares))
+
+
+def _share(scaled: Array) -> float:
+    return float(moocore.hypervolume(scaled, ref=[1.0, 1.0]))
+
+
+def _floats(values: Array) -> tuple[float, ...]:
+    return tuple(float(value) for value in values)
+
+
+def _frozen(values: object) -> Array:
+    array = np.array(values, dtype=float)
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,131 @@
+"""Progress of searches: bars on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import isnan
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn
+
+from metaheuristics import SearchProgress
+from ocp import Front
+from studies.display.progress import PLAIN_SECONDS, shown
+from studies.display.words import millimetres, print_lines
+
+_WIDE = 120
+"""A terminal of this many columns shows every figure with its name."""
+
+
+class SearchDisplay:
+    """Is told of every generation, and of every search that ends; shows nothing."""
+
+    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
+        """Show where a search is; the seed tells one of several."""
+
+    def finish(self, front: Front) -> None:
+        """Show what one of several searches found."""
+
+
+@contextmanager
+def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchDisplay]:
+    """Show a search's generation, best residual, least energy, hypervolume, speed and time left.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to, usually standard error.
+    quiet : bool
+        Show nothing.
+
+    Yields
+    ------
+    SearchDisplay
+        To be called with a `SearchProgress` after every generation.
+    """
+    columns = (BarColumn(bar_width=12), TextColumn("{task.description}", markup=False))
+    with shown(console, quiet, columns, SearchDisplay(), _Lines(console), _Bars) as display:
+        yield display
+
+
+class _Bars(SearchDisplay):
+    """A bar for every search that is running."""
+
+    def __init__(self, bars: Progress) -> None:
+        self._bars = bars
+        self._tasks: dict[int | None, TaskID] = {}
+        self._words = _figures if bars.console.width >= _WIDE else _brief
+
+    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
+        if seed not in self._tasks:
+            self._tasks[seed] = self._bars.add_task("", total=progress.generations)
+        self._bars.update(
+            self._tasks[seed],
+            completed=progress.generation,
+            description=self._words(progress, seed),
+        )
+
+    def finish(self, front: Front) -> None:
+        if front.seed in self._tasks:
+            self._bars.remove_task(self._tasks.pop(front.seed))
+        print_lines(self._bars.console, _found(front))
+
+
+class _Lines(SearchDisplay):
+    """A line every few seconds for each search, and one for its last generation."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._last: dict[int | None, float] = {}
+
+    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
+        now = time.perf_counter()
+        due = now - self._last.setdefault(seed, now) >= PLAIN_SECONDS
+        if due or progress.generation == progress.generations:
+            self._last[seed] = now
+            print_lines(self._console, _figures(progress, seed))
+
+    def finish(self, front: Front) -> None:
+        print_lines(self._console, _found(front))
+
+
+def _found(front: Front) -> str:
+    share = front.history[-1].hypervolume if front.history else 0.0
+    return f"seed {front.seed} is done: hypervolume {share:.4f} in {front.seconds:.1f} s"
+
+
+def _figures(progress: SearchProgress, seed: int | None) -> str:
+    which = "" if seed is None else f"seed {seed}, "
+    share = progress.infeasible / max(progress.evaluations, 1)
+    best = f"residual {millimetres(progress.residual)}, energy {progress.energy:.4g} J"
+    best = "nothing found yet" if isnan(progress.residual) else best
+    broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
+    return (
+        f"{which}generation {progress.generation}/{progress.generations}, "
+        f"{best}, hypervolume {progress.hypervolume:.4f}, {_speed(progress):.0f} candidates/s"
+        f"{broken}, {_left(progress)} left"
+    )
+
+
+def _brief(progress: SearchProgress, seed: int | None) -> str:
+    """The same for a narrow terminal."""
+    which = "" if seed is None else f"seed {seed} "
+    best = f"{progress.residual * 1e3:.2g} mm {progress.energy:.3g} J"
+    best = "nothing yet" if isnan(progress.residual) else best
+    return (
+        f"{which}{progress.generation}/{progress.generations} {best} "
+        f"hv {progress.hypervolume:.3f} {_speed(progress):.0f}/s "
+        f"{_left(progress)} left"
+    )
+
+
+def _speed(progress: SearchProgress) -> float:
+    return progress.evaluations / max(progress.seconds, 1e-9)
+
+
+def _left(progress: SearchProgress) -> str:
+    share = (progress.generations - progress.generation) / max(progress.generation, 1)
+    seconds = share * progress.seconds
+    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"

@@ -1,0 +1,94 @@
+"""The methods that find a front: the one registry that commands, tables and pictures read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+from ocp import Front, epsilon_front, weighted_front
+
+_POLISHED = ", polished"
+"""What `ocp.polish_front` adds to the name of a method."""
+
+
+class Kind(Enum):
+    """How a method works."""
+
+    GRADIENT = "gradient"
+    METAHEURISTIC = "metaheuristic"
+    OTHER = "other"
+
+
+def _no_sweep(*given: object, **settings: object) -> Front:
+    raise ValueError("this method is not of the gradient; give it to metaheuristics.search")
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method that finds a front.
+
+    Attributes
+    ----------
+    name : str
+        What it is called in a front, in its file and on the command line.
+    label : str
+        What it is called in tables and pictures.
+    kind : Kind
+        How it works; other for an algorithm of pymoo's that is not listed here.
+    polished : bool
+        Whether the gradient improved its front afterwards.
+    sweep : callable
+        For the gradient: finds the front of a task, a profile and settings. A metaheuristic is
+        known to `metaheuristics.search` by its name.
+    parallel : bool
+        Whether processes can share its work.
+    """
+
+    name: str
+    label: str
+    kind: Kind
+    polished: bool = False
+    sweep: Callable[..., Front] = field(default=_no_sweep, compare=False)
+    parallel: bool = True
+
+    def then_polished(self) -> Method:
+        """The same method with its front polished."""
+        between = ", " if self.polished else " "
+        label = f"{self.label}{between}polished"
+        return replace(self, name=f"{self.name}{_POLISHED}", label=label, polished=True)
+
+
+EPSILON = Method("epsilon", "epsilon constraint", Kind.GRADIENT, sweep=epsilon_front)
+WEIGHTED = Method("weighted", "weighted sum", Kind.GRADIENT, sweep=weighted_front, parallel=False)
+NSGA2 = Method("nsga2", "NSGA-II", Kind.METAHEURISTIC)
+VEPSO = Method("vepso", "VEPSO", Kind.METAHEURISTIC)
+
+METHODS = {method.name: method for method in (EPSILON, WEIGHTED, NSGA2, VEPSO)}
+"""Every method that a user can ask for, by name."""
+
+
+def method_of(name: str) -> Method:
+    """The method that a front names.
+
+    Parameters
+    ----------
+    name : str
+        `Front.method`, as ``"nsga2"`` or ``"nsga2, polished"``.
+
+    Returns
+    -------
+    Method
+        The method of the registry, polished where the name says so; a name that is not in the
+        registry is its own label.
+    """
+    if name in METHODS:
+        return METHODS[name]
+    if name.endswith(_POLISHED):
+        return method_of(name.removesuffix(_POLISHED)).then_polished()
+    return Method(name, name, Kind.OTHER)
+
+
+def methods_of(kind: Kind) -> tuple[Method, ...]:
+    """The methods of the registry of one kind."""
+    return tuple(method for method in METHODS.values() if method.kind is kind)

@@ -1,0 +1,89 @@
+"""What the paper prints: conditions, coefficients and energies of its Tables 1 to 6."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+from metaheuristics import PAPER_BOX
+from models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
+from ocp import PointToPoint
+from studies.methods import NSGA2, VEPSO
+from studies.paper.case import Case
+
+SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
+
+
+def _condition(plant: Plant, start: float, target: float, duration: float, label: str) -> Case:
+    """A driving condition: start and target [rad], duration [s]; in its plant's box."""
+    return Case(PointToPoint(plant, target, duration, start), label=label)
+
+
+SINGLE_LINK_SIXTH = _condition(SINGLE_LINK, 0.0, pi / 6, 0.8, "0 to pi/6, 0.8 s")
+SINGLE_LINK_HALF_1_0 = _condition(SINGLE_LINK, 0.0, pi / 2, 1.0, "0 to pi/2, 1.0 s")
+SINGLE_LINK_HALF_1_1 = _condition(SINGLE_LINK, 0.0, pi / 2, 1.1, "0 to pi/2, 1.1 s")
+ARM_HALF = _condition(ARM, 0.0, pi / 2, 0.8, "0 to pi/2, 0.8 s")
+ARM_THREE_QUARTERS = _condition(ARM, -pi / 2, pi / 4, 1.0, "-pi/2 to pi/4, 1.0 s")
+ARM_WHOLE = _condition(ARM, -pi / 2, pi / 2, 1.2, "-pi/2 to pi/2, 1.2 s")
+
+PAPER_SEARCH = {SINGLE_LINK.name: VEPSO, ARM.name: NSGA2}
+"""The paper's search for each plant: sections 3.1 and 3.2."""
+
+COEFFICIENTS: dict[tuple[Case, int], tuple[float, ...]] = {
+    (SINGLE_LINK_SIXTH, 2): (3.347e-3, -1.697e-1),
+    (SINGLE_LINK_SIXTH, 4): (-1.690e-3, -1.367e-1, -1.951e-2, -1.971e-1),
+    (SINGLE_LINK_SIXTH, 6): (-1.889e-3, -1.427e-1, -4.247e-2, -1.187e-1, 4.800e-2, -1.890e-1),
+    (ARM_HALF, 2): (-1.023e-1, -4.365e-1),
+    (ARM_HALF, 4): (-9.583e-2, -3.350e-1, 2.090e-1, -2.854e-1),
+    (ARM_HALF, 6): (-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-1, -2.377e-1),
+}
+"""Tables 1 and 4, as printed."""
+
+MENDED: dict[tuple[Case, int], tuple[float, ...]] = {
+    (ARM_HALF, 6): (-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-2, -2.377e-1),
+}
+"""Table 4, N = 6, with the exponent of a_5 mended: only this reproduces Table 5's 0.149 J."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of Tables 2, 3, 5 or 6.
+
+    Attributes
+    ----------
+    table : int
+        Number of the table.
+    condition : Case
+        The driving condition.
+    terms : int
+        N of eq (6).
+    energy : float
+        F2 that is printed for the proposed method [J].
+    earlier_energy : float or None
+        F2 that is printed for the earlier study, ref. [23] or [24] [J].
+    """
+
+    table: int
+    condition: Case
+    terms: int
+    energy: float
+    earlier_energy: float | None = None
+
+
+ROWS: tuple[Row, ...] = (
+    Row(2, SINGLE_LINK_SIXTH, 2, 6.29e-2),
+    Row(2, SINGLE_LINK_SIXTH, 4, 5.26e-2),
+    Row(2, SINGLE_LINK_SIXTH, 6, 5.15e-2),
+    Row(3, SINGLE_LINK_SIXTH, 6, 5.15e-2, 6.30e-2),
+    Row(3, SINGLE_LINK_HALF_1_0, 6, 2.96e-1, 4.21e-1),
+    Row(3, SINGLE_LINK_HALF_1_1, 6, 2.23e-1, 3.52e-1),
+    Row(5, ARM_HALF, 2, 2.09e-1),
+    Row(5, ARM_HALF, 4, 1.65e-1),
+    Row(5, ARM_HALF, 6, 1.49e-1),
+    Row(6, ARM_HALF, 6, 1.49e-1, 2.00e-1),
+    Row(6, ARM_THREE_QUARTERS, 6, 1.43e-1, 1.55e-1),
+    Row(6, ARM_WHOLE, 6, 2.00e-1, 2.22e-1),
+)
+
+CONDITIONS: tuple[Case, ...] = tuple(dict.fromkeys(row.condition for row in ROWS))
+"""The six driving conditions of these tables."""

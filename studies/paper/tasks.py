@@ -1,0 +1,76 @@
+"""Tasks in words: where two of them differ, which are the paper's, and what to call one."""
+
+from __future__ import annotations
+
+from math import isclose
+
+from ocp import PointToPoint
+from ocp.task import LIMITS
+from studies.paper.case import Case
+from studies.paper.printed import CONDITIONS
+
+_SAME = 1e-9
+"""Relative difference below which two numbers of a task are one: 30deg and pi/6."""
+
+
+def task_difference(one: PointToPoint, other: PointToPoint) -> str:
+    """Every quantity in which two tasks differ, in words; empty where they are equal.
+
+    Parameters
+    ----------
+    one, other : PointToPoint
+        The tasks.
+
+    Returns
+    -------
+    str
+        As ``"duration is 1 s, not 0.8 s"``, the value of `one` first.
+    """
+    if one.plant.name != other.plant.name:
+        return f"plant is {one.plant.name}, not {other.plant.name}"
+    mine, theirs = _quantities(one), _quantities(other)
+    words: list[str] = []
+    for name, (value, unit) in mine.items():
+        wanted = theirs[name][0]
+        if value is None or wanted is None:
+            same = value is wanted
+        else:
+            same = isclose(value, wanted, rel_tol=_SAME)
+        if not same:
+            words.append(f"{name} is {_words(value, unit)}, not {_words(wanted, unit)}")
+    return ", ".join(words)
+
+
+def _quantities(task: PointToPoint) -> dict[str, tuple[float | None, str]]:
+    table: dict[str, tuple[float | None, str]] = {
+        f"plant parameter {name}": (value, "") for name, value in task.plant.parameters.items()
+    }
+    for name in ("start", "target"):
+        table[name] = (getattr(task, name), "rad")
+    for name in ("duration", "residual_window"):
+        table[name.replace("_", " ")] = (getattr(task, name), "s")
+    for name, unit in LIMITS.items():
+        table[name.replace("_", " ")] = (getattr(task, name), unit)
+    return table
+
+
+def _words(value: float | None, unit: str) -> str:
+    return "none" if value is None else f"{value:.10g} {unit}".strip()
+
+
+def condition_of(task: PointToPoint) -> Case | None:
+    """The condition of the paper that a task is; None where it is none of them."""
+    return next((c for c in CONDITIONS if not task_difference(task, c.task)), None)
+
+
+def title_of(task: PointToPoint) -> str:
+    """A task in a line: its plant, move and duration; its limits where it has any."""
+    condition = condition_of(task)
+    if condition is not None:
+        return f"{task.plant.name}, {condition.label}"
+    limits = "".join(
+        f", {name} within {value:g} {LIMITS[f'{name}_limit']}"
+        for name, value in task.limits.items()
+    )
+    move = f"{task.start:.4g} to {task.target:.4g} rad, {task.duration:g} s"
+    return f"{task.plant.name}, {move}{limits}"

@@ -1,0 +1,79 @@
+"""A floor on the screen, with the plan of six terms beside it."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
+from studies.reports.plan import add_figures, add_move, upright_table
+
+TERMS = 6
+"""Terms of the plan that a floor is compared with."""
+
+
+def plan_beside(floor: Floor) -> Plan | None:
+    """The gradient's plan for the same task; None where its limits allow no such plan."""
+    try:
+        return plan_move(floor.task, CycloidPolynomial(TERMS))
+    except SolverFailedError:
+        return None
+
+
+def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
+    """Print a floor: its energy, what is left, how it was found.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    floor : Floor
+        The floor.
+    plan : Plan or None
+        The plan to compare it with.
+    """
+    motion, check = floor.motion, floor.verification
+    table = upright_table()
+    add_move(table, floor.task, motion)
+    kind = "smooth (jerk free)" if floor.smooth else "acceleration free"
+    table.add_row("least energy", f"{motion.energy:.6g} J  over all motions, {kind}")
+    table.add_row("left", _left(floor))
+    if plan is not None:
+        times = f"{plan.energy / floor.energy:.3g} times the floor"
+        table.add_row(f"plan, {TERMS} terms", f"{plan.energy:.6g} J, {times}")
+    else:
+        table.add_row(f"plan, {TERMS} terms", "none within these limits")
+    grids = ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)
+    table.add_row("intervals", grids)
+    worst = max(floor.starts) / min(floor.starts) - 1
+    table.add_row(
+        "starts",
+        f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best"
+        f"{f', the worst {worst:.1%} above it' if worst > 0.005 else ''}{_unsolved(floor)}",
+    )
+    add_figures(table, floor.task, motion)
+    unsettled = "" if floor.settled else " On a finer grid it failed."
+    table.add_row("status", floor.status.text + unsettled)
+    table.add_row(
+        "verified",
+        f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
+        f"{abs(check.energy_difference) / motion.energy:.0e} in energy",
+    )
+    table.add_row("time", f"{floor.provenance.seconds:.2f} s")
+    console.print(table, highlight=False)
+
+
+def _unsolved(floor: Floor) -> str:
+    missing = int(floor.provenance.settings["starts"] or 0) - len(floor.starts)
+    return f"; {missing} not solved" if missing > 0 else ""
+
+
+def _left(floor: Floor) -> str:
+    falls = ""
+    if floor.change < 0:
+        falls = "; on the last grid the energy rose"
+    elif floor.ratio is not None:
+        falls = f"; the last grid gained {floor.ratio:.2f} of what the one before gained"
+    return (
+        f"about {floor.left:.2g} J ({floor.left / floor.energy:.2%}) to be gained by finer grids"
+        f"{falls}"
+    )

@@ -1,0 +1,64 @@
+"""Fronts of searches on the screen: what each holds, and the spread over seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Console
+
+from metaheuristics.ensemble import STILL, Spread, energies_at, hypervolumes
+from ocp import Front
+from studies.display.words import millimetres, print_lines
+
+
+def print_fronts(console: Console, fronts: Sequence[Front]) -> None:
+    """Print the ends and the knee of every front, and the spread of those that are complete.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    fronts : sequence of Front
+        One for every seed.
+    """
+    for front in fronts:
+        print_lines(console, *_front_lines(front))
+    complete = [front for front in fronts if front.complete]
+    if len(complete) > 1:
+        energies = energies_at(complete)
+        print_lines(
+            console,
+            f"hypervolume: {quartiles(hypervolumes(complete), '.4f')}",
+            f"energy at {millimetres(STILL)}: {quartiles(energies, '.4g', ' J')}; "
+            f"{reached(energies)}",
+        )
+
+
+def quartiles(spread: Spread, form: str, unit: str = "") -> str:
+    """Median and quartiles in words, each number in this form."""
+    if not spread.count:
+        return "none"
+    return (
+        f"median {spread.median:{form}}{unit}, quartiles {spread.lower:{form}} to "
+        f"{spread.upper:{form}}{unit}"
+    )
+
+
+def reached(spread: Spread) -> str:
+    """How many seeds have an energy at `STILL`."""
+    return f"{spread.count} of {spread.seeds} seeds reach {millimetres(STILL)}"
+
+
+def _front_lines(front: Front) -> list[str]:
+    state = "" if front.complete else " (interrupted: what was found until then)"
+    lines = [
+        f"{front.method}, seed {front.seed}: {len(front.points)} points, "
+        f"{front.evaluations} candidates in {front.seconds:.1f} s, {front.failed} failed{state}"
+    ]
+    if front.points:
+        chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
+        lines += [
+            f"  {name:9}{point.energy:.4g} J at {millimetres(point.residual)}"
+            for name, point in chosen.items()
+        ]
+    return lines

@@ -1,0 +1,83 @@
+"""The gradient's fronts on the screen: ends, knee, energies, and what is missing."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from metaheuristics.ensemble import energy_at
+from ocp import FailedPoint, Front, QuietarmError
+from ocp.sweep import RESIDUAL_LIMIT
+from studies.comparison.measures import LEVELS
+from studies.display.words import millimetres, print_lines
+
+
+def print_sweep(console: Console, front: Front, asked_for: int) -> None:
+    """Print a front: how it was found, its ends and knee, energies, what could not be found.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    front : Front
+        The front, with a point at least.
+    asked_for : int
+        How many points were asked for.
+    """
+    state = "" if front.complete else " (interrupted: what was found until then)"
+    print_lines(
+        console,
+        f"{front.method}: {len(front.points)} points, {front.evaluations} iterations of the solver "
+        f"in {front.seconds:.1f} s{state}",
+        *point_lines(front),
+        *failure_lines(front, asked_for),
+        *gap_lines(front),
+    )
+
+
+def point_lines(front: Front) -> list[str]:
+    """The ends, the knee, and the least energy within some residuals, one line for each."""
+    chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
+    if len(front.points) < 3:
+        del chosen["knee"]  # it would be an end
+    lines = [
+        f"  {name:15}{point.energy:.4g} J at {millimetres(point.residual)}"
+        for name, point in chosen.items()
+    ]
+    for level in LEVELS:
+        energy, name = energy_at(front, level), f"within {millimetres(level)}"
+        found = f"{energy:.4g} J" if energy == energy else "none"  # NaN where there is none
+        lines.append(f"  {name:15}{found}")
+    return lines
+
+
+def failure_lines(front: Front, asked_for: int) -> list[str]:
+    """How many of the points asked for failed, and why; none where none did."""
+    if not front.failures:
+        return []
+    reasons: dict[str, list[str]] = {}
+    for failure in front.failures:
+        reasons.setdefault(failure.reason, []).append(_asked(failure))
+    return [
+        f"{len(front.failures)} of {asked_for} points could not be found:",
+        *(f"  {', '.join(asked)}: {reason}" for reason, asked in reasons.items()),
+    ]
+
+
+def gap_lines(front: Front) -> list[str]:
+    """The ranges of the residual that no weight reaches, one line for each."""
+    return [
+        f"no weight reaches residuals from {millimetres(begin)} to {millimetres(end)}: the front "
+        "is not convex there"
+        for begin, end in front.gaps
+    ]
+
+
+def interruption() -> QuietarmError:
+    """The error to raise after Ctrl-C."""
+    return QuietarmError("interrupted; what was found until then is kept")
+
+
+def _asked(failure: FailedPoint) -> str:
+    if RESIDUAL_LIMIT in failure.asked:
+        return f"residual <= {millimetres(failure.asked[RESIDUAL_LIMIT])}"
+    return ":".join(f"{weight:.3g}" for weight in failure.asked.values()) + " (residual:energy)"

@@ -1,0 +1,175 @@
+"""What `quietarm reproduce` shows and writes: tables, the floor, claims, Figs 2 and 5."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import isfinite
+from pathlib import Path
+
+from matplotlib.figure import Figure
+from rich.console import Console
+from rich.padding import Padding
+from rich.text import Text
+
+from ocp import Plan
+from ocp.files import write_whole
+from studies.display.pictures import save_figure
+from studies.display.tables import Cell, Column, Table
+from studies.paper.case import Case
+from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
+from studies.reports.motion_figure import Line, four_panels
+from studies.reproduction.claims import Claim
+from studies.reproduction.floor_dots import floor_dots
+from studies.reproduction.floor_table import LEGEND as FLOOR_LEGEND
+from studies.reproduction.floor_table import finding, floor_table, floor_tables
+from studies.reproduction.recompute import Reproduction, RowResult
+
+_MILLIMETRES = "{:.3g}".format
+_SECONDS = "{:.2f}".format
+_ENERGY = "{:.4g}".format
+_COLUMNS = (
+    Column("move", key="move"),
+    Column("terms N", key="terms"),
+    Column("F2 [J] earlier study", _ENERGY, "earlier_study_J"),
+    Column("F2 [J] printed", _ENERGY, "printed_J"),
+    Column("F2 [J] printed coefficients", _ENERGY, "printed_coefficients_J"),
+    Column("  residual [mm]", _MILLIMETRES, "printed_coefficients_residual_mm"),
+    Column("F2 [J] gradient, in the box", _ENERGY, "gradient_in_box_J"),
+    Column("  residual [mm]", _MILLIMETRES, "gradient_in_box_residual_mm"),
+    Column("  time [s]", _SECONDS, "gradient_in_box_s"),
+    Column("F2 [J] gradient, no box", _ENERGY, "gradient_no_box_J"),
+    Column("  residual [mm]", _MILLIMETRES, "gradient_no_box_residual_mm"),
+    Column("  time [s]", _SECONDS, "gradient_no_box_s"),
+    Column("F2 [J] {method}, in the box", _ENERGY, "{method}_in_box_J"),
+    Column("  quartiles over seeds", key="{method}_quartiles_J"),
+    Column("  residual limit [mm]", _MILLIMETRES, "{method}_residual_limit_mm"),
+    Column("  time of a run [s]", _SECONDS, "{method}_run_s"),
+)
+_TITLES = {
+    2: "Table 2: number of terms, single-link manipulator",
+    3: "Table 3: against ref. [23], single-link manipulator",
+    5: "Table 5: number of terms, arm on a flexible link",
+    6: "Table 6: against ref. [24], arm on a flexible link",
+}
+_COLOURS = {2: "tab:green", 4: "tab:red", 6: "tab:blue"}  # those of the paper's Figs 2 and 5
+LEGEND = (
+    "Printed: as in the paper; printed coefficients: the same recomputed here. Gradient: the least "
+    "energy at rest on arrival, within the paper's bound on the coefficients or without one; "
+    "arriving at rest may cost a little more than the paper's small residual does. VEPSO, NSGA-II: "
+    "the cheapest point of a front found with the paper's settings whose residual is no larger "
+    "than that of the paper's own coefficients (where none are printed, of its N = 6 row for the "
+    "same plant). Energies F2 and residuals F1 (at the tip) of coefficients and gradient are by "
+    "CVODES."
+)
+
+
+def tables(result: Reproduction) -> list[Table]:
+    """The paper's Tables 2, 3, 5 and 6 with the recomputed figures beside the printed ones."""
+    found: list[Table] = []
+    for number, title in _TITLES.items():
+        chosen = [row for row in result.rows if row.row.table == number]
+        method = chosen[0].own_search.label
+        columns = [
+            replace(c, heading=c.heading.format(method=method), key=c.key.format(method=method))
+            for c in _COLUMNS
+        ]
+        found.append(Table(title, columns, [cells for r in chosen for cells in _with_mended(r)]))
+    return found
+
+
+def _with_mended(result: RowResult) -> list[list[Cell]]:
+    row = result.row
+    gradient = [*_figures(result.in_box, timed=True), *_figures(result.free, timed=True)]
+    spread = result.searched_by(result.own_search)
+    several = len(result.fronts[result.own_search]) > 1
+    searched: list[Cell] = [
+        spread.median if isfinite(spread.median) else "none",
+        f"{spread.lower:.4f}-{spread.upper:.4f}" if several else None,
+        result.residual_level * 1e3,
+        result.search_seconds,
+    ]
+    head: list[Cell] = [row.condition.label, str(row.terms), row.earlier_energy, row.energy]
+    lines = [[*head, *_figures(result.printed), *gradient, *searched]]
+    if result.mended:
+        head[1] = f"{row.terms}, a_5 mended"
+        nothing: list[Cell] = [None] * len([*gradient, *searched])
+        lines.append([*head, *_figures(result.mended), *nothing])
+    return lines
+
+
+def _figures(plan: Plan | None, timed: bool = False) -> list[Cell]:
+    if plan is None:
+        return [None] * (3 if timed else 2)
+    figures: list[Cell] = [plan.energy, plan.residual * 1e3]
+    return [*figures, plan.provenance.seconds] if timed else figures
+
+
+def redrawn(result: Reproduction, condition: Case, title: str) -> Figure:
+    """Fig. 2 or Fig. 5 from the printed coefficients, with the gradient's N = 6 over it."""
+    lines = [Line(result.cycloids[condition], "cycloid", "black")]
+    for terms, colour in _COLOURS.items():
+        row = result.result(condition, terms)
+        plan = row.mended_or_printed
+        if plan is not None:
+            mended = ", a_5 mended" if row.mended else ""
+            lines.append(Line(plan, f"paper, N = {terms}{mended}", colour))
+    gradient = result.more_terms[condition, 6, True]
+    lines.append(Line(gradient, "gradient, N = 6, same box", "tab:orange", "--"))
+    return four_panels(lines, title)
+
+
+def print_reproduction(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> None:
+    """Print the tables and the claims."""
+    for table in tables(result):
+        console.print(table.for_screen())
+    console.print(LEGEND, highlight=False, style="dim")
+    for table in floor_tables(result):
+        console.print(table.for_screen())
+    console.print(FLOOR_LEGEND, highlight=False, style="dim")
+    console.print(f"\n{finding(result)}", highlight=False)
+    console.print("\nWhat the paper claims", style="bold")
+    for claim in verdicts:
+        style = "green" if claim.holds else "red"
+        console.print(Text.assemble((claim.verdict, f"bold {style}"), f"  {claim.text}"))
+        for line in claim.evidence:
+            console.print(Padding(Text(line), (0, 0, 0, 11)))
+
+
+def write_reproduction(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[Path]:
+    """Write report.md, a CSV for every table, and the pictures; return what was written."""
+    written: list[Path] = []
+
+    def keep(name: str, content: str) -> None:
+        write_whole(folder / name, content)
+        written.append(folder / name)
+
+    for name, condition in (("figure_2.png", SINGLE_LINK_SIXTH), ("figure_5.png", ARM_HALF)):
+        number = name.removesuffix(".png").replace("figure_", "Fig. ")
+        title = f"{number} redrawn: {condition.task.plant.name}, {condition.label}"
+        save_figure(redrawn(result, condition, title), folder / name)
+        written.append(folder / name)
+    paper_tables = tables(result)
+    for number, table in zip(_TITLES, paper_tables, strict=True):
+        keep(f"table_{number}.csv", table.csv())
+    save_figure(floor_dots(result), folder / "floor.png")
+    written.append(folder / "floor.png")
+    keep("floor.csv", floor_table(result).csv())
+    keep("report.md", _markdown(result, paper_tables, verdicts))
+    return written
+
+
+def _markdown(
+    result: Reproduction, paper_tables: Sequence[Table], verdicts: Sequence[Claim]
+) -> str:
+    parts = ["# The paper, recomputed\n", LEGEND + "\n"]
+    parts += [table.markdown() for table in paper_tables]
+    parts += ["## How far from the floor\n", finding(result) + "\n", FLOOR_LEGEND + "\n"]
+    parts += [table.markdown() for table in floor_tables(result)]
+    parts.append("![Multiples of the floor](floor.png)\n")
+    parts.append("## What the paper claims\n")
+    for claim in verdicts:
+        evidence = "\n".join(f"- {line}" for line in claim.evidence)
+        parts.append(f"### {claim.text} **{claim.verdict.capitalize()}.**\n\n{evidence}\n")
+    parts.append("## Figures\n\n![Fig. 2](figure_2.png)\n\n![Fig. 5](figure_5.png)\n")
+    return "\n".join(parts)

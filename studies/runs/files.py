@@ -1,0 +1,26 @@
+"""What several runs check before they begin: their files, their workers."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from rich.console import Console
+
+
+def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
+    """Make sure that no two options name one file; ValueError names them."""
+    names: dict[Path, str] = {}
+    for name, path in files:
+        if path is not None and names.setdefault(path.resolve(), name) != name:
+            raise ValueError(f"{names[path.resolve()]} and {name} are both {path}; give two files")
+
+
+def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
+    """Warn where more workers start than there are cores; no more start than pieces of work."""
+    cores, workers = os.cpu_count() or 1, min(workers, pieces)
+    if workers > cores:
+        console.print(
+            f"{workers} workers will share {cores} core{'s' * (cores > 1)}", highlight=False
+        )

@@ -1,0 +1,123 @@
+"""A list of work, run piece by piece: what `quietarm study` and `quietarm reproduce` share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from metaheuristics.ensemble import search_many
+from ocp import CycloidPolynomial, Front, QuietarmError
+from studies.methods import Method
+from studies.paper.case import Case
+
+Begin = Callable[[str], None]
+"""Called with the name of a piece of work when it begins."""
+
+
+@dataclass
+class Done:
+    """What became of the pieces of work so far.
+
+    Attributes
+    ----------
+    answers : dict
+        Answers by the key of their piece.
+    failures : dict
+        Errors by the key of their piece.
+    """
+
+    answers: dict[Hashable, Any] = field(default_factory=dict)
+    failures: dict[Hashable, QuietarmError] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of work.
+
+    Attributes
+    ----------
+    key : hashable
+        What its answer is kept under.
+    name : str
+        What is shown when it begins.
+    work : callable
+        Gives the answer; it may look at what was done before it.
+    """
+
+    key: Hashable
+    name: str
+    work: Callable[[Done], Any]
+
+
+class NotTriedError(QuietarmError):
+    """A piece of work that is left out, because an earlier one failed."""
+
+
+def run_pieces(pieces: Sequence[Piece], begin: Begin, *, go_on: bool = False) -> Done:
+    """Run pieces of work one after another.
+
+    Parameters
+    ----------
+    pieces : sequence of Piece
+        The work, in order.
+    begin : callable
+        Called with the name of every piece when it begins.
+    go_on : bool
+        Whether to note a piece that fails and go on with the next.
+
+    Returns
+    -------
+    Done
+        Every answer, and every failure that was noted.
+
+    Raises
+    ------
+    QuietarmError
+        When a piece fails, unless `go_on`.
+    """
+    done = Done()
+    for piece in pieces:
+        begin(piece.name)
+        try:
+            done.answers[piece.key] = piece.work(done)
+        except QuietarmError as error:
+            if not go_on:
+                raise
+            done.failures[piece.key] = error
+    return done
+
+
+def searched(case: Case, method: Method, terms: int, runs: int = 1, **settings: Any) -> list[Front]:
+    """The fronts of a metaheuristic on a case, one for each seed.
+
+    Parameters
+    ----------
+    case : Case
+        The task and the box.
+    method : Method
+        A metaheuristic.
+    terms : int
+        Terms of the polynomial.
+    runs : int
+        Number of seeds.
+    **settings : Any
+        As for `search_many`: seed, workers, population, generations.
+
+    Returns
+    -------
+    list of Front
+        The fronts, in the order of the seeds.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        When a search was interrupted.
+    """
+    profile = CycloidPolynomial(terms)
+    fronts = search_many(
+        case.task, method.name, runs, profile=profile, bound=case.bound, **settings
+    )
+    if len(fronts) < runs or not all(front.complete for front in fronts):
+        raise KeyboardInterrupt
+    return fronts

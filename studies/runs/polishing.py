@@ -1,0 +1,153 @@
+"""What `quietarm polish` does: a saved front improved, and what each point gained."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+
+from ocp import Front, Gain, polish_front
+from ocp.checks import whole
+from ocp.files import write_whole
+from studies.display.progress import count
+from studies.display.tables import Column, Table
+from studies.display.words import millimetres, print_lines
+from studies.reports.sweep import failure_lines, interruption
+from studies.runs.files import refuse_same_file, warn_of_workers
+
+_ROWS = 10
+"""Points that the table on screen shows."""
+
+
+def run_polish(
+    path: Path,
+    points: int | None,
+    workers: int,
+    output: Path | None,
+    csv_file: Path | None,
+    figure: Path | None,
+    quiet: bool,
+) -> Iterator[Path]:
+    """Improve a saved front, show what each point gained, and write it.
+
+    Parameters
+    ----------
+    path : Path
+        The front.
+    points : int or None
+        How many of its points; None is all.
+    workers : int
+        Processes that share them.
+    output, csv_file, figure : Path or None
+        Files for the improved front, the gains and the picture.
+    quiet : bool
+        Show no progress.
+
+    Yields
+    ------
+    Path
+        Every file, once it is written.
+
+    Raises
+    ------
+    FileFormatError
+        When the file is no front.
+    ValueError
+        When the front has no point, or `points` is below 2.
+    QuietarmError
+        When it was interrupted, after what was improved is written.
+    """
+    files = {"--output": output, "--csv": csv_file, "--figure": figure}
+    refuse_same_file([("FRONT", path), *files.items()])
+    whole_front = Front.load(path)
+    front = whole_front if points is None else thinned(whole_front, points)
+    errors = Console(stderr=True)
+    warn_of_workers(errors, workers, len(front.points))
+    with count(len(front.points), "points", errors, quiet=quiet) as report:
+        polish = polish_front(front, workers=workers, report=report)
+    gains = [gain for gain in polish.gains if gain.tried]
+    if not gains:
+        raise KeyboardInterrupt
+    _print_gains(Console(), whole_front, front, polish.front, gains)
+    if output is not None:
+        polish.front.save(output)
+        yield output
+    if csv_file is not None:
+        write_whole(csv_file, gains_table(gains).csv())
+        yield csv_file
+    if figure is not None:
+        from studies.display.pictures import save_figure
+        from studies.reports.sweep_figure import polish_figure
+
+        save_figure(polish_figure(front, polish), figure)
+        yield figure
+    if len(gains) < len(front.points):
+        raise interruption()
+
+
+def thinned(front: Front, points: int) -> Front:
+    """A front of fewer points, evenly spaced along it, its ends among them.
+
+    Parameters
+    ----------
+    front : Front
+        The front.
+    points : int
+        How many points, 2 or more; where it has no more, all.
+
+    Returns
+    -------
+    Front
+        The same front with these points alone.
+    """
+    points = whole("points", points, 2)
+    return replace(front, points=_spread(front.points, points))
+
+
+def _spread(items: Sequence, number: int) -> tuple:
+    """At most this many of the items, evenly spaced, with the first and the last."""
+    places = np.linspace(0, len(items) - 1, min(number, len(items))).round().astype(int)
+    return tuple(items[i] for i in places)
+
+
+def gains_table(gains: Sequence[Gain]) -> Table:
+    """For each point: residual, energy before and after, and the share that was saved."""
+    columns = [
+        Column("residual [m]", key="residual_m"),
+        Column("before [J]", key="before_J"),
+        Column("after [J]", key="after_J"),
+        Column("saved", "{:.2%}".format, key="saved_share"),
+    ]
+    rows = [[gain.residual, gain.before, gain.after, gain.share] for gain in gains]
+    return Table("what each point gained", columns, rows)
+
+
+def _print_gains(
+    console: Console, whole_front: Front, front: Front, polished: Front, gains: Sequence[Gain]
+) -> None:
+    number, of = len(front.points), len(whole_front.points)
+    points = f"{number} of its {of} points, spread along it" if number < of else f"{of} points"
+    state = "" if len(gains) == number else f" (interrupted after {len(gains)} of them)"
+    shares = np.array([gain.share for gain in gains])
+    lines = [
+        f"{polished.method}: {points}, {polished.evaluations - front.evaluations} iterations of "
+        f"the solver in {polished.seconds - front.seconds:.1f} s{state}",
+        f"{'residual':>12}{'before':>12}{'after':>12}{'saved':>9}",
+        *(_row(gain) for gain in _spread(gains, _ROWS)),
+        f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
+    ]
+    beaten = number - len(polished.points)
+    if beaten:
+        some = "1 point is" if beaten == 1 else f"{beaten} points are"
+        lines.append(f"{some} dominated by another now, and left out")
+    print_lines(console, *lines, *failure_lines(polished, number))
+
+
+def _row(gain: Gain) -> str:
+    return (
+        f"{millimetres(gain.residual):>12}{f'{gain.before:.4g} J':>12}{f'{gain.after:.4g} J':>12}"
+        f"{f'{gain.share:.2%}':>9}"
+    )

@@ -1,0 +1,213 @@
+"""What the commands do with a metaheuristic: one plan from its front, or the front itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from metaheuristics import search
+from metaheuristics.ensemble import STILL, LostSeedsError, search_many, seeds_of
+from ocp import (
+    CycloidPolynomial,
+    Front,
+    Plan,
+    PointToPoint,
+    QuietarmError,
+    SolverFailedError,
+    SolveSettings,
+    evaluate_coefficients,
+    plan_move,
+)
+from ocp.files import check_writable
+from studies.display.search_progress import search_display
+from studies.methods import Method
+from studies.reports.search import print_fronts
+from studies.runs.files import refuse_same_file, warn_of_workers
+
+
+def plan_by_search(
+    task: PointToPoint,
+    method: Method,
+    profile: CycloidPolynomial,
+    bound: float | None,
+    residual_limit: float,
+    seed: int,
+    polish: bool,
+    quiet: bool = False,
+) -> Plan:
+    """The cheapest point of a metaheuristic's front within the residual limit, as a plan.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    method : Method
+        A metaheuristic, run with the paper's settings.
+    profile : CycloidPolynomial
+        How the joint moves.
+    bound : float or None
+        Largest absolute coefficient; required, None gives the error that says so.
+    residual_limit : float
+        Largest residual [m]; 0 stands for `STILL`, since no search arrives quite at rest.
+    seed : int
+        Seed of the search.
+    polish : bool
+        Improve the point by the gradient, at the residual limit that was asked for.
+    quiet : bool
+        Show no progress.
+
+    Returns
+    -------
+    Plan
+        The plan, verified by CVODES.
+    """
+    SolveSettings(residual_limit=residual_limit, seed=seed)  # refused before the search, not after
+    with search_display(Console(stderr=True), quiet=quiet) as report:
+        front = search(task, method.name, profile=profile, bound=bound, seed=seed, report=report)
+    if not front.complete:
+        raise QuietarmError(
+            "interrupted; a plan is of a whole search, and nothing was written; `quietarm front` "
+            "keeps what a search has found until Ctrl-C"
+        )
+    try:
+        point = front.cheapest(residual_limit or STILL)
+    except ValueError as error:
+        raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
+    settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or STILL}
+    if polish:
+        polished = plan_move(
+            task,
+            profile,
+            residual_limit=residual_limit,
+            bound=bound,
+            starts=1,
+            seed=seed,
+            guess=point.coefficients,
+        )
+        provenance = replace(
+            polished.provenance,
+            method=f"{method.name}, polished by ipopt",
+            settings={**settings, **polished.provenance.settings},
+            seconds=front.seconds + polished.provenance.seconds,
+        )
+        return replace(polished, provenance=provenance)
+    found = evaluate_coefficients(task, point.coefficients, method=method.name, settings=settings)
+    return replace(found, provenance=replace(found.provenance, seconds=front.seconds))
+
+
+def run_front(
+    task: PointToPoint,
+    method: Method,
+    options: dict[str, Any],
+    output: Path | None,
+    figure: Path | None,
+    quiet: bool,
+) -> Iterator[Path]:
+    """Search from every seed, show what was found, and write it.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    method : Method
+        A metaheuristic.
+    options : dict
+        The settings of `search`, with ``terms`` for its profile, ``runs`` and ``workers``.
+    output : Path or None
+        File for the front; with several runs `with_seed` names one for every seed.
+    figure : Path or None
+        File for the picture.
+    quiet : bool
+        Show no progress.
+
+    Yields
+    ------
+    Path
+        Every file, once it is written.
+
+    Raises
+    ------
+    QuietarmError
+        When a search was interrupted, a process died, or the checkpoint could not be written;
+        after what was found is written.
+    """
+    runs, profile = options["runs"], CycloidPolynomial(options.pop("terms"))
+    if runs > 1 and (options["checkpoint"] or options["resume"]):
+        raise ValueError("--checkpoint and --resume are for one run, not with --runs")
+    targets = _targets(output, seeds_of(options["seed"], runs))
+    _refuse_same_files(targets, options, figure)
+    errors = Console(stderr=True)
+    found, lost, troubles = _fronts(errors, task, method, {**options, "profile": profile}, quiet)
+    fronts = [front for front in found if front.complete or front.points]
+    stopped = "" if lost else _interruption(fronts, runs)
+    if not any(front.points for front in fronts):
+        if stopped:
+            raise KeyboardInterrupt
+        raise lost or SolverFailedError(f"{method.name}: {fronts[0].why_empty()}")
+    print_fronts(Console(), fronts)
+    for front in fronts if targets else ():
+        front.save(targets[front.seed or 0])
+        yield targets[front.seed or 0]
+    if figure is not None:
+        from studies.display.pictures import save_figure
+        from studies.reports.search_figure import front_figure
+
+        seeds = f"{len(fronts)} seed{'s' * (len(fronts) > 1)}"
+        title = f"{method.name}, {task.plant.name}, {seeds}"
+        save_figure(front_figure(fronts, title), figure)
+        yield figure
+    if lost or stopped or troubles:
+        raise lost or QuietarmError("; ".join([*filter(None, [stopped]), *troubles]))
+
+
+def _fronts(
+    errors: Console, task: PointToPoint, method: Method, options: Mapping[str, Any], quiet: bool
+) -> tuple[list[Front], LostSeedsError | None, list[str]]:
+    """What every seed found, the error of those whose process died, and warnings."""
+    runs, troubles = options["runs"], list[str]()
+    warn_of_workers(errors, options["workers"], runs)
+    with search_display(errors, quiet=quiet) as display:
+        several = {"report": display, "done": display.finish}
+        one = {"report": lambda progress, seed: display(progress), "warn": troubles.append}
+        try:
+            how = several if runs > 1 else one
+            return search_many(task, method.name, **how, **options), None, troubles
+        except LostSeedsError as error:
+            return error.fronts, error, troubles
+
+
+def _interruption(fronts: Sequence[Front], runs: int) -> str:
+    """The message for searches that were interrupted; empty where none was."""
+    done = sum(front.complete for front in fronts)
+    if done == runs:
+        return ""
+    if runs == 1:
+        return "interrupted; what was found until then is kept"
+    part = f", {len(fronts) - done} in part" * (done < len(fronts))
+    return f"interrupted: {done} of {runs} seeds are done{part}; these are kept"
+
+
+def with_seed(path: Path, seed: int) -> Path:
+    """The file for one of several seeds: front.json is front-seed3.json for seed 3."""
+    return path.with_stem(f"{path.stem}-seed{seed}")
+
+
+def _refuse_same_files(
+    targets: Mapping[int, Path], options: Mapping[str, Any], figure: Path | None
+) -> None:
+    written = [*(("--output", path) for path in targets.values()), ("--figure", figure)]
+    refuse_same_file([*written, ("--checkpoint", options["checkpoint"])])
+    # a checkpoint may be continued in the same file, but not overwritten by a front
+    refuse_same_file([*written, ("--resume", options["resume"])])
+
+
+def _targets(output: Path | None, seeds: range) -> dict[int, Path]:
+    if output is None:
+        return {}
+    if len(seeds) == 1:
+        return {seeds[0]: output}
+    return {seed: check_writable(with_seed(output, seed)) for seed in seeds}

@@ -1,0 +1,88 @@
+"""What the commands do with the gradient's fronts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from ocp import (
+    CycloidPolynomial,
+    Front,
+    PointToPoint,
+    SolverFailedError,
+)
+from studies.display.progress import count
+from studies.methods import Method
+from studies.reports.sweep import failure_lines, interruption, print_sweep
+from studies.runs.files import refuse_same_file, warn_of_workers
+
+
+def run_sweep(
+    task: PointToPoint,
+    method: Method,
+    options: dict[str, Any],
+    output: Path | None,
+    figure: Path | None,
+    quiet: bool,
+) -> Iterator[Path]:
+    """Sweep the front by the gradient, show what was found, and write it.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    method : Method
+        A method of the gradient.
+    options : dict
+        Its settings, with ``terms`` for the profile.
+    output : Path or None
+        File for the front.
+    figure : Path or None
+        File for the picture.
+    quiet : bool
+        Show no progress.
+
+    Yields
+    ------
+    Path
+        Every file, once it is written.
+
+    Raises
+    ------
+    QuietarmError
+        When it was interrupted, after what was found is written; when nothing was found.
+    """
+    refuse_same_file([("--output", output), ("--figure", figure)])
+    weights = options.get("weights", ())
+    asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
+    front = _swept(task, method, dict(options), quiet)
+    if not front.points:
+        reasons = (line.strip() for line in failure_lines(front, asked_for)[1:])
+        raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
+    print_sweep(Console(), front, asked_for)
+    if output is not None:
+        front.save(output)
+        yield output
+    if figure is not None:
+        from studies.display.pictures import save_figure
+        from studies.reports.sweep_figure import sweep_figure
+
+        save_figure(sweep_figure(front), figure)
+        yield figure
+    if not front.complete:
+        raise interruption()
+
+
+def _swept(task: PointToPoint, method: Method, options: dict[str, Any], quiet: bool) -> Front:
+    errors = Console(stderr=True)
+    options["profile"] = CycloidPolynomial(options.pop("terms"))
+    weights = options.pop("weights", ())
+    if weights:
+        options["weights"] = weights
+    warn_of_workers(errors, options.get("workers", 1), options["points"] - 2)  # less the ends
+    total = len(weights) or options["points"]
+    with count(total, "weights" if weights else "points", errors, quiet=quiet) as report:
+        return method.sweep(task, report=report, **options)

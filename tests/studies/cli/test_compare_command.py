@@ -1,0 +1,315 @@
+"""`quietarm compare`: what it shows, what it writes, what it refuses, and its picture."""
+
+import csv
+import dataclasses
+import math
+import re
+from functools import partial
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgba
+
+import studies.comparison.check
+import studies.comparison.measures
+import studies.comparison.report
+from models import ArmOnFlexibleLink
+from ocp import FrontPoint, PointToPoint, SolverFailedError, evaluate_coefficients
+from studies.comparison.check import check_figures
+from studies.comparison.figure import BANDS, PANELS, comparison_figure, looks, panel_figure
+from studies.comparison.report import FILES, write_comparison
+from studies.comparison.tables import runs_table, tables
+from studies.paper.points import paper_points
+from studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
+from studies.paper.tasks import condition_of, title_of
+
+# The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
+compare = partial(studies.comparison.measures.compare_fronts, fill=0)
+
+
+@pytest.fixture
+def seeds(front_of):
+    """Three runs of NSGA-II."""
+    return [front_of([(1, e), (5, e - 0.2)], seed=s) for s, e in enumerate((0.95, 0.97, 0.96))]
+
+
+@pytest.fixture
+def comparison(good, poor, seeds):
+    return compare([good, *seeds], floor=0.3)
+
+
+@pytest.fixture
+def files(good, poor, tmp_path, monkeypatch):
+    """Two files, in the folder of the test."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setattr(studies.comparison.check, "check_figures", lambda front, name: None)
+    good.save("good.json")
+    poor.save("poor.json")
+    return tmp_path
+
+
+# Tables
+
+
+def cells(table):
+    """A table for people as a dict: row heading to its cells."""
+    lines = [line.strip("| ").split(" | ") for line in table.markdown().splitlines()[2:]]
+    return {name.strip(): rest for name, *rest in lines if "---" not in name}
+
+
+def test_tables_show_the_figures_of_the_comparison(comparison):
+    shown = tables(comparison)
+    fronts, energies = cells(shown["fronts"]), cells(shown["energies"])
+    assert fronts["method"] == ["epsilon constraint", "NSGA-II"]
+    assert fronts["seeds"] == ["-", "3"]
+    volume = [group.spread("hypervolume").median for group in comparison.groups]
+    assert fronts["hypervolume (more is better)"] == [f"{value:.4f}" for value in volume]
+    assert energies["energy at 0.1 mm [J]"] == ["0.8", "not reached"]
+    assert energies["energy at 1 mm [J]"] == ["0.8", "0.96"]
+    assert energies["above the best at 1 mm [%]"] == ["0.00", "20.00"]
+
+
+def test_a_run_a_row_with_every_digit(comparison):
+    rows = list(csv.DictReader(runs_table(comparison).csv().splitlines()))
+    assert [row["seed"] for row in rows] == ["", "0", "1", "2"]
+    for row, run in zip(rows, comparison.runs, strict=True):
+        assert float(row["igd_plus"]) == run.igd_plus
+        assert float(row["gap_at_1mm"]) == run.gaps[1]
+        assert row["complete"] == "yes"
+    assert rows[1]["energy_J_at_0.1mm"] == ""
+
+
+# Pictures
+
+
+def drawn(axis, label):
+    """Points of the line of a label."""
+    (line,) = [line for line in axis.get_lines() if line.get_label() == label]
+    return np.column_stack([np.asarray(line.get_xdata()), np.asarray(line.get_ydata())])
+
+
+def test_the_picture_holds_the_fronts_as_staircases(comparison):
+    picture = comparison_figure(comparison)
+    whole, still, gaps, _ = picture.axes
+    stairs = drawn(whole, "epsilon constraint")
+    np.testing.assert_allclose(stairs[:3], [[0, 0.8], [4, 0.5], [8, 0.4]])
+    (line,) = [line for line in whole.get_lines() if line.get_label() == "epsilon constraint"]
+    assert line.get_drawstyle() == "steps-post"
+    np.testing.assert_allclose(drawn(whole, "NSGA-II")[[0, 1]], [[1, 0.96], [5, 0.76]])
+    (band,) = whole.collections
+    heights = band.get_paths()[0].vertices[:, 1]
+    assert (heights.min(), heights.max()) == (0.75, 0.97)
+    assert still.get_xscale() == gaps.get_xscale() == "log"
+    assert picture.axes[3].get_legend().get_title().get_text() == BANDS
+
+
+def test_of_two_seeds_the_picture_shows_what_the_better_reaches_and_says_so(good, seeds):
+    two = compare([good, *seeds[:2]])
+    np.testing.assert_allclose(drawn(comparison_figure(two).axes[0], "NSGA-II")[0], [1, 0.95])
+    assert cells(tables(two)["energies"])["energy at 1 mm [J]"][1] == "0.96"  # the middle
+    assert "of two, the better one" in BANDS
+
+
+def test_points_are_held_against_the_best_within_their_residual(comparison):
+    axis = comparison_figure(comparison).axes[2]
+    np.testing.assert_allclose(
+        drawn(axis, "NSGA-II"), [[1, 100 * (0.96 / 0.8 - 1)], [5, 100 * (0.76 / 0.5 - 1)]]
+    )
+    assert set(drawn(axis, "epsilon constraint")[:, 1]) == {0}
+
+
+def test_the_picture_holds_floor_and_papers_points(front_of):
+    task = ARM_HALF.task
+    fronts = [front_of([(0, 0.2), (5, 0.1)], m, task=task, terms=6) for m in ("nsga2", "vepso")]
+    fronts[1] = front_of([(1, 0.3)], "vepso", task=task, terms=6)
+    (point,) = paper_points(task, {6})
+    # physics.md: 0.1492 J for Table 4, N = 6, with a_5 mended
+    assert point.energy == pytest.approx(0.1492, rel=1e-3)
+    figure = comparison_figure(compare(fronts, floor=0.09), [point])
+    for axis in figure.axes[:2]:
+        np.testing.assert_allclose(
+            drawn(axis, "paper, N = 6"), [[point.residual * 1e3, 0.1492]], rtol=1e-3
+        )
+        assert set(drawn(axis, "floor: any joint motion, at rest")[:, 1]) == {0.09}
+        low, high = axis.get_ylim()
+        assert low < 0.09 < point.energy < high
+    (legend,) = [axis.get_legend() for axis in figure.axes if axis.get_legend()]
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "NSGA-II", "VEPSO", "paper, N = 6", "floor: any joint motion, at rest"
+    ]  # fmt: skip
+
+
+def test_where_the_paper_prints_no_coefficients_its_energy_is_known(task):
+    (point,) = paper_points(SINGLE_LINK_HALF_1_0.task, {6})
+    assert (point.energy, point.residual) == (0.296, None)  # Table 3
+    assert paper_points(SINGLE_LINK_HALF_1_0.task, {3}) == []
+    assert paper_points(PointToPoint(ArmOnFlexibleLink(), 1.0, 1.0), {6}) == []
+    assert condition_of(task).label == "0 to pi/6, 0.8 s"
+
+
+def test_a_task_is_named_with_its_limits(task):
+    assert title_of(task) == "single-link, 0 to pi/6, 0.8 s"
+    limited = dataclasses.replace(task, torque_limit=0.2, duration=1.5)
+    assert title_of(limited) == "single-link, 0 to 0.5236 rad, 1.5 s, torque within 0.2 N m"
+
+
+def test_every_group_has_a_look_of_its_own(front_of):
+    methods = ["epsilon", "nsga2", "vepso", "weighted", "nsga2, polished", "other", "another"]
+    fronts = [front_of([(1, 0.5)], method) for method in methods]
+    fronts += [front_of([(2, 0.5)], "nsga2", bound=bound) for bound in (0.3, 0.4, 0.5)]
+    found = looks(compare(fronts))
+    assert len({(to_rgba(look.colour), str(look.dash)) for look in found.values()}) == 10
+
+
+@pytest.mark.parametrize("panel", PANELS)
+def test_a_panel_stands_alone_with_its_legend(comparison, panel):
+    figure = panel_figure(comparison, panel)
+    assert len(figure.axes) == 1
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels[:2] == ["epsilon constraint", "NSGA-II"]
+
+
+def test_a_single_point_is_drawn_as_well(front_of):
+    fronts = [front_of([(0, 0.5)]), front_of([(0, 0.6)], "vepso")]
+    figure = comparison_figure(compare(fronts))
+    figure.canvas.draw()
+
+
+# The command
+
+
+def test_compare_shows_tables_and_what_they_mean(call, files):
+    code, out, err = call("compare good.json poor.json --as-found --no-floor")
+    assert (code, err) == (0, "")
+    assert "single-link, 0 to pi/6, 0.8 s" in out
+    for words in ("epsilon constraint", "hypervolume", "IGD+", "epsilon", "Coverage"):
+        assert words in out
+    assert re.search(r"box up to 10 mm and 1 J", " ".join(out.split()))
+    assert {path.name for path in files.iterdir()} == {"good.json", "poor.json"}
+
+
+def test_compare_fills_a_folder(call, files, good, poor):
+    code, out, _ = call("compare good.json poor.json --as-found --no-floor --output compared")
+    assert code == 0
+    assert out.splitlines()[-4:] == [f"wrote compared/{name}" for name in FILES]
+    assert {path.name for path in (files / "compared").iterdir()} == set(FILES)
+    report = (files / "compared" / "report.md").read_text()
+    assert "![Fronts](fronts.png)" in report
+    assert "| hypervolume (more is better) |" in report
+    assert (files / "compared" / "fronts.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_compare_measures_against_a_named_front(call, files, good):
+    code, out, _ = call("compare good.json poor.json --as-found --no-floor --reference good.json")
+    assert code == 0
+    assert "epsilon are measured against good.json" in " ".join(out.split())
+
+
+def test_the_floor_is_found_and_shown(call, files, monkeypatch):
+    class Found:
+        energy = 0.1234
+
+    monkeypatch.setattr(studies.comparison.report, "energy_floor", lambda task: Found())
+    code, out, _ = call("compare good.json poor.json --as-found")
+    assert code == 0
+    assert "arrive at rest, not of polynomials only, is 0.1234 J" in " ".join(out.split())
+
+
+def test_a_floor_that_is_not_found_is_no_obstacle(call, files, monkeypatch):
+    def fail(task):
+        raise SolverFailedError("no start ended at an optimum")
+
+    monkeypatch.setattr(studies.comparison.report, "energy_floor", fail)
+    code, out, err = call("compare good.json poor.json --as-found")
+    assert (code, err) == (0, "no floor: no start ended at an optimum\n")
+    assert "Floor" not in out
+
+
+def test_other_tasks_are_refused_in_a_line(call, files, front_of):
+    front_of([(1, 0.5)], task=ARM_HALF.task).save("arm.json")
+    code, out, err = call("compare good.json arm.json --output compared")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "arm.json is of another task than good.json: its plant is arm-on-flexible-link" in err
+    assert not (files / "compared").exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, "cannot be read: no such file"),
+        ("t_s,theta_rad\n0,0\n", "is not a front: it is not whole, valid JSON"),
+        ('{"format": "quietarm-plan", "version": 1}', "its format is 'quietarm-plan'"),
+        ('{"format": "quietarm-front", "version": 2}', "is not a whole front"),
+        ('{"format": "quietarm-front", "version": 1}', "reads 2 to 2; find the front again"),
+    ],
+)
+def test_what_is_no_front_is_refused_in_a_line(call, files, content, words):
+    if content is not None:
+        (files / "bad.json").write_text(content)
+    code, out, err = call("compare good.json bad.json")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "bad.json" in err
+    assert words in err
+
+
+@pytest.mark.parametrize("line", ["compare", "compare good.json"])
+def test_one_file_is_no_comparison(call, files, line):
+    code, out, err = call(line)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "two fronts or more" in err
+
+
+def test_an_empty_front_is_refused_by_its_file(call, files, front_of):
+    front_of([(math.nan, 1.0)]).save("empty.json")
+    code, _, err = call("compare good.json empty.json")
+    assert (code, err.count("\n")) == (2, 1)
+    assert "empty.json has no finite point" in err
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_the_work(call, files, no_place):
+    code, out, err = call("compare good.json missing.json --output compared")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "compared cannot be written: no such file or directory; choose another place" in err
+
+
+@pytest.fixture
+def moved(task):
+    """Three motions of the plant, with the figures that CVODES gives them."""
+    points = []
+    for a in (0.0, 0.02, 0.04):
+        plan = evaluate_coefficients(task, [a, 0.0])
+        points.append(FrontPoint((a, 0.0), plan.residual, plan.energy))
+    return points
+
+
+def test_figures_that_are_those_of_the_motions_pass(front_of, moved):
+    for point in moved:
+        check_figures(of_points(front_of, [point]), "a.json")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"energy": 0.002}, "states energy 0.002 J, but its coefficients give 0.0"),
+        ({"residual": 0.5}, "states residual 0.5 m, but its coefficients give 0.0"),
+    ],
+)
+def test_edited_figures_are_refused_in_a_line(call, front_of, moved, tmp_path, change, words):
+    edited = dataclasses.replace(moved[1], **change)
+    of_points(front_of, moved[:1]).save(tmp_path / "a.json")
+    of_points(front_of, [edited]).save(tmp_path / "b.json")
+    code, out, err = call(f"compare {tmp_path / 'a.json'} {tmp_path / 'b.json'} --no-floor")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert f"b.json: point 1 of 1 {words}" in err
+
+
+def of_points(front_of, points):
+    return dataclasses.replace(front_of([(1, 1)]), points=tuple(points))
+
+
+def test_nothing_is_half_written(comparison, tmp_path, monkeypatch):
+    (tmp_path / "runs.csv").mkdir()
+    with pytest.raises(ValueError, match="is a folder"):
+        write_comparison(tmp_path, comparison)
+    assert [path.name for path in tmp_path.iterdir()] == ["runs.csv"]

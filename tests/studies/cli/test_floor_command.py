@@ -1,0 +1,170 @@
+"""`quietarm floor`: what it says, what it writes, what it refuses."""
+
+import math
+import re
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from models import ArmOnFlexibleLink
+from ocp import Floor, PointToPoint, SolverFailedError, energy_floor
+from studies.cli import main
+from studies.reports.floor import plan_beside
+from studies.reports.floor_figure import floor_figure
+from studies.reports.motion_figure import Line, four_panels
+
+MOVE = "arm-on-flexible-link --target pi/2 --duration 0.8"
+
+
+@pytest.fixture(scope="module")
+def floor():
+    """The arm's floor with no limit: it starts and stops with a jolt."""
+    return energy_floor(PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), starts=1)
+
+
+@pytest.fixture
+def call(capsys, monkeypatch):
+    """Run the command line in this process: status, standard output, standard error."""
+    monkeypatch.setenv("COLUMNS", "200")
+
+    def run(line):
+        with pytest.raises(SystemExit) as ended:
+            main(line.split())
+        out, err = capsys.readouterr()
+        return ended.value.code, out, err
+
+    return run
+
+
+def test_it_prints_the_floor_and_writes_it(call, tmp_path):
+    code, out, err = call(
+        f"floor {MOVE} --acceleration-limit 100 --starts 2 --seed 3 --tolerance 0.02 "
+        f"--output {tmp_path / 'f.json'} --figure {tmp_path / 'f.png'}"
+    )
+    assert (code, err) == (0, "")
+    floor = Floor.load(tmp_path / "f.json")
+    assert floor.task.limits == {"acceleration": 100.0}
+    settings = floor.provenance.settings
+    assert dict(settings) == {"smooth": False, "starts": 2, "seed": 3, "tolerance": 0.02}
+    shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
+    assert float(shown["least energy"].split()[0]) == pytest.approx(floor.energy, rel=1e-5)
+    assert shown["limits"] == "acceleration 100 rad/s^2"
+    assert shown["starts"].startswith(f"{floor.agreeing()} of 2")
+    left = re.search(r"about (\S+) J \((\S+)%\)", shown["left"])
+    assert float(left[1]) == pytest.approx(floor.left, rel=0.06)
+    assert float(left[2]) == pytest.approx(100 * floor.left / floor.energy, abs=0.006)
+    for level in floor.levels:
+        assert f"{level.steps}: {level.energy:.6g} J" in shown["intervals"]
+    plan = plan_beside(floor)
+    assert shown["plan, 6 terms"].startswith(f"{plan.energy:.6g} J")
+    assert f"{plan.energy / floor.energy:.3g} times the floor" in shown["plan, 6 terms"]
+    assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_help_shows_examples_that_are_read(call, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    code, out, _ = call("floor --help")
+    assert code == 0
+    lines = re.sub(r" \\\n +", " ", out.split("Examples:", 1)[1]).splitlines()
+    examples = [line.strip() for line in lines if line.strip().startswith("quietarm floor")]
+    asked = []
+
+    def note(task, **settings):
+        asked.append((task, settings))
+        raise SolverFailedError("enough is known")
+
+    monkeypatch.setattr("studies.cli.commands.floor.energy_floor", note)
+    for example in examples:
+        assert call(example.removeprefix("quietarm "))[0] == 1
+    assert len(asked) == len(examples) == 2
+    assert asked[0][1] == {"smooth": False, "starts": 4, "seed": 0, "tolerance": 0.005}
+    assert asked[1][0].limits == {"acceleration": 80.0}
+
+
+def test_smooth_is_asked_for(call, tmp_path):
+    code, out, _ = call(
+        f"floor {MOVE} --smooth --starts 1 --tolerance 0.1 --output {tmp_path / 'f.json'}"
+    )
+    assert code == 0
+    assert "smooth" in out
+    assert Floor.load(tmp_path / "f.json").smooth
+
+
+def test_limits_without_any_plan_still_have_a_floor(call):
+    # Six terms need 34 rad/s^2 on this move; a free motion does it with 27.
+    code, out, err = call(f"floor {MOVE} --acceleration-limit 30 --starts 1 --tolerance 0.1")
+    assert (code, err) == (0, "")
+    assert "none within these limits" in out
+
+
+def test_the_picture_holds_the_floor_over_the_plan(floor):
+    plan = plan_beside(floor)
+    figure = floor_figure(floor, plan)
+    angle, speed, tip, torque = figure.axes
+    for axis, expected in (
+        (angle, floor.trajectory.joint[:, 0]),
+        (speed, floor.trajectory.joint[:, 1]),
+        (tip, floor.trajectory.tips[:, 0] * 1e3),
+        (torque, floor.trajectory.torque),
+    ):
+        drawn = next(line for line in axis.get_lines() if "floor" in str(line.get_label()))
+        assert drawn.get_ydata() == pytest.approx(expected)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == [
+        f"plan of 6 terms, {plan.energy:.4g} J",
+        f"floor, {floor.energy:.4g} J",
+    ]
+    # The jolts, hundreds of N m, leave the panel; all of the plan's torque stays in it.
+    assert floor.motion.peak_torque > 100
+    assert plan.motion.peak_torque < torque.get_ylim()[1] < 5 * plan.motion.peak_torque
+    assert "jolts left out" in torque.get_title(loc="left")
+    plt.close("all")
+
+
+def test_a_picture_that_cuts_nothing_says_nothing_of_jolts():
+    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, acceleration_limit=200.0)
+    floor = energy_floor(task, starts=1)
+    torque = floor_figure(floor, plan_beside(floor)).axes[3]
+    (lowest, highest), drawn = torque.get_ylim(), floor.trajectory.torque
+    assert lowest < drawn.min() < -1.0
+    assert 0.9 < drawn.max() < highest
+    assert torque.get_title(loc="left") == "(d) motor torque [N m]"
+    plt.close("all")
+
+
+def test_a_plan_s_picture_leaves_nothing_out(plan):
+    figure = four_panels([Line(plan, "plan", "black")])
+    torque = figure.axes[3]
+    assert torque.get_ylim()[1] > np.abs(plan.trajectory([0.0, 0.1, 0.2]).torque).max()
+    assert torque.get_title(loc="left") == "(d) motor torque [N m]"
+
+
+@pytest.mark.parametrize(
+    ("options", "named", "remedy"),
+    [
+        ("--starts 0", "starts is 0", "from 1 up"),
+        ("--seed -1", "seed is -1", "from 0 up"),
+        ("--tolerance 0", "tolerance is 0", "positive"),
+        ("--torque-limit -1", "torque limit is -1", "positive"),
+        ("--output a.png --figure a.png", "a.png", "two files"),
+        ("--figure a.txt", "a.txt", ".png"),
+    ],
+)
+def test_bad_input_is_one_line_before_any_solve(
+    call, monkeypatch, tmp_path, options, named, remedy
+):
+    monkeypatch.chdir(tmp_path)
+    code, out, err = call(f"floor {MOVE} {options}")
+    assert (code, out) == (2, "")
+    assert named in err
+    assert remedy in err
+    assert len(err.splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_limits_that_nothing_meets_end_with_status_1(call):
+    code, out, err = call(f"floor {MOVE} --torque-limit 0.05 --starts 1")
+    assert (code, out) == (1, "")
+    assert len(err.splitlines()) == 1
+    assert "found no motion at all with torque <= 0.05 N m; feasible with" in err

@@ -1,0 +1,327 @@
+"""`quietarm front`, and `quietarm plan` by a metaheuristic: whole runs of a small size."""
+
+import math
+import os
+import re
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import studies.runs.searching
+from metaheuristics import search
+from metaheuristics.ensemble import LostSeedsError
+from models import SingleLinkManipulator
+from ocp import CycloidPolynomial, Front, Plan, PointToPoint
+from studies.display.search_progress import SearchDisplay
+
+MOVE = "single-link --target 30deg --duration 0.8 --bound 0.2 --terms 2"
+SMALL = f"front {MOVE} --method vepso --population 8 --generations 4"
+TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+
+
+def directly(seed=0, **settings):
+    """What `SMALL` is to find."""
+    given = {"bound": 0.2, "population": 8, "generations": 4, **settings}
+    return search(TASK, "vepso", profile=CycloidPolynomial(2), seed=seed, **given)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    return tmp_path
+
+
+@pytest.fixture
+def refused(call, folder):
+    """Run a line that must fail in one line with status 2 and leave the folder as it was."""
+
+    def run_refused(line):
+        before = {path: path.read_bytes() for path in folder.iterdir()}
+        code, out, err = call(line)
+        assert (code, out, err.count("\n")) == (2, "", 1)
+        assert {path: path.read_bytes() for path in folder.iterdir()} == before
+        return err
+
+    return run_refused
+
+
+@pytest.fixture
+def interrupted_at(monkeypatch):
+    """Send Ctrl-C when this generation of this seed is shown."""
+
+    def interrupt(generation, of=None):
+        def hear(self, progress, seed=None):
+            if (progress.generation, seed) == (generation, of):
+                signal.raise_signal(signal.SIGINT)
+
+        monkeypatch.setattr(SearchDisplay, "__call__", hear)
+
+    return interrupt
+
+
+# One seed
+
+
+def test_one_search_is_shown_and_written(call):
+    code, out, err = call(f"{SMALL} --seed 3 --output f.json --figure f.svg")
+    front = directly(seed=3)
+    assert code == 0
+    assert Front.load("f.json") == front
+    assert "<svg" in Path("f.svg").read_text()
+    lines = out.splitlines()
+    assert lines[0].startswith(f"vepso, seed 3: {len(front.points)} points, 64 candidates in ")
+    for line, point in zip(
+        lines[1:4], (front.stillest(), front.knee(), front.cheapest()), strict=True
+    ):
+        assert line.endswith(f"{point.energy:.4g} J at {point.residual * 1e3:.3g} mm")
+    assert lines[4:] == ["wrote f.json", "wrote f.svg"]
+    assert err.startswith("generation 4/4, residual ")
+
+
+def test_quiet_shows_the_result_alone(call):
+    code, out, err = call(f"{SMALL} --quiet")
+    assert (code, err) == (0, "")
+    assert "stillest" in out
+    assert "wrote" not in out
+
+
+def test_a_search_that_finds_nothing_says_why(call, folder):
+    code, out, err = call(f"{SMALL} --torque-limit 0.001 --quiet --output f.json")
+    assert (code, out) == (1, "")
+    assert err == (
+        "quietarm: vepso: the front has no point; 64 of 64 candidates break the limits (torque "
+        "0.001); widen them or the bound, or search longer\n"
+    )
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("several", ["", "--runs 2 --workers 2"])
+def test_a_population_beyond_the_memory_ends_in_one_line(call, folder, several):
+    # 10 million million individuals: 160 TB, more than a process can address
+    code, out, err = call(f"{SMALL} --population 10000000000000 {several} --output f.json")
+    assert (code, out, err.count("\n")) == (1, "", 1)
+    assert "out of memory" in err
+    assert "smaller population" in err
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("method", ["vepso", "nsga2"])
+def test_an_interrupted_search_goes_on_to_the_same_front(call, interrupted_at, method):
+    line = f"{SMALL} --quiet --method {method} --generations 6"
+    assert call(f"{line} --output whole.json")[0] == 0
+    interrupted_at(2)
+    code, out, err = call(f"{line} --checkpoint state --output part.json")
+    part = Front.load("part.json")
+    assert (code, len(part.history), part.complete) == (1, 2, False)
+    assert "(interrupted: what was found until then)" in out
+    assert err.lstrip("\n") == "quietarm: interrupted; what was found until then is kept\n"
+    # the same file may be gone on in
+    code, _, err = call(f"{line} --resume state --checkpoint state --output resumed.json")
+    assert (code, err) == (0, "")
+    assert Front.load("resumed.json") == Front.load("whole.json")
+
+
+@pytest.mark.parametrize(
+    ("other", "difference"),
+    [
+        (SMALL.replace("30deg", "31deg"), "target"),
+        (SMALL.replace("vepso", "nsga2"), "vepso"),
+        (f"{SMALL} --seed 1", "seed"),
+        (f"{SMALL} --bound 0.3", "bound"),
+    ],
+)
+def test_a_checkpoint_of_another_search_is_refused(call, refused, other, difference):
+    assert call(f"{SMALL} --quiet --checkpoint state")[0] == 0
+    assert difference in refused(f"{other} --resume state --output f.json")
+
+
+# Several seeds
+
+
+def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
+    code, out, err = call(f"{SMALL} --seed 4 --runs 3 --workers 2 --output f.json --figure f.png")
+    fronts = [Front.load(f"f-seed{seed}.json") for seed in (4, 5, 6)]
+    assert code == 0
+    assert fronts == [directly(seed) for seed in (4, 5, 6)]
+    assert out.splitlines()[-4:] == [*(f"wrote f-seed{s}.json" for s in (4, 5, 6)), "wrote f.png"]
+    low, middle, high = np.quantile([f.history[-1].hypervolume for f in fronts], [0.25, 0.5, 0.75])
+    assert f"hypervolume: median {middle:.4f}, quartiles {low:.4f} to {high:.4f}\n" in out
+    for seed in (4, 5, 6):
+        assert f"\nvepso, seed {seed}: " in f"\n{out}"
+        assert f"seed {seed} is done: hypervolume " in err
+    assert not Path("f.json").exists()
+
+
+def test_the_seeds_that_arrive_still_are_counted(call, monkeypatch, front_of):
+    fronts = [
+        front_of([(0.5, energy), (5, 0.1)] if energy else [(5, 0.1)], seed=seed)
+        for seed, energy in enumerate((0.25, None, 0.75))
+    ]
+    monkeypatch.setattr(studies.runs.searching, "search_many", lambda *_, **__: fronts)
+    _, out, _ = call(f"{SMALL} --runs 3")
+    assert out.splitlines()[-1] == (
+        "energy at 1 mm: median 0.5 J, quartiles 0.375 to 0.625 J; 2 of 3 seeds reach 1 mm"
+    )
+    monkeypatch.setattr(studies.runs.searching, "search_many", lambda *_, **__: [fronts[1]] * 3)
+    _, out, _ = call(f"{SMALL} --runs 3")
+    assert out.splitlines()[-1] == "energy at 1 mm: none; 0 of 3 seeds reach 1 mm"
+
+
+def test_help_says_how_the_files_of_several_seeds_are_named(call):
+    out = " ".join(call("front --help")[1].split())
+    assert "front.json gives front-seed0.json, front-seed1.json" in out
+
+
+def test_ctrl_c_keeps_the_seeds_that_are_done(call, interrupted_at):
+    interrupted_at(2, of=1)
+    code, out, err = call(f"{SMALL} --runs 3 --quiet --output f.json")
+    assert code == 1
+    assert err.lstrip("\n") == (
+        "quietarm: interrupted: 1 of 3 seeds are done, 1 in part; these are kept\n"
+    )
+    assert Front.load("f-seed0.json") == directly(0)
+    assert not Front.load("f-seed1.json").complete
+    assert out.splitlines()[-2:] == ["wrote f-seed0.json", "wrote f-seed1.json"]
+    assert "median" not in out  # of one seed
+
+
+def test_ctrl_c_ends_all_processes_and_keeps_their_fronts(folder, at_a_terminal, ctrl_c):
+    process = at_a_terminal(f"{SMALL} --generations 1000000 --runs 3 --workers 2 --output f.json")
+    heard = set()
+    while heard != {"seed 0", "seed 1"}:
+        line = process.stderr.readline()
+        assert line, "the searches ended before the interrupt"
+        heard.add(line.partition(",")[0])
+    out, err = ctrl_c(process)
+    assert process.returncode == 1
+    assert "Traceback" not in err
+    assert err.splitlines()[-1] == (
+        "quietarm: interrupted: 0 of 3 seeds are done, 2 in part; these are kept"
+    )
+    assert out.splitlines()[-2:] == ["wrote f-seed0.json", "wrote f-seed1.json"]
+    for name in ("f-seed0.json", "f-seed1.json"):
+        front = Front.load(name)
+        assert front.points
+        assert len(front.history) < 1_000_000
+        assert front.evaluations == 2 * 8 * len(front.history)
+
+
+def test_what_is_found_beside_a_process_that_died_is_written(call, monkeypatch, front_of):
+    def lose(*arguments, **settings):
+        raise LostSeedsError({1: "killed by SIGKILL"}, [front_of([(1, 0.2)], seed=0)], 2)
+
+    monkeypatch.setattr(studies.runs.searching, "search_many", lose)
+    code, out, err = call(f"{SMALL} --runs 2 --workers 2 --output f.json")
+    assert (code, out.splitlines()[-1]) == (1, "wrote f-seed0.json")
+    assert err == (
+        "quietarm: the process of seed 1 (killed by SIGKILL) died; 1 of 2 seeds are done; where "
+        "memory ran short, give fewer workers or a smaller population\n"
+    )
+    assert Front.load("f-seed0.json").seed == 0
+
+
+@pytest.mark.parametrize(("workers", "warned"), [(2, True), (8, True), (1, False)])
+def test_more_workers_than_cores_are_warned_of(call, monkeypatch, front_of, workers, warned):
+    monkeypatch.setattr(os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(
+        studies.runs.searching, "search_many", lambda *_, **__: [front_of([(1, 0.2)])]
+    )
+    _, _, err = call(f"{SMALL} --runs 2 --workers {workers}")
+    assert ("2 workers will share 1 core\n" in err) == warned
+
+
+def test_a_checkpoint_that_is_lost_on_the_way_is_told_at_the_end(call, folder, monkeypatch):
+    (folder / "lost").mkdir()
+    shown = SearchDisplay.__call__
+
+    def remove(self, progress, seed=None):
+        if progress.generation == 2:
+            (folder / "lost").rmdir()
+        shown(self, progress, seed)
+
+    monkeypatch.setattr(SearchDisplay, "__call__", remove)
+    code, out, err = call(f"{SMALL} --quiet --checkpoint lost/state --output f.json")
+    assert (code, out.splitlines()[-1]) == (1, "wrote f.json")
+    assert err == (
+        "quietarm: the end of the search is in no checkpoint: folder lost does not exist; make it "
+        "first\n"
+    )
+    assert Front.load("f.json") == directly()
+
+
+# What is refused
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        (f'{SMALL} --resume ""', "'--resume': the name of the file is empty; give one"),
+        (f"{SMALL} --runs 2 --checkpoint state", "are for one run, not with --runs"),
+        (f"{SMALL} --runs 1000000000 --output f.json", "runs is 1000000000; give at most 10000"),
+        (f"front {MOVE} --method vepso --bound 1e308", "is 1e+308; give at most 1e+06"),
+        (f"front {MOVE} --method epsilon --bound 1e308", "is 1e+308; give at most 1e+06"),
+        (f"plan {MOVE} --bound 1e308", "is 1e+308; give at most 1e+06"),
+        (f"{SMALL} --runs 2 --output nowhere/f.json", "folder nowhere does not exist"),
+        (f"{SMALL} --output a --checkpoint ./a", "--output and --checkpoint are both a"),
+        (f"{SMALL} --output a --resume a", "--output and --resume are both a"),
+        (f"{SMALL} --output a.png --figure a.png", "--output and --figure are both a.png"),
+        (f"{SMALL} --runs 2 --output a.png --figure a-seed1.png", "are both a-seed1.png"),
+        (f"plan {MOVE} --output a --csv a", "--output and --csv are both a; give two files"),
+        (f"plan {MOVE} --figure a.png --csv ./a.png", "--csv and --figure are both a.png"),
+        (f"plan {MOVE} --polish", "--polish is for a metaheuristic's point; give --method"),
+        (f"plan {MOVE} --method vepso --starts 4", "--starts is for ipopt, not for vepso"),
+    ],
+)
+def test_what_would_be_lost_or_ignored_is_refused(refused, line, words):
+    Path("a").write_text("")
+    assert words in refused(line)
+
+
+# quietarm plan
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """A search in place of the paper's."""
+
+    def small(task, method, **settings):
+        return search(task, method, population=20, generations=30, **settings)
+
+    monkeypatch.setattr(studies.runs.searching, "search", small)
+
+
+def test_a_plan_by_search_is_the_cheapest_point_within_the_limit(call, quick):
+    line = f"plan {MOVE} --method vepso --quiet"
+    code, out, err = call(f"{line} --residual-limit 2mm --output plan.json")
+    assert (code, err) == (0, "")
+    point = directly(population=20, generations=30).cheapest(2e-3)
+    assert Plan.load("plan.json").coefficients == point.coefficients
+    assert "residual limit 0 stands for" not in out
+
+
+def test_a_plan_by_search_says_what_a_limit_of_zero_stands_for(call, quick):
+    _, out, err = call(f"plan {MOVE} --method vepso --output plan.json")
+    assert "residual limit 0 stands for 1 mm here: no search arrives exactly at rest" in out
+    assert err.startswith("generation 30/30, ")
+    _, out, _ = call(f"plan {MOVE} --method vepso --polish --output polished.json")
+    assert "stands for" not in out
+    assert Plan.load("polished.json").residual < 1e-8 < Plan.load("plan.json").residual <= 1e-3
+
+
+def test_an_interrupted_search_makes_no_plan_and_says_what_keeps_it(call, quick, interrupted_at):
+    interrupted_at(3)
+    code, out, err = call(f"plan {MOVE} --method vepso --quiet --output plan.json")
+    assert (code, out, Path("plan.json").exists()) == (1, "", False)
+    assert "nothing was written; `quietarm front` keeps what a search has found" in err
+
+
+def test_a_broken_limit_is_shown_with_what_is_reached(call):
+    line = "evaluate single-link --target 30deg --duration 0.8 --coefficients=0"
+    _, out, _ = call(f"{line} --torque-limit 0.01 --deflection-limit 1 --output plan.json")
+    peak = Plan.load("plan.json").motion.peak_torque
+    assert peak > 0.01
+    shown = re.search(r"limits +(.*\S)", out).group(1)
+    assert shown == f"torque 0.01 N m (broken: {peak:.4g} N m), deflection 1 m"

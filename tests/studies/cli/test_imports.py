@@ -1,0 +1,76 @@
+"""What a command loads: no more than it needs."""
+
+import subprocess
+import sys
+
+import pytest
+
+MOVE = "single-link --target 30deg --duration 0.8"
+HEAVY = {"matplotlib", "moocore", "pymoo", "scipy"}
+# At the end, whatever that is: the modules that are loaded.
+NOTED = """
+import sys
+from studies.cli import main
+try:
+    main(sys.argv[1:])
+finally:
+    print(*sys.modules, file=sys.stderr)
+"""
+
+
+def loaded(line, folder):
+    """The modules that are loaded when a command has ended, in a process of its own."""
+    ran = subprocess.run(
+        [sys.executable, "-c", NOTED, *line.split()],
+        cwd=folder, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stderr
+    return set(ran.stderr.split())
+
+
+@pytest.mark.parametrize("line", ["--help", "--version"])
+def test_help_and_version_load_no_command(tmp_path, line):
+    found = loaded(line, tmp_path)
+    assert found.isdisjoint(HEAVY)
+    assert not [name for name in found if name.startswith("studies.cli.commands")]
+
+
+def test_the_help_of_a_command_loads_no_other(tmp_path):
+    found = loaded("plan --help", tmp_path)
+    assert found.isdisjoint(HEAVY)
+    commands = [name for name in found if name.startswith("studies.cli.commands.")]
+    assert commands == ["studies.cli.commands.plan"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f"plan {MOVE} --terms 2 --starts 1 --output plan.json --csv move.csv",
+        f"evaluate {MOVE} --coefficients=0,0",
+        f"floor {MOVE} --acceleration-limit 200 --starts 1 --tolerance 0.1",
+    ],
+)
+def test_the_gradient_loads_no_metaheuristic_and_no_picture(tmp_path, line):
+    found = loaded(line, tmp_path)
+    assert found.isdisjoint({*HEAVY, "metaheuristics"})
+
+
+@pytest.mark.parametrize(
+    ("line", "needed"),
+    [
+        (f"evaluate {MOVE} --coefficients=0,0 --figure move.png", "matplotlib"),
+        (f"plan {MOVE} --terms 0 --method vepso --bound 0.2", "pymoo"),
+    ],
+)
+def test_what_is_asked_for_is_loaded(tmp_path, line, needed):
+    """The tests above look for the right names: here they are."""
+    ran = subprocess.run(
+        [sys.executable, "-c", NOTED, *line.split()],
+        cwd=tmp_path, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert needed in ran.stderr.split()
+
+
+@pytest.mark.parametrize("line", ["front", "polish", "compare", "study", "reproduce"])
+def test_help_of_what_searches_and_draws_waits_for_neither(tmp_path, line):
+    assert loaded(f"{line} --help", tmp_path).isdisjoint({*HEAVY, "metaheuristics"})

@@ -1,0 +1,168 @@
+"""`quietarm polish`: a saved front improved, shown, drawn and written."""
+
+import csv
+import json
+import math
+import re
+import signal
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import studies.runs.polishing
+from models import ArmOnFlexibleLink
+from ocp import (
+    CycloidPolynomial,
+    FailedPoint,
+    Front,
+    Gain,
+    PointToPoint,
+    Polish,
+    epsilon_front,
+    polish_front,
+)
+from studies.reports.sweep_figure import polish_figure
+from studies.runs.polishing import thinned
+
+
+@pytest.fixture(scope="module")
+def rough():
+    """Points of the front of two terms, used with four: a front that can be improved."""
+    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
+    found = epsilon_front(task, CycloidPolynomial(2), bound=0.5, points=12, starts=1)
+    points = tuple(replace(p, coefficients=(*p.coefficients, 0.0, 0.0)) for p in found.points)
+    return replace(found, profile=CycloidPolynomial(4), points=points, method="nsga2")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch, rough):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    rough.save("f.json")
+    return tmp_path
+
+
+def rows(out):
+    """Residual [mm], energies [J] and share [%] of the table."""
+    return re.findall(r"^ +(\S+) mm +(\S+) J +(\S+) J +(\S+)%$", out, re.MULTILINE)
+
+
+def test_a_front_is_polished_shown_and_written(call, rough):
+    expected = polish_front(rough)
+    code, out, err = call("polish f.json --output p.json --csv p.csv --figure p.svg")
+    assert code == 0
+    assert Front.load("p.json") == expected.front
+    assert err.splitlines()[-1] == "12 of 12 points"
+    assert out.startswith("nsga2, polished: 12 points, ")
+    shown = rows(out)
+    assert len(shown) == 10
+    for row, gain in zip((shown[0], shown[-1]), (expected.gains[0], expected.gains[-1]),
+                         strict=True):  # fmt: skip
+        assert row == (f"{gain.residual * 1e3:.3g}", f"{gain.before:.4g}", f"{gain.after:.4g}",
+                       f"{gain.share * 100:.2f}")  # fmt: skip
+    shares = np.array([gain.share for gain in expected.gains])
+    assert (
+        f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}"
+    ) in out
+    assert shares.max() > 1e-3
+    with open("p.csv") as file:
+        table = [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
+    assert table == [[g.residual, g.before, g.after, g.share] for g in expected.gains]
+    assert "<svg" in Path("p.svg").read_text()
+    assert out.splitlines()[-3:] == ["wrote p.json", "wrote p.csv", "wrote p.svg"]
+
+
+def test_a_front_is_thinned_evenly_and_that_is_told(call, rough):
+    code, out, err = call("polish f.json --points 4 --quiet --csv p.csv")
+    assert (code, err) == (0, "")
+    assert "4 of its 12 points, spread along it" in out
+    with open("p.csv") as file:
+        residuals = [float(row["residual_m"]) for row in csv.DictReader(file)]
+    assert residuals == [rough.residuals[i] for i in (0, 4, 7, 11)]
+    assert thinned(rough, 12) == thinned(rough, 500) == rough
+
+
+def test_ctrl_c_keeps_what_was_polished(call, monkeypatch):
+    def interrupted(front, report, **rest):
+        def hear(done, total):
+            report(done, total)
+            if done == 3:
+                signal.raise_signal(signal.SIGINT)
+
+        return polish_front(front, report=hear, **rest)
+
+    monkeypatch.setattr(studies.runs.polishing, "polish_front", interrupted)
+    code, out, err = call("polish f.json --quiet --output p.json --csv p.csv --figure p.png")
+    assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
+    assert "(interrupted after 3 of them)" in out
+    assert len(rows(out)) == 3
+    assert len(Path("p.csv").read_text().splitlines()) == 1 + 3
+    assert not Front.load("p.json").complete
+
+
+def test_points_that_fail_or_are_beaten_are_told(call, monkeypatch, front_of):
+    before = front_of([(0, 0.8), (4, 0.5), (8, 0.4)])
+    after = replace(
+        front_of([(0, 0.8), (4, 0.3)], "nsga2, polished"),
+        failures=(FailedPoint({"residual_limit": 0.0}, "no optimum"),),
+    )
+    gains = (Gain(0, 0.8, 0.8), Gain(4e-3, 0.5, 0.3), Gain(8e-3, 0.4, 0.4))
+    monkeypatch.setattr(
+        studies.runs.polishing, "polish_front", lambda *_, **__: Polish(after, gains)
+    )
+    before.save("f.json")
+    _, out, _ = call("polish f.json")
+    assert out.splitlines()[-4:] == [
+        "saved: median 0.00%, least 0.00%, most 40.00%",
+        "1 point is dominated by another now, and left out",
+        "1 of 3 points could not be found:",
+        "  residual <= 0 mm: no optimum",
+    ]
+
+
+def test_the_picture_shows_both_fronts_and_the_gains(rough):
+    polish = Polish(rough, (Gain(1e-3, 0.2, 0.1), Gain(2e-3, 0.1, 0.1, tried=False)))
+    energies, saved = polish_figure(rough, polish).axes
+    for line in energies.lines:
+        np.testing.assert_allclose(line.get_xdata(), rough.residuals * 1e3)
+    assert [line.get_label() for line in energies.lines] == ["before", "after"]
+    (points,) = saved.lines
+    np.testing.assert_allclose(points.get_xydata(), [[1.0, 50.0]])
+
+
+def without(**changes):
+    """A document of a front with these entries changed."""
+    return json.dumps({**json.loads(Path("f.json").read_text()), **changes})
+
+
+@pytest.mark.parametrize(
+    ("content", "line", "words"),
+    [
+        (lambda: "{}", "", "bad.json is not a front"),
+        (lambda: "a,b\n", "", "bad.json is not a front"),
+        (lambda: without(task={"plant": "crane"}), "", "crane"),
+        (lambda: without(profile={"kind": "spline"}), "", "bad.json"),
+        (lambda: without(points=[]), "", "the front has no point"),
+        (lambda: without(settings={"bound": "wide"}), "", "bound is 'wide'; give a number"),
+        (without, "--points 1", "points is 1; give a whole number from 2 up"),
+        (without, "--workers 0", "workers is 0; give a whole number from 1 up"),
+        (without, "--output ./bad.json", "FRONT and --output are both bad.json"),
+        (without, "--csv a.png --figure a.png", "--csv and --figure are both a.png"),
+        (without, "--figure a.txt", "a.txt is no picture"),
+        (without, "--output nowhere/a", "folder nowhere does not exist"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(call, folder, content, line, words):
+    Path("bad.json").write_text(content())
+    code, out, err = call(f"polish bad.json {line}")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert words in err
+    assert sorted(path.name for path in folder.iterdir()) == ["bad.json", "f.json"]
+
+
+def test_a_file_that_is_not_there_is_told(call):
+    code, out, err = call("polish nowhere.json")
+    assert (code, out) == (2, "")
+    assert err == "quietarm: nowhere.json cannot be read: no such file or directory\n"

@@ -1,0 +1,175 @@
+"""Angles, lengths, times and coefficients as people write them."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from studies.cli.quantities import (
+    parse_angle,
+    parse_coefficients,
+    parse_length,
+    parse_time,
+    parse_weights,
+)
+
+WHOLE = st.integers(0, 100_000)
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@pytest.mark.parametrize(
+    ("text", "radians"),
+    [
+        ("0.5", 0.5),
+        ("-1.5", -1.5),
+        ("+2", 2.0),
+        (".5", 0.5),
+        ("5.", 5.0),
+        ("1e-3", 1e-3),
+        ("0.5rad", 0.5),
+        ("0.5 rad", 0.5),
+        ("30deg", math.pi / 6),
+        ("-90 deg", -math.pi / 2),
+        ("180deg", math.pi),
+        ("pi", math.pi),
+        ("+pi", math.pi),
+        ("-pi", -math.pi),
+        ("pi/6", math.pi / 6),
+        ("-pi/2", -math.pi / 2),
+        ("pi / 4", math.pi / 4),
+        ("2pi", 2 * math.pi),
+        ("2*pi/3", 2 * math.pi / 3),
+        ("-0.75 pi", -0.75 * math.pi),
+        ("3 * pi / 4 rad", 3 * math.pi / 4),
+        ("  pi/6  ", math.pi / 6),
+    ],
+)
+def test_angles_as_people_write_them(text, radians):
+    assert parse_angle(text) == pytest.approx(radians, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "metres"),
+    [("0.001", 1e-3), ("1mm", 1e-3), ("2 cm", 0.02), ("0.5m", 0.5), ("3um", 3e-6), ("3µm", 3e-6)],
+)
+def test_lengths_as_people_write_them(text, metres):
+    assert parse_length(text) == pytest.approx(metres, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"), [("0.8", 0.8), ("0.8s", 0.8), ("800ms", 0.8), ("1.5e3 ms", 1.5)]
+)
+def test_times_as_people_write_them(text, seconds):
+    assert parse_time(text) == pytest.approx(seconds, rel=1e-15)
+
+
+@given(FINITE)
+@pytest.mark.parametrize("parse", [parse_angle, parse_length, parse_time])
+def test_a_plain_number_comes_back_as_it_was(parse, number):
+    assert parse(repr(number)) == number
+
+
+@given(st.floats(-1e6, 1e6))
+def test_degrees_round_trip(angle):
+    assert parse_angle(f"{math.degrees(angle)!r}deg") == pytest.approx(angle, rel=1e-14)
+
+
+@given(st.sampled_from(["", "+", "-"]), st.integers(1, 1000), st.integers(1, 1000))
+def test_multiples_of_pi_round_trip(sign, factor, divisor):
+    size = parse_angle(f"{sign}{factor}*pi/{divisor}") * divisor / factor
+    assert size == pytest.approx(-math.pi if sign == "-" else math.pi, rel=1e-14)
+
+
+@given(WHOLE)
+def test_milliseconds_are_the_same_number_as_seconds(count):
+    # Else 700ms and 0.7 are two tasks, and a file says 0.7000000000000001.
+    assert parse_time(f"{count}ms") == parse_time(repr(count / 1000))
+
+
+@given(WHOLE)
+def test_millimetres_are_the_same_number_as_metres(count):
+    assert parse_length(f"{count}mm") == parse_length(repr(count / 1000))
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", " ", "deg", "30 degrees", "30degs", "1mm", "pi/0", "pi/", "pi/x", "--pi", "2pi3", "1,5",
+     "1e", "0x10", "pi deg", "1 2", "pi*2", "pi/-2", "five", "30°"],
+)  # fmt: skip
+def test_what_is_no_angle_is_refused_with_examples(text):
+    with pytest.raises(ValueError, match="give radians") as refused:
+        parse_angle(text)
+    assert str(refused.value).startswith(f"{text!r} is not an angle; ")
+    assert "30deg" in str(refused.value)
+
+
+@pytest.mark.parametrize("text", ["", "mm", "1 inch", "1km", "1s", "1deg", "1m m", "one"])
+def test_what_is_no_length_is_refused_with_examples(text):
+    with pytest.raises(ValueError, match="give metres") as refused:
+        parse_length(text)
+    assert str(refused.value).startswith(f"{text!r} is not a length; ")
+    assert "1mm" in str(refused.value)
+
+
+@pytest.mark.parametrize("text", ["", "ms", "1min", "1 h", "1m", "1:30", "soon"])
+def test_what_is_no_time_is_refused_with_examples(text):
+    with pytest.raises(ValueError, match="give seconds") as refused:
+        parse_time(text)
+    assert str(refused.value).startswith(f"{text!r} is not a time; ")
+    assert "800ms" in str(refused.value)
+
+
+@given(st.text())
+@pytest.mark.parametrize("parse", [parse_angle, parse_length, parse_time])
+def test_any_text_is_a_number_or_a_value_error(parse, text):
+    try:
+        value = parse(text)
+    except ValueError as error:
+        assert repr(text) in str(error)  # noqa: PT017  # both ends are allowed
+    else:
+        assert isinstance(value, float)
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "-inf", "1e400"])
+def test_numbers_that_are_not_finite_are_left_to_the_task(text):
+    # The task refuses them in its own words, whichever way they come in.
+    assert not math.isfinite(parse_time(text))
+
+
+@given(st.lists(FINITE, min_size=1, max_size=20))
+def test_coefficients_round_trip(values):
+    assert parse_coefficients(",".join(map(repr, values))) == values
+
+
+def test_coefficients_may_have_spaces():
+    assert parse_coefficients("-0.0019, -0.14 ,1e-2") == [-0.0019, -0.14, 0.01]
+
+
+@pytest.mark.parametrize(
+    ("text", "position", "entry"),
+    [
+        ("", 1, ""),
+        ("0.1,", 2, ""),
+        (",0.1", 1, ""),
+        ("0.1,x,0.2", 2, "x"),
+        ("nan", 1, "nan"),
+        ("0.1,0.2,inf", 3, "inf"),
+        ("0.1,-inf", 2, "-inf"),
+        ("1e999", 1, "1e999"),
+        ("0.1 0.2", 1, "0.1 0.2"),
+        ("0.1;0.2", 1, "0.1;0.2"),
+    ],
+)
+def test_a_bad_coefficient_is_named_with_its_place(text, position, entry):
+    with pytest.raises(ValueError, match="give finite numbers separated by commas") as refused:
+        parse_coefficients(text)
+    assert str(refused.value).startswith(f"coefficient {position} is {entry!r}; ")
+
+
+def test_weights_are_a_pair():
+    assert parse_weights("1:3") == (1.0, 3.0)
+    assert parse_weights(" 0.5 : 2e1") == (0.5, 20.0)
+    for text in ("", "1", "1:2:3", "1:", "a:b", "1/3"):
+        with pytest.raises(ValueError, match="is no pair of weights; give those of residual"):
+            parse_weights(text)

@@ -1,0 +1,199 @@
+"""`quietarm front` by the gradient: whole runs of a small size, and what is refused."""
+
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from models import ArmOnFlexibleLink
+from ocp import CycloidPolynomial, FailedPoint, Front, PointToPoint, epsilon_front, weighted_front
+from studies.reports.sweep_figure import sweep_figure
+
+MOVE = "arm-on-flexible-link --target 90deg --duration 0.8 --terms 3"
+TASK, PROFILE = PointToPoint(ArmOnFlexibleLink(), np.pi / 2, 0.8), CycloidPolynomial(3)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    return tmp_path
+
+
+@pytest.fixture
+def answer(let_sweep):
+    """Let the methods answer this front."""
+
+    def put(front):
+        def given(task, **settings):
+            return front
+
+        for name in ("epsilon", "weighted"):
+            let_sweep(name, given)
+
+    return put
+
+
+# What is found
+
+
+def test_an_epsilon_front_is_shown_and_written(call):
+    code, out, err = call(
+        f"front {MOVE} --method epsilon --points 6 --starts 2 --seed 3 --bound 0.5 "
+        "--output f.json --figure f.svg"
+    )
+    found = Front.load("f.json")
+    assert code == 0
+    assert found == epsilon_front(TASK, PROFILE, bound=0.5, points=6, starts=2, seed=3)
+    assert "<svg" in Path("f.svg").read_text()
+    lines = out.splitlines()
+    assert lines[0].startswith(f"epsilon: 6 points, {found.evaluations} iterations of the solver ")
+    ends = (found.stillest(), found.knee(), found.cheapest())
+    for line, point in zip(lines[1:4], ends, strict=True):
+        assert line.endswith(f"{point.energy:.4g} J at {point.residual * 1e3:.3g} mm")
+    for line, (name, limit) in zip(
+        lines[4:7], {"0.1": 1e-4, "1": 1e-3, "5": 5e-3}.items(), strict=True
+    ):
+        assert line.split() == ["within", name, "mm", f"{found.cheapest(limit).energy:.4g}", "J"]
+    assert lines[7:] == ["wrote f.json", "wrote f.svg"]
+    assert err.splitlines()[-1] == "6 of 6 points"
+
+
+def test_a_weighted_front_takes_the_weights_that_are_typed(call):
+    line = f"front {MOVE} --method weighted --weights 1:1 --weights 1:3 --quiet --output f.json"
+    code, out, err = call(line)
+    assert (code, err) == (0, "")
+    assert Front.load("f.json") == weighted_front(TASK, PROFILE, weights=[(1, 1), (1, 3)])
+    assert out.startswith("weighted: 4 points, ")  # the ends and one for each weight
+
+
+def test_what_no_weight_reaches_is_told_in_words(call, answer, good):
+    answer(replace(good, method="weighted", gaps=((0.0, 4e-3),)))
+    _, out, _ = call(f"front {MOVE} --method weighted")
+    assert out.splitlines()[-1] == (
+        "no weight reaches residuals from 0 mm to 4 mm: the front is not convex there"
+    )
+
+
+def test_a_front_of_its_ends_alone_has_no_knee(call, answer, front_of):
+    answer(front_of([(0, 0.8), (8, 0.4)], "epsilon"))
+    _, out, _ = call(f"front {MOVE} --method epsilon --points 2")
+    assert out.splitlines()[1:] == [
+        "  stillest       0.8 J at 0 mm",
+        "  cheapest       0.4 J at 8 mm",
+        "  within 0.1 mm  0.8 J",
+        "  within 1 mm    0.8 J",
+        "  within 5 mm    0.8 J",
+    ]
+
+
+def test_failed_points_are_told_with_their_reasons(call, answer, good):
+    failures = (
+        FailedPoint({"residual_limit": 2e-3}, "steps too long"),
+        FailedPoint({"residual_limit": 3e-3}, "steps too long"),
+        FailedPoint({"residual_weight": 0.5, "energy_weight": 1.0}, "no optimum"),
+    )
+    answer(replace(good, failures=failures))
+    _, out, _ = call(f"front {MOVE} --method epsilon --points 6")
+    assert out.splitlines()[-3:] == [
+        "3 of 6 points could not be found:",
+        "  residual <= 2 mm, residual <= 3 mm: steps too long",
+        "  0.5:1 (residual:energy): no optimum",
+    ]
+
+
+def test_a_front_without_a_point_is_an_error_that_says_why(call, answer, good, folder):
+    failure = FailedPoint({"residual_limit": 2e-3}, "no optimum")
+    answer(replace(good, points=(), failures=(failure,)))
+    code, out, err = call(f"front {MOVE} --method epsilon --output f.json")
+    assert (code, out, list(folder.iterdir())) == (1, "", [])
+    assert err == "quietarm: no point was found: residual <= 2 mm: no optimum\n"
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_ctrl_c_keeps_and_writes_what_was_found(folder, at_a_terminal, ctrl_c, workers):
+    # far more points than are found before the signal comes
+    line = f"front {MOVE} --method epsilon --points 20000 --output f.json --figure f.png"
+    process = at_a_terminal(f"{line} --workers {workers}")
+    found = 0
+    while found <= 10:  # of which the ends of the front are two
+        found, total = map(int, re.findall(r"\d+", process.stderr.readline()))
+        assert total == 20000
+    out, err = ctrl_c(process)
+    assert process.returncode == 1
+    assert err.splitlines()[-1] == "quietarm: interrupted; what was found until then is kept"
+    assert "(interrupted: what was found until then)" in out
+    assert out.splitlines()[-2:] == ["wrote f.json", "wrote f.png"]
+    found = Front.load("f.json")
+    assert not found.complete
+    assert 2 < len(found.points) < 20000
+
+
+# The picture
+
+
+def test_the_picture_shows_points_gaps_and_failures(good):
+    failures = (FailedPoint({"residual_limit": 6e-3}, "x"), FailedPoint({"residual_weight": 1}, ""))
+    front = replace(good, failures=failures, gaps=((0.0, 4e-3),))
+    axis = sweep_figure(front).axes[0]
+    points, _knee, crosses = axis.lines
+    np.testing.assert_array_equal(points.get_xdata(), [0, np.nan, 4, 8])
+    np.testing.assert_array_equal(points.get_ydata(), [0.8, np.nan, 0.5, 0.4])
+    np.testing.assert_allclose(crosses.get_xdata(), [6])
+    assert crosses.get_label() == "2 not found"
+    band = axis.patches[0].get_extents().transformed(axis.transData.inverted())
+    assert (band.x0, band.x1) == pytest.approx((0, 4), abs=1e-12)
+    assert len(sweep_figure(good).axes) == 1  # no history of hypervolumes
+
+
+# What is refused
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("--method epsilon --points 1", "points is 1; give a whole number from 2 up"),
+        ("--method weighted --points 0", "points is 0; give a whole number from 2 up"),
+        ("--method epsilon --workers 0", "workers is 0; give a whole number from 1 up"),
+        ("--method epsilon --starts 0", "starts is 0; give"),
+        ("--method epsilon --bound -1", "bound on the coefficients is -1"),
+        ("--method epsilon --terms 0", "0 terms"),
+        ("--method weighted --weights 1", "'1' is no pair of weights; give those of residual"),
+        ("--method weighted --weights 1:2:3", "'1:2:3' is no pair of weights"),
+        ("--method weighted --weights=-1:1", "weights are -1 and 1; give none below 0"),
+        ("--method weighted --weights 1:1 --weights 0:0", "both weights are 0"),
+        ("--method weighted --weights inf:1", "weight is inf; give a finite number"),
+        (
+            "--method weighted --weights 1:1 --points 9",
+            "--points is for weights that the sweep chooses",
+        ),
+        ("--method weighted --workers 1", "--workers is for epsilon, nsga2 and vepso, not for"),
+        ("--method epsilon --weights 1:1", "--weights is for weighted, not for epsilon"),
+        ("--method epsilon --population 9", "--population is for nsga2 and vepso, not for epsilon"),
+        ("--method weighted --generations 9", "--generations is for nsga2 and vepso"),
+        ("--method weighted --runs 1", "--runs is for nsga2 and vepso, not for weighted"),
+        ("--method epsilon --checkpoint c", "--checkpoint is for nsga2 and vepso"),
+        ("--method epsilon --resume c", "--resume is for nsga2 and vepso"),
+        ("--method nsga2 --bound 1 --points 50", "--points is for epsilon and weighted, not for"),
+        ("--method vepso --bound 1 --starts 4", "--starts is for epsilon and weighted, not for"),
+        ("--method vepso --bound 1 --weights 1:1", "--weights is for weighted, not for vepso"),
+        ("--method epsilon --output a.png --figure a.png", "are both a.png; give two files"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(call, folder, line, words):
+    code, out, err = call(f"front {MOVE} {line}")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert words in err
+    assert list(folder.iterdir()) == []
+
+
+def test_more_workers_than_cores_are_warned_of(call, answer, good, monkeypatch):
+    monkeypatch.setattr(os, "cpu_count", lambda: 1)
+    answer(good)
+    _, _, err = call(f"front {MOVE} --method epsilon --workers 2")
+    assert err == "2 workers will share 1 core\n"
+    _, _, err = call(f"front {MOVE} --method epsilon --workers 2 --points 3")
+    assert err == ""  # two of the points are the ends, found before: one worker starts

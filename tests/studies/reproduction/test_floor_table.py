@@ -1,0 +1,166 @@
+"""Multiples of the floor: what `quietarm reproduce` holds against it."""
+
+import csv
+import dataclasses
+import io
+import re
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
+from studies.reproduction.claims import claims
+from studies.reproduction.floor_dots import floor_dots
+from studies.reproduction.floor_table import (
+    FREE,
+    IN_BOX,
+    PAPER,
+    finding,
+    floor_table,
+    floor_tables,
+    multiples,
+)
+from studies.reproduction.recompute import SEARCHES
+from studies.reproduction.report import print_reproduction
+
+TERMS = (2, 4, 6, 8, 10)
+
+
+def by_place(reproduction, condition):
+    return {(m.series, m.terms): m for m in multiples(reproduction, condition)}
+
+
+def test_there_are_six_floors_at_rest(reproduction):
+    assert set(reproduction.floors) == set(CONDITIONS) == {row.condition for row in ROWS}
+    assert len(CONDITIONS) == 6
+    for condition, floor in reproduction.floors.items():
+        assert floor.task == condition.task
+        assert floor.residual < 1e-8
+        assert 0 < floor.left < 0.01 * floor.energy
+
+
+@pytest.mark.parametrize("condition", CONDITIONS, ids=lambda c: f"{c.task.plant.name} {c.label}")
+def test_nothing_is_below_the_floor(reproduction, condition):
+    # Not the gradient, nor anything within the paper's residuals (which are nearly rest).
+    found = multiples(reproduction, condition)
+    assert min(m.lower for m in found) > 1
+    gradient = [m.median for m in found if m.series == FREE]
+    assert gradient[-1] < 1.3  # ten terms are near it: physics.md, 'N = 8 and 10 go lower'
+    assert gradient == sorted(gradient, reverse=True)
+
+
+def test_every_row_and_every_number_of_terms_has_its_multiple(reproduction):
+    for row in ROWS:
+        found = by_place(reproduction, row.condition)
+        floor = reproduction.floors[row.condition].energy
+        assert found[PAPER, row.terms].median == pytest.approx(row.energy / floor)
+        for terms in TERMS:
+            for series, boxed in ((IN_BOX, True), (FREE, False)):
+                plan = reproduction.more_terms[row.condition, terms, boxed]
+                assert found[series, terms].median == pytest.approx(plan.energy / floor)
+
+
+def test_each_search_is_judged_by_its_own_fronts(reproduction):
+    for result in reproduction.rows:
+        found = by_place(reproduction, result.row.condition)
+        for method in SEARCHES:
+            (front,) = result.fronts[method]
+            assert front.method == method.name
+            energies = [p.energy for p in front.points if p.residual <= result.residual_level]
+            place = (method.label, result.row.terms)
+            if not energies:
+                assert place not in found
+                continue
+            floor = reproduction.floors[result.row.condition].energy
+            assert found[place].median == pytest.approx(min(energies) / floor)
+
+
+def test_the_table_has_a_row_a_condition_and_csv_all_of_it(reproduction):
+    table = floor_table(reproduction)
+    rows = list(csv.DictReader(io.StringIO(table.csv())))
+    assert [(row["plant"], row["move"]) for row in rows] == [
+        (c.task.plant.name, c.label) for c in CONDITIONS
+    ]
+    for row, condition in zip(rows, CONDITIONS, strict=True):
+        floor = reproduction.floors[condition]
+        assert float(row["floor_J"]) == floor.energy
+        assert float(row["left_J"]) == floor.left
+        assert row["starts_that_agree"] == f"{floor.agreeing()} of {len(floor.starts)}"
+        found = by_place(reproduction, condition)
+        assert float(row["gradient_no_box_10_terms_over_floor"]) == found[FREE, 10].median
+        assert float(row["paper_6_terms_over_floor"]) == found[PAPER, 6].median
+        assert bool(row["paper_2_terms_over_floor"]) == ((PAPER, 2) in found)
+
+
+def test_a_table_a_plant_for_the_screen(reproduction):
+    single, arm = floor_tables(reproduction)
+    assert [row[1] for row in single.rows] == [c.label for c in CONDITIONS[:3]]
+    assert [row[1] for row in arm.rows] == [c.label for c in CONDITIONS[3:]]
+    console = Console(file=io.StringIO(), width=80)
+    print_reproduction(console, reproduction, claims(reproduction))
+    text = console.file.getvalue()
+    for condition in CONDITIONS:
+        for m in multiples(reproduction, condition):
+            assert re.search(rf"\s{m.median:.3f}\s".replace(".", r"\."), text)
+    assert " ".join(finding(reproduction).split()) in " ".join(text.split())
+
+
+def test_the_finding_follows_from_the_multiples(reproduction):
+    paper = [
+        row.energy / reproduction.floors[row.condition].energy for row in ROWS
+    ]  # its least and its most
+    assert f"{min(paper):.2f} to {max(paper):.2f} times" in finding(reproduction)
+    halved = {c: _with_energy(f, f.energy / 2) for c, f in reproduction.floors.items()}
+    changed = finding(dataclasses.replace(reproduction, floors=halved))
+    assert f"{2 * min(paper):.2f} to {2 * max(paper):.2f} times" in changed
+
+
+def _with_energy(floor, energy):
+    return dataclasses.replace(floor, motion=dataclasses.replace(floor.motion, energy=energy))
+
+
+def test_a_search_that_met_no_residual_is_left_out(reproduction):
+    rows = tuple(dataclasses.replace(row, residual_level=1e-12) for row in reproduction.rows)
+    without = dataclasses.replace(reproduction, rows=rows)
+    series = {m.series for m in multiples(without, ARM_HALF)}
+    assert series == {PAPER, IN_BOX, FREE}
+    assert "VEPSO" not in floor_table(without).markdown()
+
+
+def test_the_dots_stand_where_the_multiples_are(reproduction):
+    axis = floor_dots(reproduction).axes[0]
+    dots = sorted(
+        float(line.get_xdata()[0]) for line in axis.get_lines() if line.get_marker() == "o"
+    )
+    expected = sorted(m.median - 1 for c in CONDITIONS for m in multiples(reproduction, c))
+    assert dots == pytest.approx(expected)
+    numbers = sorted(int(text.get_text()) for text in axis.texts)
+    assert numbers == sorted(m.terms for c in CONDITIONS for m in multiples(reproduction, c))
+    # The axis is marked in multiples: a tick that says 2 stands where the distance above is 1.
+    ticks = {
+        float(label.get_text()): place
+        for label, place in zip(axis.get_xticklabels(), axis.get_xticks(), strict=True)
+    }
+    for multiple, place in ticks.items():
+        assert place == pytest.approx(multiple - 1)
+    assert 2.0 in ticks
+    low, high = axis.get_xlim()
+    assert low < min(dots)
+    assert max(dots) < high
+
+
+def test_conditions_stand_beside_their_dots(reproduction):
+    axis = floor_dots(reproduction).axes[0]
+    labels = [label.get_text() for label in axis.get_yticklabels()]
+    for label, condition in zip(labels, CONDITIONS, strict=True):
+        assert condition.label in label
+        assert f"floor {reproduction.floors[condition].energy:.4g} J" in label
+    heights = np.array(axis.get_yticks())
+    found = multiples(reproduction, SINGLE_LINK_SIXTH)
+    of_first = [
+        line.get_ydata()[0]
+        for line in axis.get_lines()
+        if line.get_marker() == "o" and abs(line.get_ydata()[0] - heights[0]) < 3
+    ]
+    assert len(of_first) == len(found)
