@@ -49,7 +49,7 @@ def test_the_papers_population_and_generations():
 
 
 def test_operators_are_those_stated():
-    # physics.md, 'NSGA-II settings'.
+    # docs/physics.md, 'NSGA-II settings'.
     mating = PaperNSGA2().mating
     crossover, mutation = mating.crossover, mating.mutation
     assert type(crossover) is SBX

@@ -46,7 +46,7 @@ CONDITIONS = [
 
 @pytest.fixture(scope="module")
 def tasks(two_links):
-    """A task and its box for each plant; the two links' from physics.md, 'A third plant'."""
+    """A task and its box for each plant; the two links' from docs/physics.md, 'A third plant'."""
     return {
         "single link": (PointToPoint(SINGLE_LINK, pi / 6, 0.8), 0.2),
         "arm": (PointToPoint(ARM, pi / 2, 0.8), 0.5),
@@ -116,7 +116,7 @@ def test_any_number_of_terms(terms):
 
 
 def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
-    # physics.md, 'A third plant': F1 is then the larger of the two links' peaks.
+    # docs/physics.md, 'A third plant': F1 is then the larger of the two links' peaks.
     task, bound = tasks["two links"]
     X = candidates(12, bound)
     times = task.duration + np.linspace(1e-9, task.residual_window, 4000)
@@ -142,9 +142,9 @@ def test_a_mirrored_move_costs_the_same(tasks):
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
 def test_nine_in_ten_energies_are_within_the_error_stated(plant, start, target, duration, bound):
-    # Issue 3, item 1: F2 within 1e-4 relative; `LEAST_STEPS`: for nine in ten random candidates of
-    # the paper's boxes. The reference is the finer rollout, that keeps 1e-5 to CVODES (issue 2,
-    # item 5), as is checked below on fewer.
+    # benchmarks/README.md, population.py: F2 within 1e-4 relative for nine in ten random
+    # candidates of the paper's boxes. The reference is the finer rollout, which the test below
+    # holds to CVODES within 1e-5, on fewer candidates.
     task = PointToPoint(plant, target, duration, start)
     X = candidates(2000, bound, seed=2)
     fine = PopulationObjective(task, PROFILE, steps=FINE)(X).energy
@@ -163,7 +163,7 @@ def test_energy_and_residual_are_those_of_the_independent_integrator(
     motions = [resimulate(task, PROFILE, x) for x in X]
     assert fine.energy == pytest.approx([m.energy for m in motions], rel=1e-5, abs=0)
     residuals = np.array([motion.residual for motion in motions])
-    # W and W'/omega 1e-6 m off at arrival (issue 3, item 1), on top of the 5e-5 of a peak between
+    # W and W'/omega 1e-6 m off at arrival (see below), on top of the 5e-5 of a peak between
     # two samples (and 1.2e-6 of one that CVODES' own samples miss).
     allowed = 5.2e-5 * residuals + plant.phi * math.sqrt(2) * 1e-6
     assert np.all(np.abs(values.residual - residuals) <= allowed)
@@ -171,7 +171,7 @@ def test_energy_and_residual_are_those_of_the_independent_integrator(
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
 def test_the_amplitude_at_arrival_is_within_a_micrometre(plant, start, target, duration, bound):
-    # Issue 3, item 1: W at arrival within 1e-6 m.
+    # benchmarks/README.md, population.py: W at arrival within 1e-6 m.
     task = PointToPoint(plant, target, duration, start)
     steps = PopulationObjective(task, PROFILE).steps
     for x in candidates(8, bound, seed=6):
@@ -204,7 +204,7 @@ def test_other_plants_and_durations_are_as_accurate(two_links, plant, duration, 
 @pytest.mark.parametrize(
     ("plant", "target", "coefficients", "energy", "deflection"),
     [
-        # physics.md, 'What the printed coefficients give' (DOP853): F2 [J], residual max |W| [m];
+        # docs/physics.md, 'What the printed coefficients give': F2 [J], residual max |W| [m];
         # Tables 1 and 4 of the paper, a_5 of the last one mended.
         (SINGLE_LINK, pi / 6, [0] * 6, 0.09115, 3.382e-2),
         (SINGLE_LINK, pi / 6, [3.347e-3, -1.697e-1, 0, 0, 0, 0], 0.06297, 1.12e-4),
@@ -393,7 +393,7 @@ def _builds(first, objectives):
 
 @pytest.mark.parametrize("plant", [SINGLE_LINK, ARM], ids=["single link", "arm"])
 def test_the_papers_other_conditions_cost_no_rebuild(plant):
-    # Issue 3, item 1: start, target and duration are parameters: a second task costs no rebuild.
+    # Start, target and duration are parameters: a second task costs no rebuild.
     first, *others = [
         PointToPoint(plant, target, duration, start)
         for of, start, target, duration, _ in CONDITIONS
@@ -510,7 +510,7 @@ print(json.dumps([before, peak(), int(np.isfinite(values.energy).sum())]))
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="peaks are read from /proc")
 def test_ten_thousand_candidates_take_less_than_a_gigabyte():
-    # Issue 3, item 1; the build included, in a process of its own.
+    # The build included, in a process of its own.
     done = subprocess.run(
         [sys.executable, "-c", MEMORY], capture_output=True, text=True, timeout=120, check=True
     )

@@ -32,7 +32,7 @@ from ocp import CycloidPolynomial, Front, PointToPoint, resimulate, rollout
 
 # -- the paper --
 
-# Tables 3 and 6: conditions, F2 [J]. Residual: physics.md, max |W| of the paper's own N = 6
+# Tables 3 and 6: conditions, F2 [J]. Residual: docs/physics.md, max |W| of the paper's own N = 6
 # coefficients for the first condition of each plant (a_5 mended), times phi.
 STILL = {"vepso": 1.58e-4 * 2.28, "nsga2": 6.6e-4 * 0.508}
 VEPSO_ROWS = [(pi / 6, 0.8, 0.0515), (pi / 2, 1.0, 0.296), (pi / 2, 1.1, 0.223)]
@@ -119,7 +119,7 @@ def test_provenance(method):
 
 
 def test_the_operators_of_nsga2_are_in_the_front():
-    # physics.md, 'NSGA-II settings'
+    # docs/physics.md, 'NSGA-II settings'
     stated = found("nsga2").settings
     assert stated["crossover"] == "SBX(prob=0.8, prob_var=0.5, eta=15)"
     assert stated["mutation"] == "PM(prob=1, prob_var=0.01, eta=20)"
@@ -363,7 +363,7 @@ def test_any_number_of_terms(method, terms):
 
 
 def test_a_plant_of_two_modes(two_links):
-    # physics.md, 'A third plant'
+    # docs/physics.md, 'A third plant'
     task = PointToPoint(two_links, pi / 2, 0.9)
     front = search(task, "nsga2", bound=0.3, population=30, generations=30)
     assert_is_a_front(front)

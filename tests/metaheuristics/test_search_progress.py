@@ -76,7 +76,7 @@ def test_a_plain_cycloid_that_is_still_leaves_a_reference_of_a_millimetre():
 
 
 def test_the_reference_is_the_residual_of_the_plain_cycloid_and_twice_its_energy():
-    # physics.md: max |W| 3.382e-2 m (times phi) and 0.09115 J; 2.947e-2 m and 0.12457 J.
+    # docs/physics.md: max |W| 3.382e-2 m (times phi) and 0.09115 J; 2.947e-2 m and 0.12457 J.
     assert found("vepso").reference == pytest.approx((2.28 * 3.382e-2, 2 * 0.09115), rel=2e-4)
     assert found("nsga2").reference == pytest.approx((0.508 * 2.947e-2, 2 * 0.12457), rel=2e-4)
 

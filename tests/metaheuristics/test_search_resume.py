@@ -39,7 +39,7 @@ def always(monkeypatch):
 
 
 def test_a_checkpoint_is_written_every_few_seconds():
-    # Issue 3, item 5.
+    # So that little work is lost, and little time goes into writing.
     assert 1 <= module.CHECKPOINT_SECONDS <= 10
 
 
@@ -270,7 +270,7 @@ def _kill_at(script, method, path, generation, delay):
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGKILL")
 def test_a_run_that_was_killed_ends_bit_for_bit_as_one_that_was_not(tmp_path, method, seed):
-    # Issue 3, item 5: at any moment.
+    # At any moment: in the middle of a generation or while the checkpoint is written.
     script, path = tmp_path / "script.py", tmp_path / "checkpoint"
     script.write_text(KILLED)
     moment = random.Random(f"{method} {seed}")

@@ -27,7 +27,7 @@ CASES = {  # the first rows of Tables 6 and 3, in the paper's boxes
     "arm": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
     "single link": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
 }
-TOLERANCE = 1e-4  # the issue's
+TOLERANCE = 1e-4  # README, 'How exact'
 POLISHED = 2e-3
 
 

@@ -74,7 +74,7 @@ def test_arm_has_the_coefficients_of_eq_15():
 
 
 def test_mode_shapes_at_the_tips():
-    # physics.md: 2.28 from the paper's 'about 7.7 cm' over max |W| = 0.03382 m, 0.508 from
+    # docs/physics.md: 2.28 from the paper's 'about 7.7 cm' over max |W| = 0.03382 m, 0.508 from
     # beta3/(M lbar) with M = 0.450 kg, lbar = 0.105 m.
     assert SingleLinkManipulator().phi == pytest.approx(0.077 / 0.03382, abs=0.005)
     assert ArmOnFlexibleLink().phi == pytest.approx(2.399e-2 / (0.450 * 0.105), abs=0.0005)

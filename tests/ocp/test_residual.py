@@ -49,7 +49,7 @@ def test_two_tips_decay_each_at_its_own_frequency(two_links):
     assert matrix.shape[1] == 4
     tips = (matrix @ [0.02, -0.01, 0.3, 0.1]).reshape(-1, 2)
     t = _times(task, len(tips))
-    # physics.md: omega_i, zeta_i; tips are 2.7244 W_i.
+    # docs/physics.md: omega_i, zeta_i; tips are 2.7244 W_i.
     first = 2.7244 * _decay(0.02, 0.3, 12.68 * 0.993, 15.49e-3 * 1.214, t)
     second = 2.7244 * _decay(-0.01, 0.1, 10.71 * 0.993, 14.27e-3 * 1.071, t)
     assert tips == pytest.approx(np.column_stack([first, second]), abs=1e-12)

@@ -61,7 +61,7 @@ def test_energy_of_friction_alone():
     assert motion.net_work == pytest.approx(motion.energy, rel=1e-12)
 
 
-# -- accuracy at the default steps (issue 2, item 5) --
+# -- accuracy at the default steps (README, 'How exact') --
 
 BOXES = {"single link": 0.2, "arm": 0.5}
 """Eqs (12) and (17)."""
@@ -77,7 +77,7 @@ CONDITIONS = [
 
 
 @pytest.mark.parametrize(("name", "start", "target", "duration"), CONDITIONS)
-def test_default_steps_are_as_accurate_as_the_issue_asks(plants, name, start, target, duration):
+def test_default_steps_are_as_accurate_as_stated(plants, name, start, target, duration):
     # F2 within 1e-5 relative and W at arrival within 1e-7 m of CVODES, coefficients in the box.
     task = PointToPoint(plants[name], target, duration, start=start)
     random, profile, box = np.random.default_rng(20), CycloidPolynomial(6), BOXES[name]
