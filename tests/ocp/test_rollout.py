@@ -1,6 +1,7 @@
 """The one simulation: closed forms, accuracy at the default steps, populations, symmetries."""
 
 import math
+from dataclasses import FrozenInstanceError
 
 import casadi as ca
 import numpy as np
@@ -141,13 +142,30 @@ def test_a_move_of_too_many_swings_is_named():
         default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 1e5))
 
 
+def test_the_longest_move_is_accepted():
+    # Two steps a radian, 20,000 of them: 10,000 radians of 10.43 rad/s.
+    plant = SingleLinkManipulator()
+    assert default_steps(PointToPoint(plant, 1.0, 958.0)) == 19984
+    with pytest.raises(ValueError, match="resolves up to 10000: give a shorter duration"):
+        default_steps(PointToPoint(plant, 1.0, 959.0))
+
+
 def test_a_rollout_says_how_many_steps_it_took():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
     assert rollout(task, PLAIN, []).steps == LEAST_STEPS
     assert rollout(task, PLAIN, [], steps=50).steps == 50
+    assert rollout(task, PLAIN, [], steps=1).steps == 1
 
 
-@pytest.mark.parametrize("steps", [-5, 2.5, math.nan])
+def test_a_rollout_cannot_be_changed():
+    found = rollout(PointToPoint(SingleLinkManipulator(), 1.0, 0.8), PLAIN, [], steps=2)
+    with pytest.raises(FrozenInstanceError):
+        found.steps = 3
+    with pytest.raises(FrozenInstanceError):
+        found.motion.energy = 0.0
+
+
+@pytest.mark.parametrize("steps", [0, -5, 2.5, math.nan])
 def test_steps_that_are_not_a_positive_whole_number_are_named(steps):
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
     with pytest.raises(ValueError, match=f"steps is {steps}"):
