@@ -157,6 +157,13 @@ def test_a_rollout_says_how_many_steps_it_took():
     assert rollout(task, PLAIN, [], steps=1).steps == 1
 
 
+def test_a_simulation_in_symbols_cannot_be_changed():
+    plant, a = SingleLinkManipulator(), ca.SX.sym("a", 1)
+    symbols = symbolic_rollout(plant, CycloidPolynomial(1), [a], [0.0, 1.0, 0.8], 2)
+    with pytest.raises(FrozenInstanceError):
+        symbols.h = 0.1
+
+
 def test_a_rollout_cannot_be_changed():
     found = rollout(PointToPoint(SingleLinkManipulator(), 1.0, 0.8), PLAIN, [], steps=2)
     with pytest.raises(FrozenInstanceError):
