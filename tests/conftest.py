@@ -19,6 +19,13 @@ settings.register_profile(
 settings.load_profile("repeatable")
 
 
+def pytest_collection_modifyitems(items):
+    """Keep in one process what shares its fixtures: a file, and all that needs the reproduction."""
+    for item in items:
+        together = "reproduction" if "reproduction" in item.fixturenames else str(item.path)
+        item.add_marker(pytest.mark.xdist_group(together))
+
+
 @pytest.fixture(scope="session")
 def two_links():
     """A user's own plant of two modes, from its file beside these tests."""

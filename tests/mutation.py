@@ -140,7 +140,7 @@ def tested(module: str, source: str) -> int:
     sys.meta_path.insert(0, _Changed(module, source))
     os.chdir(ROOT)
     quiet = ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # hypothesis is here already
-    options = ["-x", "-q", "-p", "no:cacheprovider", "--hypothesis-profile=mutation", *quiet]
+    options = ["-x", "-q", "-n0", "-p", "no:cacheprovider", "--hypothesis-profile=mutation", *quiet]
     return int(pytest.main([*options, *(f"tests/{name}" for name in TESTS[module])]))
 
 
