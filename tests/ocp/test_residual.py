@@ -190,8 +190,9 @@ def test_extreme_rows_hold_the_largest_displacement_of_any_state(plants, name, t
 
 
 @pytest.mark.parametrize("rank", [3, 4])
-def test_rows_of_a_tip_that_does_not_turn_in_a_plane_are_all_kept(rank):
-    matrix = np.random.default_rng(1).standard_normal((40, 4))
+@pytest.mark.parametrize("scale", [1.0, 1e-7, 1e7])
+def test_rows_of_a_tip_that_does_not_turn_in_a_plane_are_all_kept(rank, scale):
+    matrix = scale * np.random.default_rng(1).standard_normal((40, 4))
     matrix[:, rank:] = 0.0
     np.testing.assert_array_equal(extreme_rows(matrix, 1), matrix)
 
