@@ -13,7 +13,7 @@ from models.plant import Expression, JointMotion, Plant, parameter
 
 @dataclass(frozen=True)
 class ArmOnFlexibleLink(Plant):
-    """A rigid arm whose motor rides on a flexible beam, eqs (13), (14); defaults from eq (15)."""
+    """A rigid arm whose motor sits on a flexible beam, eqs (13), (14); defaults from eq (15)."""
 
     name: ClassVar[str] = "arm-on-flexible-link"
     modes: ClassVar[int] = 1
@@ -31,7 +31,8 @@ class ArmOnFlexibleLink(Plant):
     phi: float = parameter(
         0.508,
         "-",
-        "mode shape at the tip, not printed: beta3 / (M lbar) with M = 0.450 kg and lbar = 0.105 m",
+        "mode shape at the tip, not printed: beta3 / (M lbar) with M = 0.450 kg and "
+        "lbar = 0.105 m; see docs/physics.md",
     )
 
     def modal_accelerations(

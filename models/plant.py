@@ -1,8 +1,8 @@
 """The contract that every plant meets: what moves, as equations.
 
-Equations are written once, in operations that work element by element, so that the same lines
-serve an SX scalar (the gradient), an MX matrix with a candidate a row (the population) and a plain
-number (a table). Use `casadi.sin` and its like, never `numpy`'s or `math`'s.
+Equations are written once, in operations that work element by element. The same lines then serve
+an SX scalar (the gradient), an MX matrix with one candidate in each row (the population) and a
+plain number (a table). Use `casadi.sin` and its like, not those of `numpy` or `math`.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from typing import Any, ClassVar, NamedTuple
 import casadi as ca
 
 Expression = Any
-"""An SX scalar, an MX matrix or a number: casadi's types have no common base for these."""
+"""An SX scalar, an MX matrix or a number: casadi gives these no common base class."""
 
 
 class JointMotion(NamedTuple):
-    """Where the joint is and how it moves; each entry of any one shape.
+    """Angle, speed and acceleration of the joint: three entries of the same shape.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class JointMotion(NamedTuple):
 
 
 def parameter(default: float, unit: str, source: str) -> Any:
-    """Declare a plant's parameter with its unit and where its value comes from.
+    """Declare a parameter of a plant, with its unit and the source of its value.
 
     Parameters
     ----------
@@ -123,11 +123,11 @@ class Plant(ABC):
         dW: Sequence[Expression],
         ddW: Sequence[Expression],
     ) -> Expression:
-        """Joint torque that the motion asks for [N m]; arguments as in `modal_accelerations`."""
+        """Joint torque that the motion needs [N m]; arguments as in `modal_accelerations`."""
 
     @abstractmethod
     def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
-        """Displacement of each tip that must come to rest [m], linear in `W` [m]."""
+        """Displacements of the tips that must come to rest [m], linear in `W` [m]."""
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -173,7 +173,7 @@ class Plant(ABC):
         if not ca.is_linear(ca.vertcat(*accelerations), state):
             raise ValueError(
                 f"plant {self.name!r}: the modal accelerations are not affine in W and W'; "
-                "linearise them, quietarm integrates modes that are linear for a given joint motion"
+                "linearise them: quietarm integrates modes that are linear for a given joint motion"
             )
         if self.tips < 1:
             raise ValueError(f"plant {self.name!r} has no tip displacement; give it 1 or more")
@@ -193,7 +193,7 @@ class Plant(ABC):
 
 
 def known_plants() -> dict[str, type[Plant]]:
-    """The plants that can be found by name, those of the user's own files included.
+    """Every plant by its name, also those of the user's own files.
 
     Returns
     -------

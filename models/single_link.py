@@ -26,8 +26,9 @@ class SingleLinkManipulator(Plant):
     phi: float = parameter(
         2.28,
         "-",
-        "mode shape at the tip, not printed: the 'about 7.7 cm' of residual amplitude of the plain "
-        "cycloid (pi/6 in 0.8 s) over the residual max |W| of 0.03382 m computed for it",
+        "mode shape at the tip, not printed: the paper's residual amplitude of 'about 7.7 cm' for "
+        "the plain cycloid (pi/6 in 0.8 s) over the max |W| of 0.03382 m computed for it; see "
+        "docs/physics.md",
     )
 
     def modal_accelerations(

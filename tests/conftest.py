@@ -4,7 +4,7 @@ import importlib.util
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import Phase, settings
 
 from models import Plant
 
@@ -12,7 +12,18 @@ from models import Plant
 # looks further. No deadline: the first example of a kind compiles.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.register_profile("search", deadline=None, max_examples=1000)
+# For mutation.py: a failing example is enough, whether or not a simpler one fails too.
+settings.register_profile(
+    "mutation", deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate)
+)
 settings.load_profile("repeatable")
+
+
+def pytest_collection_modifyitems(items):
+    """Keep in one process what shares its fixtures: a file, and all that needs the reproduction."""
+    for item in items:
+        together = "reproduction" if "reproduction" in item.fixturenames else str(item.path)
+        item.add_marker(pytest.mark.xdist_group(together))
 
 
 @pytest.fixture(scope="session")

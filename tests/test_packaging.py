@@ -15,7 +15,7 @@ from models import __version__
 
 ROOT = Path(__file__).parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-PACKAGES = ["models", "ocp", "metaheuristics", "studies"]  # issue 2, item 1
+PACKAGES = ["models", "ocp", "metaheuristics", "studies"]
 PINS = (ROOT / "constraints.txt").read_text().splitlines()
 REQUIREMENTS = {
     "runtime": PYPROJECT["project"]["dependencies"],
@@ -94,9 +94,9 @@ def test_every_requirement_has_a_lower_bound_and_a_pin_that_meets_it(where, text
     assert pinned[canonicalize_name(requirement.name)] in requirement.specifier
 
 
-def test_the_runtime_requirements_are_those_of_the_issue():
+def test_the_runtime_requirements_are_few():
     names = {Requirement(text).name for text in REQUIREMENTS["runtime"]}
-    # issue 2, item 1; moocore, which pymoo brings, is imported for the hypervolume
+    # moocore, which pymoo brings, is imported for the hypervolume
     assert names == {"casadi", "numpy", "matplotlib", "pymoo", "click", "rich", "moocore"}
 
 

@@ -80,7 +80,7 @@ def test_the_gate_runs_the_two_commands_as_they_stand_here(tmp_path):
         env=environment,
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=300,
     )
     assert (tmp_path / "noted").read_text().splitlines() == TWO_COMMANDS
     assert gate.returncode != 0
@@ -92,7 +92,7 @@ def test_the_gate_refuses_a_readme_without_them(tmp_path):
     shutil.copy(ROOT / ".ci" / "run", tmp_path / ".ci")
     (tmp_path / "README.md").write_text("# quietarm\n\n```console\ntrue\n```\n")
     gate = subprocess.run(
-        [shutil.which("bash"), ".ci/run"], cwd=tmp_path, capture_output=True, text=True, timeout=30
+        [shutil.which("bash"), ".ci/run"], cwd=tmp_path, capture_output=True, text=True, timeout=300
     )
     assert gate.returncode == 1
     assert "exactly two commands" in gate.stdout
@@ -116,7 +116,7 @@ def run_python(code, folder):
         cwd=folder,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
     )
     assert (ran.returncode, ran.stderr) == (0, "")
     return ran.stdout
@@ -187,7 +187,7 @@ def test_the_commands_run_one_after_another(tmp_path, lines):
             cwd=tmp_path,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=600,
         )
         assert (ran.returncode, ran.stdout != "") == (0, True), ran.stderr
         said = ran.stderr.splitlines()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from metaheuristics.presets import PAPER_BOX
+from metaheuristics import PAPER_BOX
 from ocp import PointToPoint
 from ocp.checks import positive
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
-from metaheuristics import PAPER_BOX
 from models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
 from ocp import PointToPoint
 from studies.methods import NSGA2, VEPSO

@@ -74,7 +74,7 @@ def test_arm_has_the_coefficients_of_eq_15():
 
 
 def test_mode_shapes_at_the_tips():
-    # physics.md: 2.28 from the paper's 'about 7.7 cm' over max |W| = 0.03382 m, 0.508 from
+    # docs/physics.md: 2.28 from the paper's 'about 7.7 cm' over max |W| = 0.03382 m, 0.508 from
     # beta3/(M lbar) with M = 0.450 kg, lbar = 0.105 m.
     assert SingleLinkManipulator().phi == pytest.approx(0.077 / 0.03382, abs=0.005)
     assert ArmOnFlexibleLink().phi == pytest.approx(2.399e-2 / (0.450 * 0.105), abs=0.0005)
@@ -264,6 +264,14 @@ def test_modes_that_are_not_linear_are_refused(acceleration):
         _broken(modal_accelerations=acceleration).validate()
 
 
+def test_a_structure_that_only_a_moving_joint_excites_is_accepted():
+    _broken(
+        modal_accelerations=lambda p, j, W, dW: [
+            -W[0] - ca.cos(j.angle) * j.acceleration - ca.sin(j.angle) * j.speed**2 - j.speed
+        ]
+    ).validate()
+
+
 def test_time_varying_modes_are_linear_enough():
     _broken(
         modal_accelerations=lambda p, j, W, dW: [
@@ -312,7 +320,18 @@ def test_a_tip_that_is_not_linear_is_refused():
             {"modal_accelerations": lambda p, j, W, dW: [-W[0] - 9.81 * ca.sin(j.angle)]},
             id="gravity",
         ),
-        pytest.param({"modal_accelerations": lambda p, j, W, dW: [1.0 - W[0]]}, id="preload"),
+        pytest.param(
+            {"modal_accelerations": lambda p, j, W, dW: [-W[0] - 9.81 * ca.cos(j.angle)]},
+            id="gravity across",
+        ),
+        pytest.param({"modal_accelerations": lambda p, j, W, dW: [1e-6 - W[0]]}, id="preload"),
+        pytest.param(
+            {
+                "modes": 2,
+                "modal_accelerations": lambda p, j, W, dW: [-W[0], -W[1] - ca.sin(j.angle)],
+            },
+            id="gravity on one mode of two",
+        ),
         pytest.param({"tip_displacements": lambda p, W: [W[0] + 1e-3]}, id="tip offset"),
     ],
 )

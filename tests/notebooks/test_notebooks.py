@@ -44,7 +44,7 @@ def both(request, tmp_path_factory):
         cell.outputs, cell.execution_count = [], None
     folder = tmp_path_factory.mktemp("notebook")
     # Raises CellExecutionError, with the cell and its traceback, where one fails.
-    NotebookClient(anew, timeout=120, resources={"metadata": {"path": str(folder)}}).execute()
+    NotebookClient(anew, timeout=600, resources={"metadata": {"path": str(folder)}}).execute()
     return committed, anew, folder
 
 

@@ -21,7 +21,7 @@ def plants(two_links):
 
 @pytest.fixture(scope="session")
 def tasks(plants):
-    """A task for each plant: the first row of Tables 3 and 6, and physics.md's for two links."""
+    """A task for each plant: the first rows of Tables 3 and 6; docs/physics.md, 'A third plant'."""
     return {
         "single link": PointToPoint(plants["single link"], math.pi / 6, 0.8),
         "arm": PointToPoint(plants["arm"], math.pi / 2, 0.8),

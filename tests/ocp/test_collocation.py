@@ -106,7 +106,7 @@ def test_modal_system_of_the_arm():
 def test_modal_system_of_separate_links_has_no_coupling(two_links):
     system = modal_system(two_links, JointMotion(0.7, 3.0, 5.0))
     K = _numbers(system.K)
-    # physics.md: omega_i^2 + b_i theta'^2 on the diagonal.
+    # docs/physics.md: omega_i^2 + b_i theta'^2 on the diagonal.
     expected = [
         (12.68 * 0.993) ** 2 + 2.004e-3 * 1.020 * 9,
         (10.71 * 0.993) ** 2 + 5.822e-3 * 1.006 * 9,

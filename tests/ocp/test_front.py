@@ -257,9 +257,7 @@ def test_odd_but_whole_fronts_come_back(tmp_path, changes):
     assert Front.load(tmp_path / "front.json") == front(**changes)
 
 
-def test_the_file_is_what_the_issue_says(tmp_path):
-    # Issue 3: `points`, a list of objects with `coefficients`, `residual`, `energy`; and task,
-    # method, settings, seed, versions.
+def test_a_file_has_the_keys_that_others_read(tmp_path):
     front().save(tmp_path / "front.json")
     document = json.loads((tmp_path / "front.json").read_text())
     assert (document["format"], document["version"]) == ("quietarm-front", 2)

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from models import SingleLinkManipulator
 from ocp import Motion, PointToPoint
-from ocp.collocation import GAUSS_NODES
-from ocp.objective import resolved_energy
+from ocp.collocation import GAUSS_NODES, NODES, mesh
+from ocp.objective import beyond_quadratic, resolved_energy
 
 numbers = st.floats(-10.0, 10.0)
 
@@ -70,6 +70,81 @@ def test_energy_adds_up_over_the_steps_of_each_candidate():
     for row in range(5):
         steps = [resolved_energy([ca.DM(p[row, k]) for p in powers], 0.1) for k in range(7)]
         assert together[row, 0] == pytest.approx(sum(float(step) for step in steps), rel=1e-12)
+
+
+# -- what the neighbouring steps tell of the power --
+
+X = np.polynomial.Polynomial([0.0, 1.0])
+VANISHING = math.prod(X - node for node in GAUSS_NODES)
+
+
+@given(c0=numbers, c1=numbers, c2=numbers, cubic=numbers, quartic=numbers)
+def test_terms_beyond_the_quadratic_move_work_across_its_zeros(c0, c1, c2, cubic, quartic):
+    # By definition: the work of the whole quartic between the zeros of its quadratic part.
+    quadratic = np.polynomial.Polynomial([c0, c1, c2])
+    work = (quadratic + VANISHING * (cubic + quartic * (X - 0.5))).integ()
+    roots = [r.real for r in quadratic.trim(1e-12).roots() if abs(r.imag) < 1e-9]
+    breaks = [0.0, *sorted(r for r in roots if 0 < r < 1), 1.0]
+    power = [ca.DM(float(quadratic(x))) for x in GAUSS_NODES]
+    expected = np.abs(np.diff(work(np.array(breaks)))).sum()
+    found = float(resolved_energy(power, 0.25, cubic, quartic))
+    assert found == pytest.approx(0.25 * expected, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("cubic", "quartic", "share"),
+    # The zero of 2 x - 1 at 1/2 parts the step; there the terms have done 1/320 and 0 of work.
+    [(0.0, 0.0, 0.0), (4.0, 0.0, 4.0 / 320), (0.0, 7.0, 0.0), (-4.0, 7.0, -4.0 / 320)],
+)
+def test_the_terms_beyond_a_ramp_through_zero_by_hand(cubic, quartic, share):
+    power = [ca.DM(2 * x - 1) for x in GAUSS_NODES]
+    energy = float(resolved_energy(power, 1.0, cubic, quartic))
+    assert energy == pytest.approx(1 / 2 - 2 * share, abs=1e-14)
+
+
+def test_the_quartic_term_by_hand():
+    # x - 1/4 has its zero at u = x - 1/2 = -1/4. The quartic term's work up to there is
+    # u^5/5 - u^3/20 = 3/5120 (the primitive of u (u^3 - 3 u/20), which is 0 at both ends).
+    power = [ca.DM(x - 1 / 4) for x in GAUSS_NODES]
+    energy = float(resolved_energy(power, 1.0, 0.0, 8.0))
+    plain = 1 / 32 + 9 / 32
+    assert energy == pytest.approx(plain - 2 * 8 * 3 / 5120, abs=1e-14)
+
+
+def _nodes_in_time(steps):
+    """Times of the nodes, shape (steps, NODES), as fractions of the move."""
+    begin, length = (x.full() for x in mesh(ca.DM(np.arange(steps)), steps))
+    return begin, length, begin + length * np.array(GAUSS_NODES)
+
+
+@pytest.mark.parametrize("steps", [2, 3, 10])
+def test_a_power_of_degree_four_is_told_exactly(steps):
+    quartic_power = np.polynomial.Polynomial([0.3, -2.0, 5.0, 7.0, -11.0])
+    begin, length, times = _nodes_in_time(steps)
+    at_nodes = quartic_power(times).T.reshape(1, -1)  # horzcat(*power): node after node
+    found = [(ca.DM(at_nodes) @ weights).full().ravel() for weights in beyond_quadratic(steps)]
+    for step in range(steps):
+        local = quartic_power(begin[step, 0] + length[step, 0] * X)
+        _, remainder = divmod(local, VANISHING)
+        beyond = (local - remainder) // VANISHING  # cubic + quartic (x - 1/2)
+        assert found[0][step] == pytest.approx(beyond(0.5), abs=1e-9)
+        assert found[1][step] == pytest.approx(beyond.deriv()(0.5), abs=1e-9)
+
+
+@pytest.mark.parametrize("steps", [2, 3, 10])
+def test_five_nodes_in_a_row_count_with_the_steps_own_in_the_middle(steps):
+    for weights in beyond_quadratic(steps):
+        in_time = weights.full().reshape(NODES, steps, steps).swapaxes(0, 1).reshape(-1, steps)
+        for step in range(steps):
+            first = min(max(NODES * step - 1, 0), NODES * steps - 5)  # at the ends, to one side
+            counted = np.flatnonzero(in_time[:, step])
+            assert counted.tolist() == list(range(first, first + 5))
+
+
+def test_a_single_step_has_no_neighbour():
+    for weights in beyond_quadratic(1):
+        assert weights.shape == (NODES, 1)
+        assert not weights.full().any()
 
 
 # -- diagnostics --

@@ -70,7 +70,7 @@ def test_where_coefficients_come_from_can_be_kept(tasks, tmp_path):
 def test_no_coefficients_are_the_plain_cycloid(tasks):
     plain = evaluate_coefficients(tasks["single link"], [])
     assert plain.profile == CycloidPolynomial(0)
-    assert plain.energy == pytest.approx(0.09115, abs=0.5e-5)  # physics.md
+    assert plain.energy == pytest.approx(0.09115, abs=0.5e-5)  # docs/physics.md
 
 
 def test_one_coefficient_needs_no_brackets(tasks):
@@ -126,9 +126,8 @@ def test_a_saved_plan_loads_equal(any_plan, tmp_path):
     assert loaded.motion == resimulate(loaded.task, loaded.profile, loaded.coefficients)
 
 
-def test_a_file_has_the_keys_that_the_issue_names(any_plan, tmp_path):
-    # Issue 2, item 8: 'the keys coefficients, residual (tip, m), energy (J), plant, start, target,
-    # duration (SI, rad), and a format name and version'.
+def test_a_file_has_the_keys_that_others_read(any_plan, tmp_path):
+    # SI units and radians; the residual is that of the tip.
     any_plan.save(tmp_path / "plan.json")
     document = json.loads((tmp_path / "plan.json").read_text())
     assert document["coefficients"] == list(any_plan.coefficients)
@@ -233,7 +232,6 @@ def _table(plan, path, *rate):
 
 def test_a_table_names_its_quantities_and_units(plan, tmp_path):
     header, _ = _table(plan, tmp_path / "move.csv")
-    # Issue 2, item 7: t, theta, theta', theta'', tip displacement, torque, power.
     assert header == [
         "t_s",
         "theta_rad",

@@ -243,9 +243,23 @@ def test_a_coefficient_that_is_not_finite_is_named(value):
         CycloidPolynomial(3).path([0.0, value, 0.0], 0.0, 1.0, 1.0)
 
 
-@pytest.mark.parametrize("value", ["ab", ["a", "b"], None, [None, 1.0], [[0.1], [0.1]]])
-def test_coefficients_that_are_not_a_row_of_numbers_are_refused(value):
-    with pytest.raises(ValueError, match=r"coefficient|could not convert"):
+def test_of_two_coefficients_that_are_not_finite_the_first_is_named():
+    with pytest.raises(ValueError, match="coefficient 2 is nan"):
+        CycloidPolynomial(4).checked([0.0, math.nan, math.inf, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("value", "says"),
+    [
+        ("ab", "could not convert string to float: 'ab'"),
+        (["a", "b"], "could not convert string to float: 'a'"),
+        (None, "got 1 coefficients for a profile of 2; give 2 numbers"),
+        ([None, 1.0], "coefficient 1 is nan"),
+        ([[0.1], [0.1]], "got 2 coefficients for a profile of 2; give 2 numbers"),
+    ],
+)
+def test_coefficients_that_are_not_a_row_of_numbers_are_refused(value, says):
+    with pytest.raises(ValueError, match=says):
         CycloidPolynomial(2).checked(value)
 
 

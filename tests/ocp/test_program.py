@@ -125,7 +125,7 @@ def test_the_unit_of_the_modes_does_not_matter(plants):
 
 
 def test_programs_of_like_tasks_are_compiled_once(plants):
-    # Start, target and duration are parameters (design.md, rule 9).
+    # Start, target and duration are parameters.
     one = TaskProgram(PointToPoint(plants["arm"], 1.0, 0.8), PROFILE, STEPS, with_residual=False)
     other = TaskProgram(PointToPoint(plants["arm"], 2.0, 1.3), PROFILE, STEPS, with_residual=False)
     assert one.program is other.program

@@ -2,11 +2,12 @@
 
 import itertools
 import math
+from dataclasses import FrozenInstanceError, dataclass
 from math import cos, sin
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import quad, simpson, solve_ivp
 from scipy.optimize import brentq
 
 from models import SingleLinkManipulator
@@ -17,6 +18,8 @@ from ocp import (
     resimulate,
     sample_trajectory,
 )
+from ocp.profile import JointProfile
+from ocp.resimulation import rest_of
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)
@@ -49,7 +52,7 @@ def motion(tasks):
     return of
 
 
-# -- physics.md, 'What the printed coefficients give': F2 [J] and max |W| [m] of an independent
+# -- docs/physics.md, 'What the printed coefficients give': F2 [J] and max |W| [m] of an independent
 # simulation; half a unit of the last digit --
 
 
@@ -97,7 +100,7 @@ def test_the_printed_energies_are_found_again(motion, name, row, printed, digit)
 
 def test_table_4_has_a_misprint(motion):
     # a_5 as printed misses Table 5's energy by six units of its last digit and rings five times
-    # as much as mended (physics.md).
+    # as much as mended (docs/physics.md).
     assert motion("arm", "6 as printed").energy > 1.54e-1
     assert motion("arm", "6 as printed").residual > 4 * motion("arm", "6 mended").residual
 
@@ -152,7 +155,7 @@ def _arm(q, dq, ddq, W, dW):
 
 
 def _two_links(q, dq, ddq, W, dW):
-    """W'' and torque of physics.md's third plant."""
+    """W'' and torque of docs/physics.md's third plant."""
     omega = np.array([12.68, 10.71]) * 0.993
     zeta = np.array([15.49e-3 * 1.214, 14.27e-3 * 1.071])
     a = np.array([0.2266 * 0.984, 0.2570 * 1.003])
@@ -163,7 +166,7 @@ def _two_links(q, dq, ddq, W, dW):
 
 
 EQUATIONS = {"single link": _single_link, "arm": _arm, "two links": _two_links}
-PHI = {"single link": 2.28, "arm": 0.508, "two links": 2.7244}  # physics.md
+PHI = {"single link": 2.28, "arm": 0.508, "two links": 2.7244}  # docs/physics.md
 
 
 class _ThirdOpinion:
@@ -240,6 +243,32 @@ def test_scipy_agrees(plants, name, a, start, target, duration):
 
 
 @pytest.mark.parametrize(("name", "a", "start", "target", "duration"), CASES)
+def test_scipy_agrees_on_the_diagnostics(plants, name, a, start, target, duration):
+    task = PointToPoint(plants[name], target, duration, start=start)
+    motion = resimulate(task, CycloidPolynomial(len(a)), a)
+    other = _ThirdOpinion(name, a, start, target, duration)
+    times = np.linspace(0.0, duration, 4001)
+    joint, states = np.array([*map(other.joint, times)]), other.during.sol(times)
+    torque = [
+        other.equations(*q, x[: other.modes], x[other.modes :])[1]
+        for q, x in zip(joint, states.T, strict=True)
+    ]
+    peaks = {
+        "torque": np.abs(torque).max(),
+        "speed": np.abs(joint[:, 1]).max(),
+        "acceleration": np.abs(joint[:, 2]).max(),
+        "deflection": other.phi * np.abs(states[: other.modes]).max(),
+    }
+    for quantity, peak in peaks.items():
+        # Of a thousand samples: a peak of these motions that falls between two is 2e-4 higher.
+        assert motion.peak(quantity) == pytest.approx(peak, rel=3e-4), quantity
+    overshoot = max(0.0, ((joint[:, 0] - target) * np.sign(target - start)).max())
+    assert motion.overshoot == pytest.approx(overshoot, abs=1e-5)
+    power = np.array(torque) * joint[:, 1]
+    assert motion.net_work == pytest.approx(simpson(power, x=times), rel=1e-8)
+
+
+@pytest.mark.parametrize(("name", "a", "start", "target", "duration"), CASES)
 def test_scipy_agrees_at_every_sample(plants, name, a, start, target, duration):
     task = PointToPoint(plants[name], target, duration, start=start)
     other = _ThirdOpinion(name, a, start, target, duration)
@@ -276,6 +305,57 @@ def test_braking_costs_as_much_as_driving():
     assert motion.overshoot > 0.01
 
 
+@dataclass(frozen=True)
+class _InPowers(JointProfile):
+    """theta from the start to the target along a polynomial of t/T, without coefficients."""
+
+    powers: tuple[float, ...]
+
+    @property
+    def size(self):
+        return 0
+
+    def derivatives(self, coefficients, fraction, start, target, duration):
+        found, polynomial = [], np.polynomial.Polynomial(self.powers)
+        for order in range(4):
+            value = 0 * fraction
+            for power in reversed(polynomial.deriv(order).coef.tolist()):
+                value = value * fraction + power
+            found.append((start * (order == 0)) + (target - start) / duration**order * value)
+        return tuple(found)
+
+
+def test_a_power_that_is_exactly_zero_at_a_sample_parts_the_work():
+    # theta' = 6 f (1 - f) span/T with f = t/T: a rigid body's power is 0 at f = 1/2, where its
+    # speed is 3/2 span/T. Starting and stopping each cost alpha1 theta'^2/2.
+    rigid = SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
+    motion = resimulate(PointToPoint(rigid, 0.7, 1.0), _InPowers((0.0, 0.0, 3.0, -2.0)), [])
+    assert motion.energy == pytest.approx(0.02 * (1.5 * 0.7) ** 2, rel=1e-9)
+
+
+def test_a_motion_at_constant_speed_pays_from_its_first_moment():
+    # torque = c theta': c span^2/T in all, as much at the first moment as at any other.
+    friction = SingleLinkManipulator(alpha1=0.0, alpha2=0.0, c=0.03)
+    motion = resimulate(PointToPoint(friction, 0.7, 0.8), _InPowers((0.0, 1.0)), [])
+    assert motion.energy == pytest.approx(0.03 * 0.7**2 / 0.8, rel=1e-9)
+
+
+def test_every_sign_change_of_a_long_ringing_move_is_found():
+    # theta'' = A from the first moment on: W'' = -beta1 A cos(omega t), and with alpha1 = c = 0
+    # the power is -alpha2 beta1 A^2 t cos(omega t): 477 sign changes in 1500 radians.
+    omega, T, span = 50.0, 30.0, 700.0
+    plant = SingleLinkManipulator(
+        omega=omega, zeta=0.0, beta2=0.0, alpha1=0.0, alpha2=0.1, beta1=0.25, c=0.0
+    )
+    motion = resimulate(PointToPoint(plant, span, T), _InPowers((0.0, 0.0, 1.0)), [])
+    zeros = np.arange(pi / 2, omega * T, pi) / omega
+    t = np.array([0.0, *zeros, T])
+    primitive = t * np.sin(omega * t) / omega + np.cos(omega * t) / omega**2
+    expected = 0.1 * 0.25 * (2 * span / T**2) ** 2 * np.abs(np.diff(primitive)).sum()
+    # CVODES at 1e-11 a step has lost 2e-6 after 240 periods.
+    assert motion.energy == pytest.approx(expected, rel=5e-6)
+
+
 def test_friction_alone_loses_all_its_work():
     # c span^2/T^2 times the integral of (1 - cos)^2, 3/2 T.
     friction = SingleLinkManipulator(alpha1=0.0, alpha2=0.0, c=0.03)
@@ -294,6 +374,14 @@ def test_the_residual_of_an_undamped_arm_is_its_amplitude():
     motion = resimulate(PointToPoint(plant, span, T), PLAIN, [])
     # Samples miss 1.2e-6 of a peak at most.
     assert motion.residual == pytest.approx(2.28 * math.hypot(W, dW / omega), rel=2e-6)
+
+
+def test_the_residual_is_sampled_as_finely_as_stated_and_no_finer():
+    # A phase of 0.003 radians of the mode at 10 rad/s at most: 3334 steps a second.
+    task = PointToPoint(SingleLinkManipulator(omega=10.0, zeta=0.0), 1.0, 0.8)
+    times = rest_of(task, [0.01, 0.0]).time
+    assert (times[0], times[-1]) == (0.8, 1.8)
+    assert np.diff(times) == pytest.approx(1 / 3334, rel=1e-9)
 
 
 def test_a_longer_window_never_shows_less(plants):
@@ -350,6 +438,8 @@ def test_a_trajectory_cannot_be_written_to(tasks):
     for array in vars(found).values():
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1.0
+    with pytest.raises(FrozenInstanceError):
+        found.time = found.time + 1.0
 
 
 @pytest.mark.parametrize("gap", [1e-16, 1e-12, 1e-9])
@@ -385,3 +475,9 @@ def test_a_motion_beyond_all_scale_is_refused_with_the_coefficient(tasks):
     with pytest.raises(SolverFailedError, match=r"CVODES.*1e\+40") as error:
         resimulate(tasks["single link"], CycloidPolynomial(2), [1e30, -1e40])
     assert "\n" not in str(error.value)
+
+
+def test_a_motion_beyond_all_scale_may_have_no_coefficients():
+    wild = SingleLinkManipulator(beta1=1e300)
+    with pytest.raises(SolverFailedError, match=r"CVODES .*\(largest is 0\)"):
+        resimulate(PointToPoint(wild, 1e5, 1e-3), PLAIN, [])

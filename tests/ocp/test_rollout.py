@@ -1,6 +1,7 @@
 """The one simulation: closed forms, accuracy at the default steps, populations, symmetries."""
 
 import math
+from dataclasses import FrozenInstanceError
 
 import casadi as ca
 import numpy as np
@@ -61,7 +62,7 @@ def test_energy_of_friction_alone():
     assert motion.net_work == pytest.approx(motion.energy, rel=1e-12)
 
 
-# -- accuracy at the default steps (issue 2, item 5) --
+# -- accuracy at the default steps (README, 'How exact') --
 
 BOXES = {"single link": 0.2, "arm": 0.5}
 """Eqs (12) and (17)."""
@@ -77,7 +78,7 @@ CONDITIONS = [
 
 
 @pytest.mark.parametrize(("name", "start", "target", "duration"), CONDITIONS)
-def test_default_steps_are_as_accurate_as_the_issue_asks(plants, name, start, target, duration):
+def test_default_steps_are_as_accurate_as_stated(plants, name, start, target, duration):
     # F2 within 1e-5 relative and W at arrival within 1e-7 m of CVODES, coefficients in the box.
     task = PointToPoint(plants[name], target, duration, start=start)
     random, profile, box = np.random.default_rng(20), CycloidPolynomial(6), BOXES[name]
@@ -141,13 +142,37 @@ def test_a_move_of_too_many_swings_is_named():
         default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 1e5))
 
 
+def test_the_longest_move_is_accepted():
+    # Two steps a radian, 20,000 of them: 10,000 radians of 10.43 rad/s.
+    plant = SingleLinkManipulator()
+    assert default_steps(PointToPoint(plant, 1.0, 958.0)) == 19984
+    with pytest.raises(ValueError, match="resolves up to 10000: give a shorter duration"):
+        default_steps(PointToPoint(plant, 1.0, 959.0))
+
+
 def test_a_rollout_says_how_many_steps_it_took():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
     assert rollout(task, PLAIN, []).steps == LEAST_STEPS
     assert rollout(task, PLAIN, [], steps=50).steps == 50
+    assert rollout(task, PLAIN, [], steps=1).steps == 1
 
 
-@pytest.mark.parametrize("steps", [-5, 2.5, math.nan])
+def test_a_simulation_in_symbols_cannot_be_changed():
+    plant, a = SingleLinkManipulator(), ca.SX.sym("a", 1)
+    symbols = symbolic_rollout(plant, CycloidPolynomial(1), [a], [0.0, 1.0, 0.8], 2)
+    with pytest.raises(FrozenInstanceError):
+        symbols.h = 0.1
+
+
+def test_a_rollout_cannot_be_changed():
+    found = rollout(PointToPoint(SingleLinkManipulator(), 1.0, 0.8), PLAIN, [], steps=2)
+    with pytest.raises(FrozenInstanceError):
+        found.steps = 3
+    with pytest.raises(FrozenInstanceError):
+        found.motion.energy = 0.0
+
+
+@pytest.mark.parametrize("steps", [0, -5, 2.5, math.nan])
 def test_steps_that_are_not_a_positive_whole_number_are_named(steps):
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
     with pytest.raises(ValueError, match=f"steps is {steps}"):

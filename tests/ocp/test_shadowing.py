@@ -17,23 +17,28 @@ def test_the_packages_own_modules_are_not_refused():
     refuse_shadow("ocp")
 
 
-@pytest.mark.parametrize("shadow", ["models.py", "models/__init__.py", "models/mine.py"])
-def test_a_users_models_beside_the_script_are_named(tmp_path, shadow):
-    file = tmp_path / shadow
+def _import_beside(file):
+    """Import ocp in a script beside a file of the user's."""
     file.parent.mkdir(exist_ok=True)
     file.write_text("x = 1\n")
-    script = tmp_path / "script.py"
+    script = file.parents[file.parent.name == "models"] / "script.py"
     script.write_text("import ocp\n")  # the script's own folder comes first on the path
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    run = subprocess.run(
+    return subprocess.run(
         [sys.executable, script], capture_output=True, text=True, check=False, env=environment
     )
-    if shadow == "models/mine.py":
-        # A folder without __init__.py does not come before a package further on.
-        assert run.returncode == 0, run.stderr
-        return
+
+
+@pytest.mark.parametrize("shadow", ["models.py", "models/__init__.py"])
+def test_a_users_models_beside_the_script_are_named(tmp_path, shadow):
+    run = _import_beside(tmp_path / shadow)
     assert run.returncode != 0
     last = run.stderr.strip().splitlines()[-1]
     assert last.startswith("ImportError: ")
-    assert str(file) in last
+    assert str(tmp_path / shadow) in last
     assert "rename" in last
+
+
+def test_a_users_folder_without_an_init_does_not_come_before_the_package(tmp_path):
+    run = _import_beside(tmp_path / "models" / "mine.py")
+    assert (run.returncode, run.stderr) == (0, "")

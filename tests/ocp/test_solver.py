@@ -1,4 +1,4 @@
-"""The gradient answer: the issue's figures, limits, determinism, optimality, users' own parts."""
+"""The gradient answer: the paper's moves, limits, determinism, optimality, users' own parts."""
 
 import itertools
 import math
@@ -38,10 +38,9 @@ ROWS = {
     "arm, -pi/2 to pi/4 in 1.0 s": ("arm", -pi / 2, pi / 4, 1.0, 0.5),
     "arm, -pi/2 to pi/2 in 1.2 s": ("arm", -pi / 2, pi / 2, 1.2, 0.5),
 }
-# F2 that the issue asks for in the box (item 6).
+# F2 in the box (docs/physics.md, 'The published optima are not optimal'), rounded up.
 ASKED = dict(zip(ROWS, (0.0445, 0.2199, 0.1591, 0.1316, 0.1379, 0.1954), strict=True))
-# F2 of another gradient solve (physics.md, 'The published optima are not optimal'): in the box and
-# without it, each with its last digit.
+# F2 of another optimiser (the same table): in the box and without it, each with its last digit.
 IN_BOX = dict(zip(ROWS, ("0.0445", "0.220", "0.159", "0.1315", "0.138", "0.195"), strict=True))
 WITHOUT = dict(zip(ROWS, ("0.0237", "0.142", "0.121", "0.124", "0.136", "0.193"), strict=True))
 # F2 printed in Tables 3 and 6, 'Present'.
@@ -64,11 +63,11 @@ def _digit(text):
     return 10.0 ** -len(text.partition(".")[2])
 
 
-# -- the issue's figures --
+# -- the paper's moves --
 
 
 @pytest.mark.parametrize("row", ROWS)
-def test_the_energy_that_the_issue_asks_for_is_reached_in_the_papers_box(planned, row):
+def test_the_least_energy_is_reached_in_the_papers_box(planned, row):
     plan = planned(row, in_box=True)
     verified = resimulate(plan.task, plan.profile, plan.coefficients)
     assert verified.energy <= ASKED[row]
@@ -109,7 +108,7 @@ def test_a_plans_figures_are_those_of_the_other_integrator(planned, row):
 
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_more_terms_cost_less(tasks, solved, name):
-    # A family of more terms contains those of fewer; physics.md: N = 8 goes lower than 6.
+    # A family of more terms contains those of fewer; docs/physics.md: N = 8 goes lower than 6.
     energies = [solved(tasks[name], terms).energy for terms in (2, 4, 6, 8)]
     for more, fewer in itertools.pairwise(reversed(energies)):
         assert more < fewer
@@ -149,7 +148,7 @@ def test_no_neighbour_that_arrives_at_rest_costs_less(tasks, solved, name):
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_other_random_starts_end_at_the_same_energy(tasks, solved, seed):
-    # physics.md: 'a gradient solve from random starts always ended at the same point'.
+    # Else a plan would depend on luck.
     for name, box in (("single link", 0.2), ("arm", 0.5)):
         usual = solved(tasks[name], bound=box)
         other = solved(tasks[name], bound=box, starts=2, seed=seed)
@@ -214,7 +213,7 @@ def test_starts_are_the_plain_cycloid_and_random_ones_in_the_box(bound, spread):
 
 
 def test_a_guess_is_improved(tasks, solved):
-    # Table 4, N = 6, a_5 mended: 0.14915 J (physics.md) becomes 0.1315 J in the same box.
+    # Table 4, N = 6, a_5 mended: 0.14915 J (docs/physics.md) becomes 0.1315 J in the same box.
     paper = [-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-2, -2.377e-1]
     plan = plan_move(tasks["arm"], bound=0.5, starts=1, guess=paper)
     assert plan.energy == pytest.approx(solved(tasks["arm"], bound=0.5).energy, rel=1e-5)
@@ -344,7 +343,7 @@ def test_six_terms_by_default(tasks, solved):
 
 
 def test_a_users_plant_of_two_modes_arrives_at_rest(tasks, solved):
-    # physics.md's third plant and move: 0 to pi/2 in 0.9 s.
+    # docs/physics.md's third plant and move: 0 to pi/2 in 0.9 s.
     plan = solved(tasks["two links"])
     after = plan.trajectory(np.linspace(0.9, 1.9, 200))
     assert np.abs(after.tips).max() < 1e-7
@@ -398,7 +397,7 @@ class _Waves(JointProfile):
 def test_a_users_profile_is_planned_with_and_kept(tasks, tmp_path):
     plan = plan_move(tasks["single link"], _Waves(5), starts=2)
     assert plan.residual < 1e-7
-    assert plan.energy < 0.0911  # the plain cycloid's 0.09115 J (physics.md), which also rings
+    assert plan.energy < 0.0911  # the plain cycloid's 0.09115 J (docs/physics.md), which also rings
     plan.save(tmp_path / "plan.json")
     assert Plan.load(tmp_path / "plan.json") == plan
 

@@ -195,7 +195,7 @@ def test_scales_divide_states_and_quantities(tasks):
 
 
 def test_one_program_serves_every_move(plants):
-    # Start, target and duration are parameters (design.md, rule 9).
+    # Start, target and duration are parameters.
     profile, steps = CycloidPolynomial(TERMS), 20
     program = NonlinearProgram(plants["arm"], profile, steps, (), 0, {"print_level": 0})
     a = np.array([0.1, -0.2, 0.15])

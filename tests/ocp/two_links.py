@@ -1,7 +1,7 @@
 """A user's plant in one file: two flexible links of different frequency on one hub.
 
 Not in the package. Equations and identified coefficients (theoretical value times an identified
-factor) from physics.md, 'A third plant', the kind of the paper's ref. [25].
+factor) from docs/physics.md, 'A third plant', the kind of the paper's ref. [25].
 """
 
 from collections.abc import Sequence
@@ -18,19 +18,19 @@ class TwoLinksOnOneHub(Plant):
     name: ClassVar[str] = "two-links-on-one-hub"
     modes: ClassVar[int] = 2
 
-    omega1: float = parameter(12.68 * 0.993, "rad/s", "physics.md")
-    zeta1: float = parameter(15.49e-3 * 1.214, "-", "physics.md")
-    a1: float = parameter(0.2266 * 0.984, "m", "physics.md")
-    b1: float = parameter(2.004e-3 * 1.020, "-", "physics.md")
-    omega2: float = parameter(10.71 * 0.993, "rad/s", "physics.md")
-    zeta2: float = parameter(14.27e-3 * 1.071, "-", "physics.md")
-    a2: float = parameter(0.2570 * 1.003, "m", "physics.md")
-    b2: float = parameter(5.822e-3 * 1.006, "-", "physics.md")
-    g1: float = parameter(2.996e-2 * 1.016, "kg m^2", "physics.md")
-    g2: float = parameter(6.652e-2 * 1.018, "kg m", "physics.md")
-    g3: float = parameter(5.237e-2 * 1.052, "kg m", "physics.md")
-    c: float = parameter(4.202e-2 * 1.131, "N m s", "physics.md")
-    phi: float = parameter(2.7244, "-", "clamped-free mode shape at the tip, physics.md")
+    omega1: float = parameter(12.68 * 0.993, "rad/s", "docs/physics.md")
+    zeta1: float = parameter(15.49e-3 * 1.214, "-", "docs/physics.md")
+    a1: float = parameter(0.2266 * 0.984, "m", "docs/physics.md")
+    b1: float = parameter(2.004e-3 * 1.020, "-", "docs/physics.md")
+    omega2: float = parameter(10.71 * 0.993, "rad/s", "docs/physics.md")
+    zeta2: float = parameter(14.27e-3 * 1.071, "-", "docs/physics.md")
+    a2: float = parameter(0.2570 * 1.003, "m", "docs/physics.md")
+    b2: float = parameter(5.822e-3 * 1.006, "-", "docs/physics.md")
+    g1: float = parameter(2.996e-2 * 1.016, "kg m^2", "docs/physics.md")
+    g2: float = parameter(6.652e-2 * 1.018, "kg m", "docs/physics.md")
+    g3: float = parameter(5.237e-2 * 1.052, "kg m", "docs/physics.md")
+    c: float = parameter(4.202e-2 * 1.131, "N m s", "docs/physics.md")
+    phi: float = parameter(2.7244, "-", "clamped-free mode shape at the tip, docs/physics.md")
 
     def modal_accelerations(
         self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]

@@ -128,7 +128,7 @@ def test_the_json_file_holds_the_plan_in_si_units(planned):
     assert len(document["coefficients"]) == 6
     assert document["limits"] == {"torque": 0.4}
     assert 0 <= document["residual"] < 1e-8  # README, 'How exact'
-    assert document["energy"] > 0.13  # above the least without a limit, 0.136 J in physics.md
+    assert document["energy"] > 0.13  # above the least without a limit, 0.136 J in docs/physics.md
     assert document["diagnostics"]["peak_torque"] <= 0.4 * 1.001
     settings = document["provenance"]["settings"]
     assert (settings["starts"], settings["seed"]) == (2, 3)
@@ -158,8 +158,8 @@ def test_the_picture_is_one(planned):
 def test_given_coefficients_are_evaluated(call):
     code, out, err = call(f"evaluate single-link --target pi/6 --duration 0.8 {TWO_TERMS}")
     assert (code, err) == (0, "")
-    assert "0.062973" in out  # physics.md: 0.06297 J
-    assert "0.256 mm" in out  # physics.md: max |W| 1.12e-4 m, times 2.28
+    assert "0.062973" in out  # docs/physics.md: 0.06297 J
+    assert "0.256 mm" in out  # docs/physics.md: max |W| 1.12e-4 m, times 2.28
     assert "not optimised" in out
 
 
@@ -242,9 +242,9 @@ def test_help_shows_examples(call, command, flag):
     assert "\\b" not in out  # click's mark for lines that it must not fill
 
 
-def test_help_names_every_option_of_the_issue(call):
+def test_help_names_every_option(call):
     _, out, _ = call("plan --help")
-    options = (  # issue 2, item 8
+    options = (
         "start target duration terms bound residual-limit torque-limit speed-limit "
         "acceleration-limit deflection-limit starts seed output csv figure"
     )
@@ -352,7 +352,7 @@ BAD = [  # the line, the value that is named, the remedy
     (f"{PLAN} --seed -1", "seed is -1", "from 0 up"),
     (f"{PLAN} --method pso", "'pso'", "'vepso'"),
     (f"{PLAN} --method vepso --bound 0", "bound on the coefficients is 0", "give a positive"),
-    (f"{PLAN} --method vepso", "bound", "0.2"),  # issue 3: 'say which the paper used'
+    (f"{PLAN} --method vepso", "bound", "0.2"),  # the paper's, eq (12)
     (f"evaluate {MOVE} --coefficients=0.1,nan", "coefficient 2 is 'nan'", "give finite numbers"),
     (f"evaluate {MOVE} --coefficients=inf", "coefficient 1 is 'inf'", "give finite numbers"),
     (f"evaluate {MOVE} --coefficients=0.1,,2", "coefficient 2 is ''", "separated by commas"),
@@ -374,7 +374,7 @@ FRONT = f"front {MOVE} --method nsga2"
 @pytest.mark.parametrize(
     ("line", "value", "remedy"),
     [
-        (FRONT, "bound", "0.2"),  # issue 3: 'say which the paper used'
+        (FRONT, "bound", "0.2"),  # the paper's, eq (12)
         (f"{FRONT} --bound nan", "nan", "give a finite number"),
         (f"{FRONT} --bound 0.2 --population 0", "population is 0", "give"),
         (f"{FRONT} --bound 0.2 --generations 0", "generations is 0", "give"),

@@ -124,7 +124,7 @@ def test_the_picture_holds_floor_and_papers_points(front_of):
     fronts = [front_of([(0, 0.2), (5, 0.1)], m, task=task, terms=6) for m in ("nsga2", "vepso")]
     fronts[1] = front_of([(1, 0.3)], "vepso", task=task, terms=6)
     (point,) = paper_points(task, {6})
-    # physics.md: 0.1492 J for Table 4, N = 6, with a_5 mended
+    # docs/physics.md: 0.1492 J for Table 4, N = 6, with a_5 mended
     assert point.energy == pytest.approx(0.1492, rel=1e-3)
     figure = comparison_figure(compare(fronts, floor=0.09), [point])
     for axis in figure.axes[:2]:

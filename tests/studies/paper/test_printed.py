@@ -85,7 +85,7 @@ def test_coefficients_are_those_of_tables_1_and_4():
 
 
 def test_one_exponent_is_mended_and_nothing_else():
-    # physics.md, 'Misprints': Table 4, N = 6: a_5 is -2.993e-2.
+    # docs/physics.md, 'Misprints': Table 4, N = 6: a_5 is -2.993e-2.
     ((condition, terms), mended), *others = MENDED.items()
     assert others == []
     assert (*described(condition), terms) == (*HALF, 6)

@@ -51,7 +51,7 @@ def test_a_plan_alone_is_drawn_over_the_plain_cycloid_of_its_task(figure, plan, 
     tips = [line.get_ydata() for line in motions(figure.axes[2])]
     times = motions(figure.axes[2])[0].get_xdata()
     after = times >= plan.task.duration
-    # In millimetres; 2.28 * 33.82 mm is the ringing in physics.md's table.
+    # In millimetres; 2.28 * 33.82 mm is the ringing in docs/physics.md's table.
     assert np.abs(tips[0][after]).max() == pytest.approx(2.28 * 33.82, rel=1e-3)
     assert np.abs(tips[1][after]).max() < 1e-3
     assert cycloid.residual == pytest.approx(np.abs(tips[0][after]).max() * 1e-3, rel=1e-3)

@@ -46,7 +46,7 @@ def test_nothing_is_below_the_floor(reproduction, condition):
     found = multiples(reproduction, condition)
     assert min(m.lower for m in found) > 1
     gradient = [m.median for m in found if m.series == FREE]
-    assert gradient[-1] < 1.3  # ten terms are near it: physics.md, 'N = 8 and 10 go lower'
+    assert gradient[-1] < 1.3  # ten terms are near it: docs/physics.md, 'N = 8 and 10 go lower'
     assert gradient == sorted(gradient, reverse=True)
 
 

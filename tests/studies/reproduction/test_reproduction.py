@@ -37,7 +37,7 @@ LAST_DIGIT = {2: 1e-4, 5: 1e-3}
 ROUNDED = 1 + 1e-6
 """Room for two solves of one problem to end at the same optimum."""
 
-# physics.md, 'What the printed coefficients give': F2 [J] and max |W| [m] by DOP853 (rtol 1e-10);
+# docs/physics.md, 'What the printed coefficients give': F2 [J] and max |W| [m] by two integrators;
 # W times phi_l, 2.28 and 0.508 there, is the tip.
 PRINTED = {
     (SINGLE_LINK_SIXTH, 0): (0.09115, 2.28 * 3.382e-2),
@@ -49,9 +49,8 @@ PRINTED = {
     (ARM_HALF, 4): (0.16525, 0.508 * 2.53e-4),
     (ARM_HALF, 6): (0.15465, 0.508 * 3.11e-3),
 }
-# Issue 2, item 6: what N = 6 must reach in the paper's box [J]; and physics.md, 'The published
-# optima are not optimal': what it reaches without one [J], 0.0237, 0.142, 0.121, 0.124, 0.136 and
-# 0.193 there, so that half a unit of the last digit is added.
+# docs/physics.md, 'The published optima are not optimal': what N = 6 must reach in the paper's box
+# and without one [J], as another optimiser did; rounded up.
 GRADIENT = {
     SINGLE_LINK_SIXTH: (0.0445, 0.02375),
     SINGLE_LINK_HALF_1_0: (0.2199, 0.1425),
@@ -111,7 +110,7 @@ def test_printed_coefficients_are_evaluated_where_there_are_any(reproduction):
 def test_printed_coefficients_give_the_printed_energy(reproduction, condition, terms):
     result = reproduction.result(condition, terms)
     # To one unit of the last digit, not half: Table 2 prints 0.0629 and 0.0515 J where its own
-    # coefficients give 0.06297 and 0.05143 J, by physics.md's integrator as by this one.
+    # coefficients give 0.06297 and 0.05143 J, by both integrators of docs/physics.md.
     assert abs(result.printed.energy - result.row.energy) < LAST_DIGIT[result.row.table]
 
 
@@ -119,7 +118,7 @@ def test_the_misprint_agrees_only_mended(reproduction):
     result = reproduction.result(ARM_HALF, 6)
     assert abs(result.printed.energy - result.row.energy) > 5 * LAST_DIGIT[5]
     assert abs(result.mended.energy - result.row.energy) < LAST_DIGIT[5] / 2
-    # physics.md, 'Misprints': 0.1492 J and max |W| = 6.6e-4 m
+    # docs/physics.md, 'Misprints': 0.1492 J and max |W| = 6.6e-4 m
     assert result.mended.energy == pytest.approx(0.1492, abs=0.5e-4)
     assert result.mended.residual == pytest.approx(0.508 * 6.6e-4, rel=0.01)
 
@@ -149,7 +148,7 @@ def test_the_gradient_answers_are_at_rest_on_arrival_and_verified(reproduction):
     plans += reproduction.more_terms.values()
     for plan in plans:
         assert plan.status.solved
-        assert plan.residual < 1e-8  # README, 'How exact'; issue 2, item 6, asks for 1e-7 m
+        assert plan.residual < 1e-8  # README, 'How exact'
         assert abs(plan.verification.energy_difference) < 1e-3 * plan.energy
 
 
@@ -238,7 +237,7 @@ def test_each_plant_is_searched_as_in_the_paper(reproduction):
 def test_a_search_is_judged_at_the_residual_of_the_papers_own_coefficients(reproduction):
     for result in reproduction.rows:
         own = result.mended_or_printed
-        if own is None:  # issue 3, item 7: else that of the N = 6 row for the same plant, mended
+        if own is None:  # else that of the N = 6 row for the same plant, mended
             single = result.row.condition.task.plant == SINGLE_LINK_SIXTH.task.plant
             six = reproduction.result(SINGLE_LINK_SIXTH if single else ARM_HALF, 6)
             own = six.mended or six.printed
@@ -290,7 +289,7 @@ def test_the_papers_claims_in_its_order_with_their_verdicts(reproduction):
         ["The", "proposed"],
         ["The", "tuned"],
     ]
-    # physics.md: N = 8 and 10 go lower, and the published optima are not optimal; the rest stands.
+    # docs/physics.md, 'The published optima are not optimal', and N = 6 is not the end.
     supported, refuted = "supported", "refuted"
     assert [claim.verdict for claim in verdicts] == [
         supported, supported, refuted, supported, refuted

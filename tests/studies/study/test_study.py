@@ -197,7 +197,7 @@ def test_findings_are_those_of_the_fronts(small):
     # at least as good as what every front holds
     assert best <= min(front.cheapest(1e-3).energy for front in fronts.values()
                        if front.stillest().residual <= 1e-3)  # fmt: skip
-    # physics.md: the printed coefficients for N = 2 take 0.06297 J with 0.256 mm
+    # docs/physics.md: the printed coefficients for N = 2 take 0.06297 J with 0.256 mm
     (claim,) = re.findall(r"N = 2, takes 0.06297 J at 0.256 mm: (\S+) % more", words)
     at_paper = min(front.cheapest(2.56e-4).energy for front in fronts.values()
                    if front.stillest().residual <= 2.56e-4)  # fmt: skip
