@@ -155,7 +155,7 @@ class Condensed:
         return function.mapaccum(f"{function.name()}_all", self.steps)(first, *arguments)
 
     def _march(self, a: ca.MX, move: ca.MX, scale: ca.MX) -> tuple[list[ca.MX], ca.MX, ca.MX]:
-        """What every step starts from (state, inner, length, move, scale); states after; outputs."""
+        """What a step starts from (state, inner, length, move, scale); states after it; outputs."""
         inner, lengths = self._along(self._inner, [0, 2], a, self._index, move)
         same = [ca.repmat(value, 1, self.steps) for value in (move, scale)]
         rest = ca.DM.zeros(self.states)

@@ -1,9 +1,10 @@
 """From a task to a nonlinear program over all joint motions.
 
 With no profile: on every interval the acceleration (or the jerk) is an unknown of its own beside
-the joint's angle and speed and the modes before the interval, so that nothing is dense. Intervals and limits are numbers of the compiled program. The power has a slack at
-the three Gauss nodes of every interval, where it is smooth: sampled only at the grid, the solver
-would hide energy between the samples.
+the joint's angle and speed and the modes before the interval, so that nothing is dense. Intervals
+and limits are numbers of the compiled program. The power has a slack at the three Gauss nodes of
+every interval, where it is smooth: sampled only at the grid, the solver would hide energy between
+the samples.
 """
 
 from __future__ import annotations

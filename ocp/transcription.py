@@ -156,7 +156,7 @@ class NonlinearProgram:
         limits : mapping of str to float
             Largest absolute values, scaled; a quantity without an entry is free.
         parameters : ndarray
-            Move, scales, weights of energy and peak, what is added to the state on arrival, residual
+            Move, scales, weights of energy and peak, correction of the state on arrival, residual
             matrix by columns.
 
         Returns
