@@ -25,6 +25,9 @@ error of the fixed steps, and the better of the two is taken."""
 _SCOUTS = 12
 """Most steps along the front, about, that tell how its points are to be spaced."""
 
+_STRIDE = 4
+"""Points between those at which the sweep back compares, as long as both sweeps agree."""
+
 _Points = tuple[list[FrontPoint | FailedPoint], bool]
 """Points, and whether these are all."""
 _Piece = tuple[list[float], NDArray[np.float64], NDArray[np.float64]]
@@ -184,17 +187,11 @@ class _Stretch:
         return points, complete and all_checked
 
     def _sweep(self, above: Guess, below: Guess) -> None:
-        order, doubtful = range(len(self.limits)), set[int]()
-        before_sweeps = self.sweep.iterations
+        order, before_sweeps = range(len(self.limits)), self.sweep.iterations
         for i in order:
             found = self._try(i, above, done=(i + 1) // 2)
             above = found if found.status.solved else above
-        for i in reversed(order):
-            before = self.best[i]
-            found = self._try(i, below, done=len(order) - (i + 1) // 2)
-            below = found if found.status.solved else below
-            if before is None or _differ(before, found):
-                doubtful.add(i)
+        doubtful = self._back(below)
         # many terms have many minima that differ by a hair: at most double the sweeps' work
         most = 2 * self.sweep.iterations - before_sweeps
         for i, guess in product(sorted(doubtful), self.sweep.guesses):
@@ -202,8 +199,31 @@ class _Stretch:
                 self._try(i, guess)
         self._carry_on(doubtful, most)
 
+    def _back(self, below: Guess) -> set[int]:
+        """Sweep back from the still end; the points at which it ended elsewhere.
+
+        Where it comes to the same motion as the sweep before it takes long strides, since both
+        would go on alike; where it finds a better one it goes back to what it left out.
+        """
+        count, doubtful = len(self.limits), set[int]()
+        i, last = count - 1, count
+        while i >= 0:
+            before = self.best[i]
+            found = self._try(i, below, done=count - (i + 1) // 2)
+            below = found if found.status.solved else below
+            improved = self.best[i] is not before
+            if improved or before is None or _differ(before, found):
+                doubtful.add(i)
+            if improved:
+                for k in range(i + 1, last):
+                    self._try(k, below)
+            last = i
+            i -= 1 if improved else _STRIDE
+        return doubtful
+
     def _try(self, i: int, guess: Guess, done: int | None = None) -> Solution:
-        found, best = self.sweep.solve(guess, self.limits[i]), self.best[i]
+        best = self.best[i]
+        found = self.sweep.solve(guess, self.limits[i], known=best)
         if best is None or better(found, best):
             self.best[i] = found
         self.done = self.done if done is None else done

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -51,7 +51,7 @@ def _warm_options(barrier: float) -> dict[str, str | int | float]:
     }
 
 
-_BESIDE = _warm_options(1e-6)
+_BESIDE = {**_warm_options(1e-6), "mu_oracle": "quality-function"}
 """From the solution beside it a point of a front takes a third of the iterations with these."""
 _RESOLVED = {**OPTIONS, "tol": 1e-8}
 _FINISH = {**_warm_options(1e-8), "mu_strategy": "monotone", "max_iter": 15}
@@ -63,6 +63,7 @@ _SLACK_ROOM = 1e-2
 _REACHES = (0.1, 0.003)
 """How far coefficients may move from the sampled minimum, against 1 or their own size; where zeros
 of the power meet the solver loses its way beyond the second."""
+_SAME = 1e-4
 _KEPT = 1e-7
 """A motion that passes a scaled constraint by no more than this keeps it."""
 
@@ -164,6 +165,8 @@ class TaskProgram:
         limits: Mapping[str, float],
         bound: float | None,
         minimise: Mapping[str, float] = LEAST_ENERGY,
+        known: Solution | None = None,
+        thorough: bool = True,
     ) -> Solution:
         """Run the solver from one vector of coefficients, or on from another solution.
 
@@ -179,6 +182,10 @@ class TaskProgram:
             Largest absolute coefficient.
         minimise : mapping of str to float
             Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is made least.
+        known : Solution, optional
+            What another start led to: it is returned where this start leads there, too.
+        thorough : bool
+            Whether to try again, nearer, where the resolved energy's minimum was not reached.
 
         Returns
         -------
@@ -191,7 +198,11 @@ class TaskProgram:
         else:
             start = run.start(guess.coefficients if isinstance(guess, Solution) else guess)
         found = run.solution(run.form, run.stop(run.form, start))
-        return run.finished(found) if run.form.sampled and found.status.solved else found
+        if not (run.form.sampled and found.status.solved):
+            return found
+        if known is not None and _same_minimum(found, known):
+            return replace(known, iterations=found.iterations)
+        return run.finished(found, _REACHES if thorough else _REACHES[:1])
 
     @keep_interrupts()
     def corrected(
@@ -326,14 +337,14 @@ class _Run:
             point=stop.point,
         )
 
-    def finished(self, found: Solution) -> Solution:
+    def finished(self, found: Solution, reaches: Sequence[float]) -> Solution:
         """Go on from the sampled minimum to that of the resolved energy.
 
         What is found must keep the constraints and be better, else the given solution stands.
         Status and point stay those of the sampled program, from which a neighbouring solve starts.
         """
         best = found
-        for reach in _REACHES:
+        for reach in reaches:
             stop = self.stop(self.resolved, best.finish or self._resolved_start(found), reach)
             best = replace(best, iterations=best.iterations + stop.iterations)
             after = self._after(best, stop)
@@ -395,6 +406,13 @@ class _Run:
         return sum(
             w * values[name] / self.program.reference[name] for name, w in self.weights.items()
         )
+
+
+def _same_minimum(one: Solution, other: Solution) -> bool:
+    """Whether the sampled program ended at the same place."""
+    size = len(one.coefficients)
+    here, there = one.point.unknowns[:size], other.point.unknowns[:size]
+    return one.form == other.form and np.allclose(here, there, rtol=_SAME, atol=_SAME)
 
 
 def _residual_rows(task: PointToPoint) -> NDArray[np.float64]:
