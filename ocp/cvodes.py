@@ -192,7 +192,8 @@ class _Rest:
 
 def _rest(task: PointToPoint) -> _Rest:
     samples = math.ceil(task.residual_window * fastest_mode(task) / _RADIANS_A_SAMPLE)
-    return _from_unit_states(task.plant, task.target, task.residual_window, max(1, samples))
+    with cvodes_for("'s residual vibration"):
+        return _from_unit_states(task.plant, task.target, task.residual_window, max(1, samples))
 
 
 @lru_cache(maxsize=16)
@@ -212,16 +213,14 @@ def _from_unit_states(plant: Plant, target: float, window: float, samples: int) 
 @keep_interrupts()  # casadi loses a Ctrl-C
 def residual_of(task: PointToPoint, arrival: NDArray[np.float64]) -> float:
     """Largest absolute tip displacement [m] of `rest_of`."""
-    with cvodes_for("'s residual vibration"):
-        rest = _rest(task)
+    rest = _rest(task)
     return float(np.abs(rest.tips @ (rest.long @ arrival).T).max())
 
 
 @keep_interrupts()
 def rest_of(task: PointToPoint, arrival: ArrayLike) -> Trajectory:
     """What happens in the residual window, from W (m) and then W' (m/s) at arrival, by CVODES."""
-    with cvodes_for("'s residual vibration"):
-        rest = _rest(task)
+    rest = _rest(task)
     states = (rest.short @ (rest.long @ np.asarray(arrival)).T).transpose(1, 2, 0)
     # The last short time is the first of the next long one, except in the end.
     joined = np.hstack([states[:, :, :-1].reshape(len(states), -1), states[:, -1:, -1]])
