@@ -197,6 +197,7 @@ def _rest(task: PointToPoint) -> _Rest:
 
 
 @lru_cache(maxsize=16)
+@keep_interrupts()  # casadi loses a Ctrl-C, and what it left unfinished would be kept here
 def _from_unit_states(plant: Plant, target: float, window: float, samples: int) -> _Rest:
     size, short = 2 * plant.modes, math.ceil(math.sqrt(samples))
     long = math.ceil(samples / short)
@@ -210,7 +211,6 @@ def _from_unit_states(plant: Plant, target: float, window: float, samples: int) 
     return _Rest(into, matrices[[0, *range(short, short + long - 1)]], tips)
 
 
-@keep_interrupts()  # casadi loses a Ctrl-C
 def residual_of(task: PointToPoint, arrival: NDArray[np.float64]) -> float:
     """Largest absolute tip displacement [m] of `rest_of`."""
     rest = _rest(task)

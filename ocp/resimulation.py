@@ -137,6 +137,7 @@ def _cvodes_along(coefficients: Sequence[float]) -> AbstractContextManager[None]
 
 
 @lru_cache(maxsize=16)
+@keep_interrupts()
 def _figures(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
     """(coefficients and move) -> extremes of the outputs, state at arrival, energy, net work."""
     begin, length = mesh(ca.DM(np.arange(steps)).T, steps)
