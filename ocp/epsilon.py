@@ -26,7 +26,8 @@ _SCOUTS = 12
 """Most steps along the front, about, that tell how its points are to be spaced."""
 
 _STRIDE = 4
-"""Points between those at which the sweep back compares, as long as both sweeps agree."""
+"""Points from one to the next at which the sweep back compares, as long as both sweeps agree, and
+at which random starts join where they do not; what is found better is carried on to the others."""
 
 _Points = tuple[list[FrontPoint | FailedPoint], bool]
 """Points, and whether these are all."""
@@ -95,7 +96,8 @@ def epsilon_front(
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = sweep.ends()
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
-    found.append(sweep.checked(ends.cheapest, {RESIDUAL_LIMIT: ends.cheapest.residual}))
+    asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
+    found.append(sweep.checked(ends.cheapest, asked, thorough=True))
     report(2, points)
     heard = _Heard(report, points)
     iterations, complete = 0, True
@@ -194,7 +196,7 @@ class _Stretch:
         doubtful = self._back(below)
         # many terms have many minima that differ by a hair: at most double the sweeps' work
         most = 2 * self.sweep.iterations - before_sweeps
-        for i, guess in product(sorted(doubtful), self.sweep.guesses):
+        for i, guess in product(sorted(doubtful)[::_STRIDE], self.sweep.guesses):
             if self.sweep.iterations < most:
                 self._try(i, guess)
         self._carry_on(doubtful, most)

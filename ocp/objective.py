@@ -53,6 +53,28 @@ def resolved_energy(
     return ca.sum2(h * _parted_energy(c, cubic, quartic, breaks))
 
 
+def sampling(parts: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Samples of the power on a step, from its values at the nodes.
+
+    Each of `parts` equal parts of the step has two samples, at its own Gauss nodes.
+
+    Parameters
+    ----------
+    parts : int
+        Number of parts.
+
+    Returns
+    -------
+    matrix : ndarray, shape (2 * parts, NODES)
+        What the quadratic through the nodes gives at the samples.
+    weights : ndarray, shape (2 * parts,)
+        Weights of the samples in the mean over the step.
+    """
+    within = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
+    x = ((np.arange(parts)[:, None] + within) / parts).ravel()
+    return x[:, None] ** np.arange(NODES) @ np.array(_TO_QUADRATIC), np.full(x.size, 1 / x.size)
+
+
 def _quadratic(power: Sequence[Expression]) -> list[Expression]:
     """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
     return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]
@@ -144,11 +166,12 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     five = np.clip(NODES * step - 1, 0, len(nodes) - 5) + np.arange(5)
     x = (nodes[five] - begin) / length
     to_quartic = np.linalg.inv(x[:, :, None] ** np.arange(5))
-    at = (five % NODES * steps + five // NODES).ravel(), np.repeat(step, 5)
+    # lists: casadi takes twenty times as long over arrays here
+    at = (five % NODES * steps + five // NODES).ravel().tolist(), np.repeat(step, 5).tolist()
     cubic, quartic = to_quartic[:, 3] + 2 * to_quartic[:, 4], to_quartic[:, 4]
     return (
-        ca.DM.triplet(*at, cubic.ravel(), len(nodes), steps),
-        ca.DM.triplet(*at, quartic.ravel(), len(nodes), steps),
+        ca.DM.triplet(*at, cubic.ravel().tolist(), len(nodes), steps),
+        ca.DM.triplet(*at, quartic.ravel().tolist(), len(nodes), steps),
     )
 
 

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import Plant
-from ocp.collocation import NODES
 from ocp.condensed import condensed
 from ocp.interrupts import keep_interrupts
+from ocp.objective import sampling
 from ocp.profile import JointProfile
 from ocp.residual import extreme_rows, residual_matrix
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
-from ocp.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop
+from ocp.transcription import PARTS, RESIDUAL, Form, NonlinearProgram, Point, Stop
 
 ENERGY = "energy"
 LEAST_ENERGY = {ENERGY: 1.0}
@@ -54,8 +54,19 @@ def _warm_options(barrier: float) -> dict[str, str | int | float]:
 _BESIDE = {**_warm_options(1e-6), "mu_oracle": "quality-function"}
 """From the solution beside it a point of a front takes a third of the iterations with these."""
 _RESOLVED = {**OPTIONS, "tol": 1e-8}
-_FINISH = {**_warm_options(1e-8), "mu_strategy": "monotone", "max_iter": 15}
-"""From the sampled minimum; where zeros of the power meet, more iterations gain nothing."""
+_FINISH = {
+    **_warm_options(1e-8),
+    "mu_strategy": "monotone",
+    "max_iter": 15,
+    "acceptable_tol": 1e3,
+    "acceptable_dual_inf_tol": 1e10,
+    "acceptable_constr_viol_tol": 1e-8,
+    "acceptable_compl_inf_tol": 1e-5,
+    "acceptable_obj_change_tol": 1e-7,
+    "acceptable_iter": 3,
+}
+"""From the sampled minimum. Where zeros of the power meet, second derivatives are of no more use:
+the iterations end when the energy has hardly changed three times."""
 _ROWS_AT_ONCE = 32
 """Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
 _SLACK_ROOM = 1e-2
@@ -292,8 +303,9 @@ class _Run:
         peak = [] if form.least is None else [self._peaks(arrival, outputs)[form.least]]
         power = np.array([energy])
         if form.sampled:
-            at_nodes = self.program.by_group(outputs)["power"].ravel(order="F")
-            power = np.append(np.maximum(at_nodes, 0), np.maximum(-at_nodes, 0)) + _SLACK_ROOM
+            at_nodes = self.program.by_group(outputs)["power"]
+            sampled = (sampling(PARTS)[0] @ at_nodes).ravel(order="F")
+            power = np.append(np.maximum(sampled, 0), np.maximum(-sampled, 0)) + _SLACK_ROOM
         return Point(np.concatenate([guess, peak, arrival if form.residual_rows else [], power]))
 
     def stop(self, form: Form, start: Point, reach: float = np.inf) -> Stop:
@@ -386,7 +398,7 @@ class _Run:
 
     def _resolved_start(self, found: Solution) -> Point:
         """The same point with one energy in the place of the power at the nodes."""
-        point, power = found.point, 2 * NODES * self.program.steps
+        point, power = found.point, 4 * PARTS * self.program.steps
         return Point(
             np.append(point.unknowns[:-power], found.energy / self.program.reference[ENERGY]),
             np.append(point.bound_multipliers[:-power], 0.0),

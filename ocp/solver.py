@@ -19,7 +19,7 @@ from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 from ocp.verification import MOST_STEPS, verified
 
-LEAST_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 24, 80, 8
+LEAST_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 32, 80, 8
 """Steps that a profile needs: more where more terms let the power change sign more often."""
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
@@ -118,7 +118,7 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = min(max(LEAST_STEPS, STEPS_A_TERM * (profile.size - 3)), MOST_LEAST_STEPS)
+    least = min(max(LEAST_STEPS, STEPS_A_TERM * (profile.size - 2)), MOST_LEAST_STEPS)
     steps = settings.steps or default_steps(task, least=least)
     if steps > MOST_STEPS and settings.steps is None:
         raise ValueError(

@@ -20,7 +20,7 @@ from ocp.provenance import SolveSettings
 from ocp.solver import first_steps, least_energy, start_coefficients
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
-from ocp.verification import STILL, verified
+from ocp.verification import ENOUGH_STEPS, MOST_STEPS, STILL, verified
 
 RESIDUAL_LIMIT = "residual_limit"
 Guess = NDArray[np.float64] | Solution
@@ -192,10 +192,11 @@ class Sweep:
             found, motion, self.steps = verified(
                 self.program, found, limits, bound, enough_steps=self.steps
             )
+            end, motion, _ = verified(self.program, found, limits, bound)
         except SolverFailedError:
             return None
-        self.iterations += found.iterations
-        return found, self._point(found, motion)
+        self.iterations += end.iterations
+        return found, self._point(end, motion)
 
     def _point(self, found: Solution, motion: Motion) -> FrontPoint:
         return FrontPoint(self.profile.checked(found.coefficients), motion.residual, motion.energy)
@@ -205,6 +206,7 @@ class Sweep:
         found: Solution,
         asked: Mapping[str, float],
         most_residual: float = np.inf,
+        thorough: bool = False,
     ) -> FrontPoint | FailedPoint:
         """Give a solution the figures of the independent integrator.
 
@@ -216,6 +218,8 @@ class Sweep:
             What was asked for.
         most_residual : float
             Largest residual [m] that the point may have; it may be a little off that asked for.
+        thorough : bool
+            Whether to take more steps where the solver did not settle at the minimum.
 
         Returns
         -------
@@ -227,7 +231,8 @@ class Sweep:
         try:
             point, motion, _ = verified(
                 self.program, found, limits, self.settings.bound,
-                most_steps=_MORE_STEPS * self.steps, enough_steps=self.steps, kept=kept,
+                most_steps=MOST_STEPS if thorough else _MORE_STEPS * self.steps,
+                enough_steps=ENOUGH_STEPS if thorough else self.steps, kept=kept,
             )  # fmt: skip
         except SolverFailedError as error:
             return FailedPoint(asked, str(error))

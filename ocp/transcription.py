@@ -4,9 +4,10 @@ Unknowns are the coefficients, the least peak where one is asked for, the state 
 residual is limited (its many rows then have few entries), and what the energy is made of. This
 comes in two forms of the same program:
 
-- sampled: the power at every Gauss node is the difference of two unknowns that are not negative,
-  and their sum is |power| there. The solver decides node by node, as in a linear program, and comes
-  to the minimum from far away in 15 to 30 iterations; but between the nodes energy can hide;
+- sampled: the power at six samples of every step is the difference of two unknowns that are not
+  negative, and their sum is |power| there. The solver decides sample by sample, as in a linear
+  program, and comes to the minimum from far away in 15 to 30 iterations; but between the samples a
+  little energy can hide;
 - resolved: one unknown is the energy with its sign changes resolved. Its second derivatives are
   exact where a solution is near, and unbounded where zeros of the power meet: a few iterations lead
   from the sampled minimum to the true one.
@@ -26,12 +27,15 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.collocation import GAUSS_WEIGHTS, NODES
+from ocp.collocation import NODES
 from ocp.condensed import Condensed
 from ocp.interrupts import keep_interrupts
+from ocp.objective import sampling
 from ocp.symbols import split
 
 RESIDUAL = "residual"
+PARTS = 3
+"""Parts of a step with two samples of the power each, in the sampled program."""
 Options = Mapping[str, str | int | float]
 
 
@@ -93,11 +97,12 @@ class NonlinearProgram:
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, motion: Condensed, form: Form, options: Options, warm_options: Options):
         self.motion, self.form = motion, form
+        self._sampling, self._weights = sampling(PARTS)
         self.sizes = {
             "coefficients": motion.size,
             "peak": 0 if form.least is None else 1,
             "arrival": motion.states if form.residual_rows else 0,
-            "power": 2 * NODES * motion.steps if form.sampled else 1,
+            "power": 2 * self._samples if form.sampled else 1,
         }
         """How many unknowns of each kind, in their order."""
         x = ca.MX.sym("x", self.unknowns)
@@ -131,6 +136,10 @@ class NonlinearProgram:
     def unknowns(self) -> int:
         """Number of unknowns."""
         return sum(self.sizes.values())
+
+    @property
+    def _samples(self) -> int:
+        return len(self._weights) * self.motion.steps
 
     def part(self, name: str) -> slice:
         """Where unknowns of one kind stand among all."""
@@ -184,16 +193,16 @@ class NonlinearProgram:
     def _energy(self, power: ca.MX) -> ca.MX:
         if not self.form.sampled:
             return power
-        above, below = ca.vertsplit(power, NODES * self.motion.steps)
-        return ca.dot(np.outer(self.motion.lengths, GAUSS_WEIGHTS).ravel(), above + below)
+        above, below = ca.vertsplit(power, self._samples)
+        return ca.dot(np.outer(self.motion.lengths, self._weights).ravel(), above + below)
 
     def _rows(
         self, values: Sequence[ca.MX], parts: Mapping[str, ca.MX], residual: ca.MX
     ) -> list[list[ca.MX]]:
         arrival, by_step = values
         if self.form.sampled:
-            above, below = ca.vertsplit(parts["power"], NODES * self.motion.steps)
-            rows = [[ca.vec(by_step[:NODES, :]) - above + below]]
+            above, below = ca.vertsplit(parts["power"], self._samples)
+            rows = [[ca.vec(self._sampling @ by_step[:NODES, :]) - above + below]]
         else:
             rows = [[self.motion.energy(by_step)[0] - parts["power"]]]
         rows.append([arrival - parts["arrival"] if self.form.residual_rows else arrival])
@@ -216,7 +225,7 @@ class NonlinearProgram:
         self, limits: Mapping[str, float]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         motion, form = self.motion, self.form
-        zeros = (NODES * motion.steps if form.sampled else 1) + motion.states
+        zeros = (self._samples if form.sampled else 1) + motion.states
         lower, upper = [np.zeros(zeros)], [np.zeros(zeros)]
         counts = {group.name: group.rows * motion.steps for group in self._limited}
         if form.residual_rows:
@@ -242,9 +251,11 @@ class NonlinearProgram:
     def _jacobian(self, inputs: tuple[ca.MX, ca.MX, ca.MX], residual: ca.MX) -> ca.MX:
         motion, form = self.motion, self.form
         found = motion.sensitivities(*inputs)
-        power, power_first = motion.of_group(found, "power")
-        count = power.numel()
+        _, power_first = motion.of_group(found, "power")
         if form.sampled:
+            count = self._samples
+            by_node = ca.reshape(power_first, NODES, motion.steps * motion.size)
+            power_first = ca.reshape(self._sampling @ by_node, count, motion.size)
             signs = ca.horzcat(-ca.DM.eye(count), ca.DM.eye(count))
             rows = [self._row(count, coefficients=power_first, power=signs)]
         else:
@@ -272,7 +283,7 @@ class NonlinearProgram:
     ) -> ca.Function:
         motion, form = self.motion, self.form
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
-        sizes = [NODES * motion.steps if form.sampled else 1, motion.states]
+        sizes = [self._samples if form.sampled else 1, motion.states]
         for group in self._limited:
             sizes += [group.rows * motion.steps] * (2 if group.name == form.least else 1)
         of_energy, of_arrival, *of_values, _ = split(
@@ -280,7 +291,8 @@ class NonlinearProgram:
         )
         bends = None
         if form.sampled:
-            of_outputs = [ca.reshape(of_energy, NODES, motion.steps)]
+            of_samples = ca.reshape(of_energy, len(self._weights), motion.steps)
+            of_outputs = [self._sampling.T @ of_samples]
         else:
             _, gradient, bends = motion.energy(motion.simulate(*inputs)[1])
             of_outputs, bends = [of_energy * gradient], of_energy * bends
