@@ -18,7 +18,7 @@ from ocp.profile import JointProfile
 from ocp.residual import extreme_rows, residual_matrix
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
-from ocp.transcription import PARTS, RESIDUAL, Form, NonlinearProgram, Point, Stop
+from ocp.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop, parts_of
 
 ENERGY = "energy"
 LEAST_ENERGY = {ENERGY: 1.0}
@@ -38,7 +38,7 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-_SAMPLED = {**OPTIONS, "tol": 1e-5, "mu_oracle": "probing"}
+_SAMPLED = {**OPTIONS, "tol": 1e-5}
 """What remains of the sampled program's error is much less than its own distance to the truth."""
 
 
@@ -51,7 +51,7 @@ def _warm_options(barrier: float) -> dict[str, str | int | float]:
     }
 
 
-_BESIDE = {**_warm_options(1e-6), "mu_oracle": "quality-function"}
+_BESIDE = _warm_options(1e-6)
 """From the solution beside it a point of a front takes a third of the iterations with these."""
 _RESOLVED = {**OPTIONS, "tol": 1e-8}
 _FINISH = {
@@ -304,7 +304,7 @@ class _Run:
         power = np.array([energy])
         if form.sampled:
             at_nodes = self.program.by_group(outputs)["power"]
-            sampled = (sampling(PARTS)[0] @ at_nodes).ravel(order="F")
+            sampled = (sampling(parts_of(self.program.steps))[0] @ at_nodes).ravel(order="F")
             power = np.append(np.maximum(sampled, 0), np.maximum(-sampled, 0)) + _SLACK_ROOM
         return Point(np.concatenate([guess, peak, arrival if form.residual_rows else [], power]))
 
@@ -398,7 +398,7 @@ class _Run:
 
     def _resolved_start(self, found: Solution) -> Point:
         """The same point with one energy in the place of the power at the nodes."""
-        point, power = found.point, 4 * PARTS * self.program.steps
+        point, power = found.point, 4 * parts_of(self.program.steps) * self.program.steps
         return Point(
             np.append(point.unknowns[:-power], found.energy / self.program.reference[ENERGY]),
             np.append(point.bound_multipliers[:-power], 0.0),

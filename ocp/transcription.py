@@ -4,7 +4,7 @@ Unknowns are the coefficients, the least peak where one is asked for, the state 
 residual is limited (its many rows then have few entries), and what the energy is made of. This
 comes in two forms of the same program:
 
-- sampled: the power at six samples of every step is the difference of two unknowns that are not
+- sampled: the power at samples of every step is the difference of two unknowns that are not
   negative, and their sum is |power| there. The solver decides sample by sample, as in a linear
   program, and comes to the minimum from far away in 15 to 30 iterations; but between the samples a
   little energy can hide;
@@ -34,9 +34,13 @@ from ocp.objective import sampling
 from ocp.symbols import split
 
 RESIDUAL = "residual"
-PARTS = 3
-"""Parts of a step with two samples of the power each, in the sampled program."""
+_PARTS = 96
 Options = Mapping[str, str | int | float]
+
+
+def parts_of(steps: int) -> int:
+    """Parts of a step that have two samples of the power each: fewer where steps are many."""
+    return max(1, _PARTS // steps)
 
 
 class Form(NamedTuple):
@@ -97,7 +101,7 @@ class NonlinearProgram:
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, motion: Condensed, form: Form, options: Options, warm_options: Options):
         self.motion, self.form = motion, form
-        self._sampling, self._weights = sampling(PARTS)
+        self._sampling, self._weights = sampling(parts_of(motion.steps))
         self.sizes = {
             "coefficients": motion.size,
             "peak": 0 if form.least is None else 1,
