@@ -71,7 +71,7 @@ _ROWS_AT_ONCE = 32
 """Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
 _SLACK_ROOM = 1e-2
 """How far the parts of the power start from zero, as a share of the peak power."""
-_REACHES = (0.1, 0.003)
+REACHES = (0.1, 0.003)
 """How far coefficients may move from the sampled minimum, against 1 or their own size; where zeros
 of the power meet the solver loses its way beyond the second."""
 _SAME = 1e-4
@@ -177,7 +177,7 @@ class TaskProgram:
         bound: float | None,
         minimise: Mapping[str, float] = LEAST_ENERGY,
         known: Solution | None = None,
-        thorough: bool = True,
+        reaches: Sequence[float] = REACHES,
     ) -> Solution:
         """Run the solver from one vector of coefficients, or on from another solution.
 
@@ -195,8 +195,9 @@ class TaskProgram:
             Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is made least.
         known : Solution, optional
             What another start led to: it is returned where this start leads there, too.
-        thorough : bool
-            Whether to try again, nearer, where the resolved energy's minimum was not reached.
+        reaches : sequence of float
+            How far the coefficients may move on from the sampled minimum, one try after another
+            until the minimum of the resolved energy is reached; none leaves them there.
 
         Returns
         -------
@@ -211,9 +212,16 @@ class TaskProgram:
         found = run.solution(run.form, run.stop(run.form, start))
         if not (run.form.sampled and found.status.solved):
             return found
-        if known is not None and _same_minimum(found, known):
+        if known is not None and same_minimum(found, known):
             return replace(known, iterations=found.iterations)
-        return run.finished(found, _REACHES if thorough else _REACHES[:1])
+        return run.finished(found, reaches)
+
+    @keep_interrupts()
+    def finished(
+        self, found: Solution, limits: Mapping[str, float], bound: float | None
+    ) -> Solution:
+        """Go on from a sampled minimum of the energy to the resolved one; arguments as before."""
+        return _Run.of(self, limits, bound, LEAST_ENERGY).finished(found, REACHES)
 
     @keep_interrupts()
     def corrected(
@@ -369,7 +377,7 @@ class _Run:
     def corrected(self, found: Solution) -> Solution:
         """Solve on from a solution for what is asked now, by the program that it is of."""
         if found.finish is not None:
-            stop = self.stop(self.resolved, found.finish, _REACHES[0])
+            stop = self.stop(self.resolved, found.finish, REACHES[0])
             after = self._after(replace(found, iterations=found.iterations + stop.iterations), stop)
             if after is not None:
                 return after
@@ -420,7 +428,7 @@ class _Run:
         )
 
 
-def _same_minimum(one: Solution, other: Solution) -> bool:
+def same_minimum(one: Solution, other: Solution) -> bool:
     """Whether the sampled program ended at the same place."""
     size = len(one.coefficients)
     here, there = one.point.unknowns[:size], other.point.unknowns[:size]

@@ -15,7 +15,7 @@ from ocp.front import FailedPoint, Front, FrontPoint, non_dominated, reference_c
 from ocp.interrupts import note_interrupts
 from ocp.objective import Motion
 from ocp.profile import JointProfile
-from ocp.program import LEAST_ENERGY, Solution, TaskProgram
+from ocp.program import LEAST_ENERGY, REACHES, Solution, TaskProgram
 from ocp.provenance import SolveSettings
 from ocp.solver import first_steps, least_energy, start_coefficients
 from ocp.task import PointToPoint
@@ -142,7 +142,7 @@ class Sweep:
         """
         limits = {**self.task.limits, RESIDUAL: residual_limit}
         found = self.program.solve(
-            guess, limits, self.settings.bound, minimise, known, thorough=False
+            guess, limits, self.settings.bound, minimise, known, reaches=REACHES[:1]
         )
         self.iterations += found.iterations
         if isinstance(guess, Solution) and not found.status.solved:
