@@ -6,10 +6,10 @@ import json
 import platform
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from models import __version__, known_plants
@@ -26,7 +26,7 @@ def versions() -> dict[str, str]:
     """Versions of what computed an answer."""
     return {
         "quietarm": __version__,
-        "casadi": metadata.version("casadi"),
+        "casadi": ca.__version__,
         "numpy": np.__version__,
         "python": platform.python_version(),
     }
