@@ -157,7 +157,13 @@ def task_from_document(document: Document) -> PointToPoint:
 
 
 def profile_to_document(profile: JointProfile) -> Document:
-    """A profile in JSON's types."""
+    """A profile in JSON's types; ValueError where its class could not be found by its name."""
+    own = type(profile)
+    if known_profiles().get(profile.name) is not own:
+        raise ValueError(
+            f"{own.__name__} has no name of its own, and {profile.name!r} would load as another "
+            "profile; set `name` in the class"
+        )
     return {"name": profile.name, **vars(profile)}
 
 
