@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.collocation import GAUSS_WEIGHTS, NODES
-from ocp.condensed import Condensed
+from ocp.condensed import Condensed, Inputs
 from ocp.interrupts import keep_interrupts
 from ocp.symbols import split
 
@@ -97,19 +97,20 @@ class NonlinearProgram:
             "coefficients": motion.size,
             "peak": 0 if form.least is None else 1,
             "arrival": motion.states if form.residual_rows else 0,
-            "power": 2 * NODES * motion.steps if form.sampled else 1,
+            "power": 2 * motion.nodes if form.sampled else 1,
         }
         """How many unknowns of each kind, in their order."""
         x = ca.MX.sym("x", self.unknowns)
         parts = dict(zip(self.sizes, split(x, list(self.sizes.values())), strict=True))
         sizes = [3, motion.scales, 2, motion.states, form.residual_rows * motion.states]
+        sizes.append(motion.basis_size)
         p = ca.MX.sym("p", sum(sizes))
-        move, scale, weights, offset, residual = split(p, sizes)
+        move, scale, weights, offset, residual, basis = split(p, sizes)
         residual = ca.reshape(residual, form.residual_rows, motion.states)
-        inputs = (parts["coefficients"], move, scale)
+        inputs = Inputs(parts["coefficients"], move, scale, basis)
         objective = weights[0] * self._energy(parts["power"]) + weights[1] * ca.sum1(parts["peak"])
-        arrival, by_step = motion.simulate(*inputs)
-        values = (arrival + offset, by_step)
+        arrival, outputs = motion.values(inputs)
+        values = (arrival + offset, outputs)
         g = ca.vertcat(*(row for rows in self._rows(values, parts, residual) for row in rows))
         first = ca.Function(
             "nlp_jac_g", [x, p], [g, self._jacobian(inputs, residual)], ["x", "p"], ["g", "jac_g_x"]
@@ -172,7 +173,7 @@ class NonlinearProgram:
         with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
             result = solver(
                 x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper,
-                p=parameters, **known,
+                p=np.append(parameters, self.motion.basis(parameters[:3])), **known,
             )  # fmt: skip
         point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
         g, stats = result["g"].full().ravel(), solver.stats()
@@ -184,22 +185,21 @@ class NonlinearProgram:
     def _energy(self, power: ca.MX) -> ca.MX:
         if not self.form.sampled:
             return power
-        above, below = ca.vertsplit(power, NODES * self.motion.steps)
+        above, below = ca.vertsplit(power, self.motion.nodes)
         return ca.dot(np.outer(self.motion.lengths, GAUSS_WEIGHTS).ravel(), above + below)
 
     def _rows(
         self, values: Sequence[ca.MX], parts: Mapping[str, ca.MX], residual: ca.MX
     ) -> list[list[ca.MX]]:
-        arrival, by_step = values
+        arrival, outputs = values
         if self.form.sampled:
-            above, below = ca.vertsplit(parts["power"], NODES * self.motion.steps)
-            rows = [[ca.vec(by_step[:NODES, :]) - above + below]]
+            above, below = ca.vertsplit(parts["power"], self.motion.nodes)
+            rows = [[outputs[0, :].T - above + below]]
         else:
-            rows = [[self.motion.energy(by_step)[0] - parts["power"]]]
+            rows = [[self.motion.energy(outputs) - parts["power"]]]
         rows.append([arrival - parts["arrival"] if self.form.residual_rows else arrival])
         for group in self._limited:
-            first = group.first - self.motion.states
-            value = ca.vec(by_step[first : first + group.rows, :])
+            value = self.motion.of_group(ca.vec(outputs).T, group.name).T
             rows.append(self._within(group.name, value, parts["peak"]))
         if self.form.residual_rows:
             rows.append(self._within(RESIDUAL, residual @ parts["arrival"], parts["peak"]))
@@ -216,9 +216,9 @@ class NonlinearProgram:
         self, limits: Mapping[str, float]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         motion, form = self.motion, self.form
-        zeros = (NODES * motion.steps if form.sampled else 1) + motion.states
+        zeros = (motion.nodes if form.sampled else 1) + motion.states
         lower, upper = [np.zeros(zeros)], [np.zeros(zeros)]
-        counts = {group.name: group.rows * motion.steps for group in self._limited}
+        counts = {group.name: group.rows * motion.nodes for group in self._limited}
         if form.residual_rows:
             counts[RESIDUAL] = form.residual_rows
         for name, count in counts.items():
@@ -239,17 +239,16 @@ class NonlinearProgram:
             *(ca.MX(blocks.get(name, ca.DM(count, size))) for name, size in self.sizes.items())
         )
 
-    def _jacobian(self, inputs: tuple[ca.MX, ca.MX, ca.MX], residual: ca.MX) -> ca.MX:
+    def _jacobian(self, inputs: Inputs, residual: ca.MX) -> ca.MX:
         motion, form = self.motion, self.form
-        found = motion.sensitivities(*inputs)
-        power, power_first = motion.of_group(found, "power")
-        count = power.numel()
+        found = motion.sensitivities(inputs)
+        power_first, count = motion.of_group(found.outputs_first, "power"), motion.nodes
         if form.sampled:
             signs = ca.horzcat(-ca.DM.eye(count), ca.DM.eye(count))
-            rows = [self._row(count, coefficients=power_first, power=signs)]
+            rows = [self._row(count, coefficients=power_first.T, power=signs)]
         else:
-            gradient = ca.vec(motion.energy(found.by_step)[1]).T @ power_first
-            rows = [self._row(1, coefficients=gradient, power=ca.DM(-1))]
+            gradient = power_first @ motion.energy_first(found.outputs)[0].T
+            rows = [self._row(1, coefficients=gradient.T, power=ca.DM(-1))]
         arrived = -ca.DM.eye(motion.states) if form.residual_rows else ca.DM(motion.states, 0)
         rows.append(self._row(motion.states, coefficients=found.arrival_first, arrival=arrived))
 
@@ -261,34 +260,32 @@ class NonlinearProgram:
                 rows.append(self._row(count, **first))
 
         for group in self._limited:
-            of_values = motion.of_group(found, group.name)[1]
+            of_values = motion.of_group(found.outputs_first, group.name).T
             limited(group.name, of_values.shape[0], coefficients=of_values)
         if form.residual_rows:
             limited(RESIDUAL, form.residual_rows, arrival=residual)
         return ca.vertcat(*rows)
 
-    def _hessian(
-        self, x: ca.MX, p: ca.MX, inputs: tuple[ca.MX, ca.MX, ca.MX], constraints: int
-    ) -> ca.Function:
+    def _hessian(self, x: ca.MX, p: ca.MX, inputs: Inputs, constraints: int) -> ca.Function:
         motion, form = self.motion, self.form
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
-        sizes = [NODES * motion.steps if form.sampled else 1, motion.states]
+        sizes = [motion.nodes if form.sampled else 1, motion.states]
         for group in self._limited:
-            sizes += [group.rows * motion.steps] * (2 if group.name == form.least else 1)
+            sizes += [group.rows * motion.nodes] * (2 if group.name == form.least else 1)
         of_energy, of_arrival, *of_values, _ = split(
             multipliers, [*sizes, constraints - sum(sizes)]
         )
         bends = None
         if form.sampled:
-            of_outputs = [ca.reshape(of_energy, NODES, motion.steps)]
+            of_outputs = [of_energy.T]
         else:
-            _, gradient, bends = motion.energy(motion.simulate(*inputs)[1])
+            gradient, bends = motion.energy_first(motion.values(inputs)[1])
             of_outputs, bends = [of_energy * gradient], of_energy * bends
         for group in self._limited:
             weight = of_values.pop(0)
             if group.name == form.least:
                 weight += of_values.pop(0)
-            of_outputs.append(ca.reshape(weight, group.rows, motion.steps))
+            of_outputs.append(ca.reshape(weight, group.rows, motion.nodes))
         curvature = motion.curvature(inputs, of_arrival, ca.vertcat(*of_outputs), bends)
         rest = self.unknowns - motion.size
         return ca.Function(
