@@ -27,13 +27,12 @@ from ocp.interrupts import keep_interrupts
 from ocp.objective import beyond_quadratic, energy_derivatives, resolved_energy
 from ocp.profile import JointProfile
 from ocp.step_model import Group, quantities_at, solve
-from ocp.symbols import split
+from ocp.symbols import over_columns, split
 
 _INNER = len(JointMotion._fields)
 """Values by `JointProfile.inner` at a node."""
 _LEAST_SLOPE = 0.1
 """Least slope of the power that its zeros' curvature counts with, in peak powers a duration."""
-_OPTIONS = {"cse": True}
 
 
 class Inputs(NamedTuple):
@@ -153,7 +152,7 @@ class Condensed:
         self.basis_size = 0 if self._inner_second else self.nodes * _INNER * (1 + self.size)
         a, move, scale = (ca.MX.sym(n, s) for n, s in
                           (("a", self.size), ("move", 3), ("scale", self.scales)))
-        inner = self._over_nodes(self._inner, [0, 2], a, self._fractions, move)
+        inner = self._inner(a, self._fractions, move)
         march, outputs = self._values(inner, move, scale)
         scaled = march.after / ca.repmat(scale[: self.states], 1, steps)
         self.figures = ca.Function(
@@ -168,12 +167,14 @@ class Condensed:
         inner, weights = ca.vertcat(*values), ca.SX.sym("w", _INNER)
         inputs = [a, fraction, move]
         first = ca.densify(ca.jacobian(inner, a)).T
-        self._inner = ca.Function("inner", inputs, [inner], _OPTIONS)
-        self._inner_first = ca.Function("inner_first", inputs, [first], _OPTIONS)
+        self._inner = self._over_nodes("inner", inputs, [inner], [0, 2])
+        self._inner_first = self._over_nodes("inner_first", inputs, [first], [0, 2])
         self._inner_second = None
         if not ca.is_linear(inner, a):
             second = ca.densify(ca.hessian(ca.dot(weights, inner), a)[0])
-            self._inner_second = ca.Function("inner_second", [*inputs, weights], [second], _OPTIONS)
+            self._inner_second = self._over_nodes(
+                "inner_second", [*inputs, weights], [second], [0, 2]
+            )
 
     def _step_of(self, plant: Plant, profile: JointProfile) -> None:
         """The step's matrices, transposed, and the forcing of modes at rest."""
@@ -215,7 +216,8 @@ class Condensed:
             by_forcing[:, :at_nodes],
             ca.vertcat(*at_rest),
         ]
-        self._step = ca.Function("step", [inner, h, move], outputs, _OPTIONS)
+        one = ca.Function("step", [inner, h, move], outputs, {"cse": True})
+        self._step = over_columns(one, self.steps, [2])
 
     def _node_of(self, plant: Plant, profile: JointProfile) -> None:
         """Outputs and forcing by inner and modes at a node, and their derivatives."""
@@ -245,11 +247,17 @@ class Condensed:
             second[:_INNER, :_INNER] / 2, second[_INNER:, :_INNER], second[_INNER:, _INNER:] / 2
         ]
         outputs = ca.densify(outputs)
-        self._node = ca.Function("node", inputs, [outputs], _OPTIONS)
-        self._node_first = ca.Function("node_first", inputs, [outputs, *firsts], _OPTIONS)
-        self._node_second = ca.Function(
-            "node_second", [*inputs, of_forcing, of_outputs], seconds, _OPTIONS
+        self._node = self._over_nodes("node", inputs, [outputs], [2, 3])
+        self._node_first = self._over_nodes("node_first", inputs, [outputs, *firsts], [2, 3])
+        self._node_second = self._over_nodes(
+            "node_second", [*inputs, of_forcing, of_outputs], seconds, [2, 3]
         )
+
+    def _over_nodes(
+        self, name: str, inputs: list[ca.SX], outputs: list[ca.SX], shared: Sequence[int]
+    ) -> ca.Function:
+        one = ca.Function(name, inputs, outputs, {"cse": True})
+        return over_columns(one, self.nodes, shared)
 
     # -- all steps --
 
@@ -258,26 +266,16 @@ class Condensed:
         if self._inner_second:
             return np.empty(0)
         parts = [
-            self._over_nodes(function, [0, 2], ca.DM(self.size, 1), self._fractions, move)
+            function(ca.DM(self.size, 1), self._fractions, move)
             for function in (self._inner, self._inner_first)
         ]
         return np.concatenate([part.full().ravel(order="F") for part in parts])
-
-    def _over_nodes(
-        self, function: ca.Function, shared: Sequence[int], *arguments: Expression
-    ) -> Expression:
-        """A function over all nodes, side by side; some of its arguments are the same for all."""
-        name = f"{function.name()}_all"
-        return function.map(name, "serial", self.nodes, list(shared), [])(*arguments)
 
     def _joint(self, inputs: Inputs) -> tuple[ca.MX, ca.MX]:
         """`inner` at the nodes, and its derivatives (coefficients, _INNER * nodes)."""
         if self._inner_second:
             arguments = inputs.a, self._fractions, inputs.move
-            return tuple(
-                self._over_nodes(function, [0, 2], *arguments)
-                for function in (self._inner, self._inner_first)
-            )
+            return self._inner(*arguments), self._inner_first(*arguments)
         count = _INNER * self.nodes
         constant, slopes = split(inputs.basis, [count, count * self.size])
         slopes = ca.reshape(slopes, self.size, count)
@@ -285,13 +283,12 @@ class Condensed:
 
     def _values(self, inner: ca.MX, move: ca.MX, scale: ca.MX) -> tuple[_March, ca.MX]:
         march = self._march(inner, move)
-        return march, self._over_nodes(self._node, [2, 3], inner, march.modes, move, scale)
+        return march, self._node(inner, march.modes, move, scale)
 
     def _march(self, inner: ca.MX, move: ca.MX) -> _March:
         lengths = ca.DM(self.lengths).T * move[2]
-        step = self._step.map("step_all", "serial", self.steps, [2], [])
         by_step = ca.reshape(inner, NODES * _INNER, self.steps)
-        to_state, to_nodes, *by_forcing, forcing = step(by_step, lengths, move)
+        to_state, to_nodes, *by_forcing, forcing = self._step(by_step, lengths, move)
         state_to_state = ca.horzsplit(to_state, self.states)
         state_to_nodes, forcing_to_state, forcing_to_nodes = (
             _on_diagonal(blocks, self.steps) for blocks in (to_nodes, *by_forcing)
@@ -319,9 +316,7 @@ class Condensed:
     def _directions(
         self, march: _March, slopes: ca.MX, move: ca.MX, scale: ca.MX
     ) -> tuple[ca.MX, _Directions]:
-        outputs, *firsts = self._over_nodes(
-            self._node_first, [2, 3], march.inner, march.modes, move, scale
-        )
+        outputs, *firsts = self._node_first(march.inner, march.modes, move, scale)
         firsts = [_on_diagonal(blocks, self.nodes) for blocks in firsts]
         forcing = slopes @ firsts[0]
         after = self._recursion(march.state_to_state, forcing @ march.forcing_to_state)
@@ -371,8 +366,8 @@ class Condensed:
         _, along = self._directions(march, slopes, inputs.move, inputs.scale)
         of_state = of_arrival / inputs.scale[: self.states]
         of_forcing = self._adjoint(march, of_state, along.outputs_by_modes @ ca.vec(of_outputs))
-        seconds = self._over_nodes(
-            self._node_second, [2, 3], inner, march.modes, inputs.move, inputs.scale,
+        seconds = self._node_second(
+            inner, march.modes, inputs.move, inputs.scale,
             ca.reshape(of_forcing, self.states // 2, self.nodes), of_outputs,
         )  # fmt: skip
         by_inner, mixed, by_modes = (_on_diagonal(blocks, self.nodes) for blocks in seconds)
@@ -386,8 +381,8 @@ class Condensed:
         if self._inner_second:
             weights = along.outputs_by_inner @ ca.vec(of_outputs)
             weights += along.forcing_by_inner @ of_forcing
-            blocks = self._over_nodes(
-                self._inner_second, [0, 2], inputs.a, self._fractions, inputs.move,
+            blocks = self._inner_second(
+                inputs.a, self._fractions, inputs.move,
                 ca.reshape(weights, _INNER, self.nodes),
             )  # fmt: skip
             flat = ca.reshape(blocks, self.size**2, self.nodes)
@@ -440,7 +435,7 @@ class Condensed:
         """
         power, cubic, quartic = self._power(outputs)
         lengths = ca.DM(self.lengths).T
-        derivatives = energy_derivatives().map(self.steps)
+        derivatives = over_columns(energy_derivatives(), self.steps)
         _, gradients, bends = derivatives(
             ca.vertcat(*power), cubic, quartic, _LEAST_SLOPE * lengths
         )
