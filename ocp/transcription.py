@@ -26,8 +26,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.collocation import GAUSS_WEIGHTS, NODES
-from ocp.condensed import Condensed, Inputs
+from ocp.collocation import GAUSS_WEIGHTS
+from ocp.condensed import Condensed, Inputs, March, Sensitivities
 from ocp.interrupts import keep_interrupts
 from ocp.symbols import split
 
@@ -109,15 +109,12 @@ class NonlinearProgram:
         residual = ca.reshape(residual, form.residual_rows, motion.states)
         inputs = Inputs(parts["coefficients"], move, scale, basis)
         objective = weights[0] * self._energy(parts["power"]) + weights[1] * ca.sum1(parts["peak"])
-        arrival, outputs = motion.values(inputs)
-        values = (arrival + offset, outputs)
-        g = ca.vertcat(*(row for rows in self._rows(values, parts, residual) for row in rows))
-        first = ca.Function(
-            "nlp_jac_g", [x, p], [g, self._jacobian(inputs, residual)], ["x", "p"], ["g", "jac_g_x"]
-        )
+        linearised = march, first = motion.linearised(inputs)
+        g = self._constraints(march, parts, offset, residual)
+        jacobian = self._jacobian(march, first, residual)
         options_of_both = {
-            "jac_g": first,
-            "hess_lag": self._hessian(x, p, inputs, g.numel()),
+            "jac_g": ca.Function("nlp_jac_g", [x, p], [g, jacobian], ["x", "p"], ["g", "jac_g_x"]),
+            "hess_lag": self._hessian(x, p, inputs, linearised, g.numel()),
             "calc_lam_p": False,
             "no_nlp_grad": True,
             "print_time": False,
@@ -188,22 +185,22 @@ class NonlinearProgram:
         above, below = ca.vertsplit(power, self.motion.nodes)
         return ca.dot(np.outer(self.motion.lengths, GAUSS_WEIGHTS).ravel(), above + below)
 
-    def _rows(
-        self, values: Sequence[ca.MX], parts: Mapping[str, ca.MX], residual: ca.MX
-    ) -> list[list[ca.MX]]:
-        arrival, outputs = values
+    def _constraints(
+        self, march: March, parts: Mapping[str, ca.MX], offset: ca.MX, residual: ca.MX
+    ) -> ca.MX:
+        motion, power, arrival = self.motion, march.outputs[0, :].T, march.arrival + offset
         if self.form.sampled:
-            above, below = ca.vertsplit(parts["power"], self.motion.nodes)
-            rows = [[outputs[0, :].T - above + below]]
+            above, below = ca.vertsplit(parts["power"], motion.nodes)
+            rows = [power - above + below]
         else:
-            rows = [[self.motion.energy(outputs) - parts["power"]]]
-        rows.append([arrival - parts["arrival"] if self.form.residual_rows else arrival])
+            rows = [motion.energy.value(power.T) - parts["power"]]
+        rows.append(arrival - parts["arrival"] if self.form.residual_rows else arrival)
         for group in self._limited:
-            value = self.motion.of_group(ca.vec(outputs).T, group.name).T
-            rows.append(self._within(group.name, value, parts["peak"]))
+            value = motion.of_group(ca.vec(march.outputs).T, group.name).T
+            rows += self._within(group.name, value, parts["peak"])
         if self.form.residual_rows:
-            rows.append(self._within(RESIDUAL, residual @ parts["arrival"], parts["peak"]))
-        return rows
+            rows += self._within(RESIDUAL, residual @ parts["arrival"], parts["peak"])
+        return ca.vertcat(*rows)
 
     def _within(self, name: str, value: ca.MX, peak: ca.MX) -> list[ca.MX]:
         return [value - peak, value + peak] if name == self.form.least else [value]
@@ -239,34 +236,40 @@ class NonlinearProgram:
             *(ca.MX(blocks.get(name, ca.DM(count, size))) for name, size in self.sizes.items())
         )
 
-    def _jacobian(self, inputs: Inputs, residual: ca.MX) -> ca.MX:
+    def _jacobian(self, march: March, first: Sensitivities, residual: ca.MX) -> ca.MX:
         motion, form = self.motion, self.form
-        found = motion.sensitivities(inputs)
-        power_first, count = motion.of_group(found.outputs_first, "power"), motion.nodes
+        power_first, count = motion.of_group(first.outputs, "power"), motion.nodes
         if form.sampled:
             signs = ca.horzcat(-ca.DM.eye(count), ca.DM.eye(count))
             rows = [self._row(count, coefficients=power_first.T, power=signs)]
         else:
-            gradient = power_first @ motion.energy_first(found.outputs)[0].T
+            gradient = power_first @ motion.energy.first(march.outputs[0, :])[0]
             rows = [self._row(1, coefficients=gradient.T, power=ca.DM(-1))]
         arrived = -ca.DM.eye(motion.states) if form.residual_rows else ca.DM(motion.states, 0)
-        rows.append(self._row(motion.states, coefficients=found.arrival_first, arrival=arrived))
+        rows.append(self._row(motion.states, coefficients=first.arrival.T, arrival=arrived))
 
-        def limited(name: str, count: int, **first: ca.MX) -> None:
+        def limited(name: str, count: int, **blocks: ca.MX) -> None:
             if name == form.least:
                 ones = ca.DM.ones(count, 1)
-                rows.extend(self._row(count, **first, peak=sign * ones) for sign in (-1, 1))
+                rows.extend(self._row(count, **blocks, peak=sign * ones) for sign in (-1, 1))
             else:
-                rows.append(self._row(count, **first))
+                rows.append(self._row(count, **blocks))
 
         for group in self._limited:
-            of_values = motion.of_group(found.outputs_first, group.name).T
+            of_values = motion.of_group(first.outputs, group.name).T
             limited(group.name, of_values.shape[0], coefficients=of_values)
         if form.residual_rows:
             limited(RESIDUAL, form.residual_rows, arrival=residual)
         return ca.vertcat(*rows)
 
-    def _hessian(self, x: ca.MX, p: ca.MX, inputs: Inputs, constraints: int) -> ca.Function:
+    def _hessian(
+        self,
+        x: ca.MX,
+        p: ca.MX,
+        inputs: Inputs,
+        linearised: tuple[March, Sensitivities],
+        constraints: int,
+    ) -> ca.Function:
         motion, form = self.motion, self.form
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
         sizes = [motion.nodes if form.sampled else 1, motion.states]
@@ -275,23 +278,24 @@ class NonlinearProgram:
         of_energy, of_arrival, *of_values, _ = split(
             multipliers, [*sizes, constraints - sum(sizes)]
         )
-        bends = None
-        if form.sampled:
-            of_outputs = [of_energy.T]
-        else:
-            gradient, bends = motion.energy_first(motion.values(inputs)[1])
-            of_outputs, bends = [of_energy * gradient], of_energy * bends
+        march, first = linearised
+        of_outputs, by_energy = [of_energy.T], ca.MX(motion.size, motion.size)
+        if not form.sampled:
+            gradient, bends = motion.energy.first(march.outputs[0, :])
+            of_outputs = [of_energy * gradient.T]
+            of_power = motion.of_group(first.outputs, "power")
+            by_energy = of_energy * motion.of_bends(of_power, bends)
         for group in self._limited:
             weight = of_values.pop(0)
             if group.name == form.least:
                 weight += of_values.pop(0)
             of_outputs.append(ca.reshape(weight, group.rows, motion.nodes))
-        curvature = motion.curvature(inputs, of_arrival, ca.vertcat(*of_outputs), bends)
+        curvature = motion.curvature(inputs, linearised, of_arrival, ca.vertcat(*of_outputs))
         rest = self.unknowns - motion.size
         return ca.Function(
             "nlp_hess_l",
             [x, p, of_objective, multipliers],
-            [ca.triu(ca.diagcat(curvature, ca.MX(rest, rest)))],
+            [ca.triu(ca.diagcat(curvature + by_energy, ca.MX(rest, rest)))],
             ["x", "p", "lam_f", "lam_g"],
             ["triu_hess_gamma_x_x"],
         )
