@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import Plant
+from ocp.collocation import NODES
 from ocp.condensed import condensed
 from ocp.interrupts import keep_interrupts
 from ocp.objective import sampling
@@ -311,7 +312,7 @@ class _Run:
         peak = [] if form.least is None else [self._peaks(arrival, outputs)[form.least]]
         power = np.array([energy])
         if form.sampled:
-            at_nodes = self.program.by_group(outputs)["power"]
+            at_nodes = self.program.by_group(outputs)["power"].reshape(-1, NODES).T
             sampled = (sampling(parts_of(self.program.steps))[0] @ at_nodes).ravel(order="F")
             power = np.append(np.maximum(sampled, 0), np.maximum(-sampled, 0)) + _SLACK_ROOM
         return Point(np.concatenate([guess, peak, arrival if form.residual_rows else [], power]))
