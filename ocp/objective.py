@@ -53,26 +53,13 @@ def resolved_energy(
     return ca.sum2(h * _parted_energy(c, cubic, quartic, breaks))
 
 
-def sampling(parts: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Samples of the power on a step, from its values at the nodes.
+def two_samples() -> NDArray[np.float64]:
+    """What the quadratic through a step's nodes gives at the two Gauss nodes, shape (2, NODES).
 
-    Each of `parts` equal parts of the step has two samples, at its own Gauss nodes.
-
-    Parameters
-    ----------
-    parts : int
-        Number of parts.
-
-    Returns
-    -------
-    matrix : ndarray, shape (2 * parts, NODES)
-        What the quadratic through the nodes gives at the samples.
-    weights : ndarray, shape (2 * parts,)
-        Weights of the samples in the mean over the step.
+    Each of the two samples counts half in the mean over the step.
     """
-    within = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
-    x = ((np.arange(parts)[:, None] + within) / parts).ravel()
-    return x[:, None] ** np.arange(NODES) @ np.array(_TO_QUADRATIC), np.full(x.size, 1 / x.size)
+    x = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
+    return x[:, None] ** np.arange(NODES) @ np.array(_TO_QUADRATIC)
 
 
 def _quadratic(power: Sequence[Expression]) -> list[Expression]:

@@ -14,12 +14,12 @@ from models import Plant
 from ocp.collocation import NODES
 from ocp.condensed import condensed
 from ocp.interrupts import keep_interrupts
-from ocp.objective import sampling
+from ocp.objective import two_samples
 from ocp.profile import JointProfile
 from ocp.residual import extreme_rows, residual_matrix
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
-from ocp.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop, parts_of
+from ocp.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop
 
 ENERGY = "energy"
 LEAST_ENERGY = {ENERGY: 1.0}
@@ -313,7 +313,7 @@ class _Run:
         power = np.array([energy])
         if form.sampled:
             at_nodes = self.program.by_group(outputs)["power"].reshape(-1, NODES).T
-            sampled = (sampling(parts_of(self.program.steps))[0] @ at_nodes).ravel(order="F")
+            sampled = (two_samples() @ at_nodes).ravel(order="F")
             power = np.append(np.maximum(sampled, 0), np.maximum(-sampled, 0)) + _SLACK_ROOM
         return Point(np.concatenate([guess, peak, arrival if form.residual_rows else [], power]))
 
@@ -402,12 +402,12 @@ class _Run:
             form=found.form,
             point=found.point,
             finish=stop.point,
-            settled=after.status.solved,
+            settled=after.status is SolveStatus.OPTIMAL,
         )
 
     def _resolved_start(self, found: Solution) -> Point:
         """The same point with one energy in the place of the power at the nodes."""
-        point, power = found.point, 4 * parts_of(self.program.steps) * self.program.steps
+        point, power = found.point, 4 * self.program.steps
         return Point(
             np.append(point.unknowns[:-power], found.energy / self.program.reference[ENERGY]),
             np.append(point.bound_multipliers[:-power], 0.0),

@@ -4,7 +4,7 @@ Unknowns are the coefficients, the least peak where one is asked for, the state 
 residual is limited (its many rows then have few entries), and what the energy is made of. This
 comes in two forms of the same program:
 
-- sampled: the power at samples of every step is the difference of two unknowns that are not
+- sampled: the power at two samples of every step is the difference of two unknowns that are not
   negative, and their sum is |power| there. The solver decides sample by sample, as in a linear
   program, and comes to the minimum from far away in 15 to 30 iterations; but between the samples a
   little energy can hide;
@@ -30,17 +30,11 @@ from numpy.typing import NDArray
 from ocp.collocation import NODES
 from ocp.condensed import Condensed, Inputs, March, Sensitivities
 from ocp.interrupts import keep_interrupts
-from ocp.objective import sampling
+from ocp.objective import two_samples
 from ocp.symbols import split
 
 RESIDUAL = "residual"
-_PARTS = 96
 Options = Mapping[str, str | int | float]
-
-
-def parts_of(steps: int) -> int:
-    """Parts of a step that have two samples of the power each: fewer where steps are many."""
-    return max(1, _PARTS // steps)
 
 
 class Form(NamedTuple):
@@ -101,7 +95,7 @@ class NonlinearProgram:
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, motion: Condensed, form: Form, options: Options, warm_options: Options):
         self.motion, self.form = motion, form
-        self._sampling, self._weights = sampling(parts_of(motion.steps))
+        self._samples, self._sampling = 2 * motion.steps, two_samples()
         self.sizes = {
             "coefficients": motion.size,
             "peak": 0 if form.least is None else 1,
@@ -138,10 +132,6 @@ class NonlinearProgram:
     def unknowns(self) -> int:
         """Number of unknowns."""
         return sum(self.sizes.values())
-
-    @property
-    def _samples(self) -> int:
-        return len(self._weights) * self.motion.steps
 
     def part(self, name: str) -> slice:
         """Where unknowns of one kind stand among all."""
@@ -196,7 +186,7 @@ class NonlinearProgram:
         if not self.form.sampled:
             return power
         above, below = ca.vertsplit(power, self._samples)
-        return ca.dot(np.outer(self.motion.lengths, self._weights).ravel(), above + below)
+        return ca.dot(np.repeat(self.motion.lengths, 2) / 2, above + below)
 
     def _constraints(
         self, march: March, parts: Mapping[str, ca.MX], offset: ca.MX, residual: ca.MX
@@ -298,7 +288,7 @@ class NonlinearProgram:
         march, first = linearised
         by_energy = ca.MX(motion.size, motion.size)
         if form.sampled:
-            of_samples = ca.reshape(of_energy, len(self._weights), motion.steps)
+            of_samples = ca.reshape(of_energy, 2, motion.steps)
             of_outputs = [ca.vec(self._sampling.T @ of_samples).T]
         else:
             gradient, bends = motion.energy.first(march.outputs[0, :])
