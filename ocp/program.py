@@ -63,7 +63,7 @@ _FINISH = {
     "acceptable_dual_inf_tol": 1e10,
     "acceptable_constr_viol_tol": 1e-8,
     "acceptable_compl_inf_tol": 1e-5,
-    "acceptable_obj_change_tol": 1e-7,
+    "acceptable_obj_change_tol": 1e-9,
     "acceptable_iter": 3,
 }
 """From the sampled minimum. Where zeros of the power meet, second derivatives are of no more use:
@@ -402,7 +402,7 @@ class _Run:
             form=found.form,
             point=found.point,
             finish=stop.point,
-            settled=after.status is SolveStatus.OPTIMAL,
+            settled=after.status.solved,
         )
 
     def _resolved_start(self, found: Solution) -> Point:

@@ -19,8 +19,9 @@ from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 from ocp.verification import MOST_STEPS, verified
 
-LEAST_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 32, 80, 8
-"""Steps that a profile needs: more where more terms let the power change sign more often."""
+LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 32, 80, 80, 8
+"""Steps that a profile needs: more where more terms let the power change sign more often, and where
+limits hold only at the nodes."""
 _HIDDEN = 2e-3
 """Share of the energy by which sampled minima can lie above the resolved ones beside them."""
 UNBOUNDED_SPREAD = 0.2
@@ -120,7 +121,8 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = min(max(LEAST_STEPS, STEPS_A_TERM * (profile.size - 2)), MOST_LEAST_STEPS)
+    least = max(LIMITED_STEPS if task.limits else LEAST_STEPS, STEPS_A_TERM * (profile.size - 2))
+    least = min(least, MOST_LEAST_STEPS)
     steps = settings.steps or default_steps(task, least=least)
     if steps > MOST_STEPS and settings.steps is None:
         raise ValueError(
