@@ -151,7 +151,7 @@ def linear_steps(modes: int, by_modes: ca.Sparsity, steps: int) -> ca.Function:
     one = ca.SX.eye(NODES * modes)
     matrix = one - force @ by_accelerations[len(after) :, :]
     right = ca.horzcat(force @ by_state[len(after) :, :], one)
-    response = by_accelerations @ ca.sparsify(solve(matrix, right))
+    response = by_accelerations @ solve(matrix, right)
     from_state = (by_state + response[:, : len(after)]).T
     from_forcing = response[:, len(after) :].T
     outputs = [

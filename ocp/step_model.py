@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from models import Expression, JointMotion, Plant
-from ocp.collocation import NODES, NodeState, eliminate, step
+from ocp.collocation import NODES, NodeState, step
 
 JOINT = len(JointMotion._fields)
 """Numbers that say how the joint moves at one time."""
@@ -131,10 +131,16 @@ class LiftedStep:
 
 
 def solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
-    """`matrix`^-1 `right`; what is zero in both for good stays out of the graph."""
-    rows = eliminate(_nested(matrix), _nested(right))
-    return ca.vertcat(*(ca.horzcat(*row) for row in rows))
+    """`matrix`^-1 `right` by Gaussian elimination without pivoting, as in `collocation.eliminate`.
 
-
-def _nested(matrix: ca.SX) -> list[list[ca.SX]]:
-    return [ca.horzsplit(row) for row in ca.vertsplit(ca.densify(matrix))]
+    Rows that have no entry in the pivot's column are left alone: modes that do not act on each
+    other stay apart, and their number costs little.
+    """
+    size = matrix.shape[0]
+    rows = ca.vertsplit(ca.horzcat(matrix, right))
+    below = ((k, i) for i in range(size) for k in range(i + 1, size))
+    above = ((k, i) for i in reversed(range(size)) for k in range(i))
+    for k, i in (*below, *above):
+        if rows[k].sparsity().has_nz(0, i):
+            rows[k] -= rows[k][i] / rows[i][i] * rows[i]
+    return ca.vertcat(*(row[size:] / row[i] for i, row in enumerate(rows)))
