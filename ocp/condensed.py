@@ -10,6 +10,7 @@ that is sparse.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -159,13 +160,37 @@ class Condensed:
         energy = self.energy.value(march.outputs[0, :])
         self.figures = ca.Function("figures", [a, move, scale], [after, march.outputs, energy])
 
-    def basis(self, move: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What `inner` is made of where it is linear in the coefficients: constant and slopes."""
+    def basis(self, move: Sequence[float], axes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What `inner` is made of where it is linear in the coefficients: constant and slopes.
+
+        Parameters
+        ----------
+        move : sequence of float
+            Start, target, duration.
+        axes : ndarray, shape (coefficients, coefficients)
+            The program's unknowns are those whose products with `axes` are the coefficients.
+        """
         if self._profile.second:
             return np.empty(0)
-        at_zero = ca.DM(self.size, 1), self._profile.fractions, ca.DM(move)
-        parts = self._profile.value(*at_zero), self._profile.first(*at_zero)
-        return np.concatenate([part.full().ravel(order="F") for part in parts])
+        constant, slopes = self._linear_inner(move)
+        return np.concatenate([constant.ravel(order="F"), (axes.T @ slopes).ravel(order="F")])
+
+    def even_axes(self, move: Sequence[float]) -> NDArray[np.float64]:
+        """Axes for `basis` along which the first value of `inner` moves alike and independently.
+
+        The powers of T of a polynomial are nearly the same function from about ten terms on.
+        """
+        if self._profile.second:
+            return np.eye(self.size)
+        weights = np.sqrt(np.repeat(self.lengths, NODES))
+        triangle = np.linalg.qr((self._linear_inner(move)[1][:, ::INNER] * weights).T, mode="r")
+        return np.linalg.inv(triangle) * triangle[0, 0]
+
+    def _linear_inner(
+        self, move: Sequence[float]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        at_zero = ca.DM(self.size, 1), self._profile.fractions, ca.DM(list(move))
+        return self._profile.value(*at_zero).full(), self._profile.first(*at_zero).full()
 
     def _joint(self, inputs: Inputs) -> tuple[ca.MX, ca.MX]:
         """`inner` at the nodes, and its derivatives by the coefficients."""

@@ -152,12 +152,18 @@ class TaskProgram:
         How the joint moves.
     steps : int
         Number of steps.
+
+    Attributes
+    ----------
+    of_cycloid : float
+        Residual of the plain cycloid [m].
     """
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
         self.task, self.profile, self.steps = task, profile, steps
         self.motion = motion = condensed(task.plant, profile, steps, tuple(task.limits))
+        self.even_axes = motion.even_axes(task.move)
         self.scale = np.ones(motion.scales)
         states, outputs, _ = self.figures(np.zeros(profile.size))
         peaks = [np.abs(rows).max() for rows in self.by_group(outputs).values()]
@@ -167,6 +173,9 @@ class TaskProgram:
         self.reference = dict(zip(names, self.scale[motion.states :].tolist(), strict=True))
         self.reference[ENERGY] = self.reference["power"] * task.duration
         matrix = _residual_rows(task) * self.scale[: motion.states]
+        self.of_cycloid = float(
+            np.abs(matrix @ (states[:, -1] / self.scale[: motion.states])).max()
+        )
         self.reference[RESIDUAL] = float(np.abs(matrix).max())
         self.matrix = matrix / self.reference[RESIDUAL]
 
@@ -282,6 +291,7 @@ class _Run:
     bound: float
     weights: Mapping[str, float]
     offset: NDArray[np.float64]
+    axes: NDArray[np.float64]
 
     @classmethod
     def of(
@@ -303,6 +313,8 @@ class _Run:
             bound=np.inf if bound is None else bound,
             weights={name: weight / largest for name, weight in weights.items()},
             offset=np.zeros(program.motion.states) if offset is None else offset,
+            # a box is one along the coefficients themselves
+            axes=program.even_axes if bound is None else np.eye(program.motion.size),
         )
 
     def start(self, guess: NDArray[np.float64]) -> Point:
@@ -315,7 +327,8 @@ class _Run:
             at_nodes = self.program.by_group(outputs)["power"].reshape(-1, NODES).T
             sampled = (two_samples() @ at_nodes).ravel(order="F")
             power = np.append(np.maximum(sampled, 0), np.maximum(-sampled, 0)) + _SLACK_ROOM
-        return Point(np.concatenate([guess, peak, arrival if form.residual_rows else [], power]))
+        along = np.linalg.solve(self.axes, guess)
+        return Point(np.concatenate([along, peak, arrival if form.residual_rows else [], power]))
 
     def stop(self, form: Form, start: Point, reach: float = np.inf) -> Stop:
         """Run one form of the program, no farther than `reach` from the start."""
@@ -332,13 +345,14 @@ class _Run:
             lower[compiled.part("power")] = 0.0
         both = [self.weights.get(ENERGY, 0.0), self.weights.get(form.least or "", 0.0)]
         matrix = program.matrix[: form.residual_rows].ravel(order="F")
-        parameters = np.concatenate([task.move, program.scale, both, self.offset, matrix])
-        return compiled.solve(start, (lower, upper), self.limits, parameters)
+        basis = program.motion.basis(task.move, self.axes)
+        parameters = [task.move, program.scale, both, self.offset, matrix, basis]
+        return compiled.solve(start, (lower, upper), self.limits, np.concatenate(parameters))
 
     def solution(self, form: Form, stop: Stop) -> Solution:
         """The figures of where the solver stopped."""
         program = self.program
-        coefficients = stop.point.unknowns[: program.motion.size]
+        coefficients = self.axes @ stop.point.unknowns[: program.motion.size]
         coefficients = np.clip(coefficients, -self.bound, self.bound)  # IPOPT passes by 1e-10
         states, outputs, energy = program.figures(coefficients)
         arrival = states[:, -1] + self.offset

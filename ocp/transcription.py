@@ -158,7 +158,7 @@ class NonlinearProgram:
             Largest absolute values, scaled; a quantity without an entry is free.
         parameters : ndarray
             Move, scales, weights of energy and peak, correction of the state on arrival, residual
-            matrix by columns.
+            matrix by columns, `Condensed.basis`.
 
         Returns
         -------
@@ -173,7 +173,7 @@ class NonlinearProgram:
         with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
             result = solver(
                 x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper,
-                p=np.append(parameters, self.motion.basis(parameters[:3])), **known,
+                p=parameters, **known,
             )  # fmt: skip
         point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
         g, stats = result["g"].full().ravel(), solver.stats()

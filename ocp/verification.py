@@ -13,12 +13,13 @@ from ocp.resimulation import resimulated
 from ocp.transcription import RESIDUAL
 
 MOST_STEPS = 3200
-STILL = 1e-8
-"""Verified residual [m] up to which 'at rest on arrival' counts as kept."""
+STILL, STILL_SHARE = 1e-8, 1e-7
+"""Verified residual up to which 'at rest on arrival' counts as kept: in metres, or as a share of
+what the plain cycloid leaves, whichever is more."""
 _ENERGY_AGREEMENT = 1e-3
 _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
-"""Share of STILL that the residual at rest is brought below."""
+"""Share of that which the residual at rest is brought below."""
 ENOUGH_STEPS = 150
 """Steps with which a minimum counts though the solver did not settle there."""
 _ROUNDS = 8
@@ -71,7 +72,8 @@ def verified(
     """
     motion, arrival = resimulated(program.task, program.profile, best.coefficients)
     kept, used = limits if kept is None else kept, dict(limits)
-    tolerated = max(_AT_REST * STILL, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
+    still = max(STILL, STILL_SHARE * program.of_cycloid)
+    tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
     for _ in range(_ROUNDS):
         overrun = {name: motion.peak(name) / limit for name, limit in kept.items() if limit > 0}
         used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
@@ -91,7 +93,7 @@ def verified(
         best = again
         motion, arrival = resimulated(program.task, program.profile, best.coefficients)
     for name, limit in kept.items():
-        if motion.peak(name) > max(limit * (1 + _OVERRUN), STILL):
+        if motion.peak(name) > max(limit * (1 + _OVERRUN), still):
             raise SolverFailedError(
                 f"the verified {name} is {motion.peak(name):.4g}, above its limit of {limit:g}: "
                 "the solver's steps are too coarse for this motion; bound the coefficients or use "
