@@ -4,19 +4,14 @@ import itertools
 import math
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
-import casadi as ca
 import numpy as np
 import pytest
 
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import (
     CycloidPolynomial,
-    JointProfile,
-    Plan,
     PointToPoint,
     SolveSettings,
     SolveStatus,
@@ -339,7 +334,7 @@ def test_six_terms_by_default(tasks, solved):
     assert default.profile == CycloidPolynomial(6)
 
 
-# -- a user's own plant and profile --
+# -- a user's own plant --
 
 
 def test_a_users_plant_of_two_modes_arrives_at_rest(tasks, solved):
@@ -364,42 +359,6 @@ def test_a_users_plant_keeps_limits(tasks, solved, limit):
     plan = solved(PointToPoint(task.plant, task.target, task.duration, **{limit: value}))
     assert plan.motion.peak(quantity) <= value * (1 + 1e-6)
     assert plan.energy > solved(task).energy
-
-
-@dataclass(frozen=True)
-class _Waves(JointProfile):
-    """A user's own family: U = x + sum_j a_j sin(j pi x), x = t/T."""
-
-    name: ClassVar[str] = "waves-of-a-test"
-    waves: int = 4
-
-    @property
-    def size(self):
-        return self.waves
-
-    def derivatives(self, coefficients, fraction, start, target, duration):
-        U, dU, ddU, dddU = fraction, 1 / duration, 0.0, 0.0
-        for j, a in enumerate(coefficients, start=1):
-            rate = j * pi / duration
-            sine, cosine = ca.sin(j * pi * fraction), ca.cos(j * pi * fraction)
-            U, dU = U + a * sine, dU + a * rate * cosine
-            ddU, dddU = ddU - a * rate**2 * sine, dddU - a * rate**3 * cosine
-        span, turn = target - start, 2 * pi
-        sine, cosine = ca.sin(turn * U), ca.cos(turn * U)
-        return (
-            start + span * (U - sine / turn),
-            span * (1 - cosine) * dU,
-            span * (turn * sine * dU**2 + (1 - cosine) * ddU),
-            span * (turn**2 * cosine * dU**3 + 3 * turn * sine * dU * ddU + (1 - cosine) * dddU),
-        )
-
-
-def test_a_users_profile_is_planned_with_and_kept(tasks, tmp_path):
-    plan = plan_move(tasks["single link"], _Waves(5), starts=2)
-    assert plan.residual < 1e-7
-    assert plan.energy < 0.0911  # the plain cycloid's 0.09115 J (docs/physics.md), which also rings
-    plan.save(tmp_path / "plan.json")
-    assert Plan.load(tmp_path / "plan.json") == plan
 
 
 # -- bad input --
