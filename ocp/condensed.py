@@ -1,60 +1,108 @@
 """The motion as a function of the profile's coefficients alone, with exact derivatives.
 
-The steps are affine in the state, so that the states follow from the coefficients by a recursion,
-their first derivatives by another beside it, and second derivatives by one that runs backwards.
-What a step does is differentiated once, by the values that the profile's `inner` gives at its nodes
-and by the state before it; its derivatives do not depend on the number of coefficients. They are
-mapped over the steps and joined there.
+The modes are linear in the state before a step and in what forces them at its nodes, by matrices
+that only the joint determines. So the states follow by a recursion over the steps; the same
+matrices carry first derivatives forwards, a row for each coefficient, and multipliers backwards.
+What is not linear happens at a node: forcing and outputs by the joint and the modes there. Its
+second derivatives are small blocks. The matrices of all steps or nodes stand on the diagonal of one
+that is sparse.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from models import Plant
-from ocp.collocation import GAUSS_NODES, NODES, mesh
+from ocp.collocation import NODES, mesh
 from ocp.interrupts import keep_interrupts
-from ocp.objective import beyond_quadratic, energy_derivatives
+from ocp.pieces import INNER, EnergyPieces, NodePieces, ProfilePieces, linear_steps
 from ocp.profile import JointProfile
-from ocp.step_model import JOINT, LiftedStep, groups_of
-from ocp.symbols import backwards
-
-_INNER = NODES * JOINT
-_LEAST_SLOPE = 0.1
-"""Least slope of the power that its zeros' curvature counts with, in peak powers a duration."""
+from ocp.step_model import Group
+from ocp.symbols import split
 
 
-class Sensitivities(NamedTuple):
-    """Values along the steps, with their first derivatives, as expressions; everything scaled.
+class Inputs(NamedTuple):
+    """What the motion depends on, as symbols.
 
     Attributes
     ----------
-    arrival : MX, shape (states, 1)
-        State on arrival.
-    by_step : MX, shape (rows, steps)
-        Outputs of every step but the state: the power and each limited quantity at its nodes.
-    arrival_first : MX, shape (states, coefficients)
-        First derivatives of the state on arrival.
-    outputs_first : MX, shape (coefficients, rows * steps)
-        Those of the outputs, step by step.
+    a : MX, shape (coefficients, 1)
+        Coefficients.
+    move : MX, shape (3, 1)
+        Start, target, duration.
+    scale : MX, shape (scales, 1)
+        Scales of every state, then of the power and of each limited quantity.
+    basis : MX
+        `Condensed.basis` of the move.
     """
 
+    a: ca.MX
+    move: ca.MX
+    scale: ca.MX
+    basis: ca.MX
+
+
+class March(NamedTuple):
+    """The motion, and the matrices of its steps.
+
+    Attributes
+    ----------
+    inner, modes : MX, shapes (INNER, nodes) and (states, nodes)
+        What `JointProfile.inner` gives at the nodes, and W and W' there.
+    after : MX, shape (states, steps)
+        States after every step.
+    arrival : MX, shape (states, 1)
+        The last of them, scaled.
+    outputs : MX, shape (rows, nodes)
+        Power and each limited quantity at the nodes, scaled.
+    state_to_state : list of MX
+        From the state before each step to that after it.
+    state_to_modes, forcing_to_state, forcing_to_modes : MX
+        The other matrices of all steps.
+    """
+
+    inner: ca.MX
+    modes: ca.MX
+    after: ca.MX
     arrival: ca.MX
-    by_step: ca.MX
-    arrival_first: ca.MX
-    outputs_first: ca.MX
+    outputs: ca.MX
+    state_to_state: list[ca.MX]
+    state_to_modes: ca.MX
+    forcing_to_state: ca.MX
+    forcing_to_modes: ca.MX
+
+
+class Sensitivities(NamedTuple):
+    """First derivatives along a march.
+
+    Attributes
+    ----------
+    inner, modes : MX, shapes (coefficients, INNER * nodes) and (coefficients, states * nodes)
+        Of inner and modes at the nodes by the coefficients.
+    arrival : MX, shape (coefficients, states)
+        Of the scaled state on arrival by the coefficients.
+    outputs : MX, shape (coefficients, rows * nodes)
+        Of the outputs, node by node, by the coefficients.
+    forcing_by_inner, outputs_by_inner, outputs_by_modes : MX
+        Of what happens at the nodes.
+    """
+
+    inner: ca.MX
+    modes: ca.MX
+    arrival: ca.MX
+    outputs: ca.MX
+    forcing_by_inner: ca.MX
+    outputs_by_inner: ca.MX
+    outputs_by_modes: ca.MX
 
 
 class Condensed:
-    """A plant's motion along a profile in a number of steps, as casadi functions.
-
-    All of them take the coefficients, the move (start, target, duration) and the scales (of every
-    state, then of the power and of each limited quantity).
+    """A plant's motion along a profile in a number of steps, as casadi expressions.
 
     Parameters
     ----------
@@ -69,17 +117,21 @@ class Condensed:
 
     Attributes
     ----------
+    size, steps, nodes : int
+        Number of coefficients, steps and nodes.
     states, rows, scales : int
-        Entries of the state; outputs of a step without the state; number of scales.
+        Entries of the state; outputs at a node; number of scales.
     groups : list of Group
-        The outputs by name, the state first.
+        The state, then the outputs at a node by name.
     lengths : ndarray, shape (steps,)
         The steps' lengths as shares of the duration.
-    simulate : Function
-        State on arrival (states, 1) and outputs of every step (rows, steps), scaled.
+    energy : EnergyPieces
+        The energy of the power at the nodes.
+    basis_size : int
+        Length of `basis`.
     figures : Function
-        States after every step (states, steps), outputs (rows, steps), energy by
-        `resolved_energy`, scaled.
+        (coefficients, move, scales) -> states after every step (states, steps), outputs (rows,
+        nodes), energy by `resolved_energy`, scaled.
     """
 
     @keep_interrupts()  # casadi loses a Ctrl-C
@@ -87,211 +139,169 @@ class Condensed:
         self, plant: Plant, profile: JointProfile, steps: int, quantities: tuple[str, ...]
     ) -> None:
         self.size, self.steps, self.states = profile.size, steps, 2 * plant.modes
-        self.groups = groups_of(plant, quantities)
+        self.nodes = NODES * steps
+        lengths = mesh(ca.DM(np.arange(steps)).T, steps)[1]
+        self.lengths = lengths.full().ravel()
+        self.groups = [Group("state", 0, self.states)]
+        for name in ("power", *quantities):
+            rows = plant.tips if name == "deflection" else 1
+            self.groups.append(Group(name, self.groups[-1].first + self.groups[-1].rows, rows))
         self.rows = sum(group.rows for group in self.groups[1:])
         self.scales = self.states + len(self.groups) - 1
-        self._index = ca.DM(np.arange(steps)).T
-        self.lengths = mesh(self._index, steps)[1].full().ravel()
-        self._steps_of(plant, profile)
-        self._profile_of(profile)
-        inputs = self.inputs()
-        after, outputs = self._march(*inputs)[1:]
-        self.simulate = ca.Function("simulate", [*inputs], [after[:, -1], outputs])
-        self.figures = ca.Function("figures", [*inputs], [after, outputs, self.energy(outputs)[0]])
+        self._profile = ProfilePieces(profile, steps)
+        self._node = NodePieces(plant, profile, self.nodes, self.groups)
+        self._step = linear_steps(plant.modes, self._node.by_modes, steps)
+        self.energy = EnergyPieces(lengths)
+        self.basis_size = 0 if self._profile.second else self.nodes * INNER * (1 + self.size)
+        a, move, scale = (ca.MX.sym("x", n) for n in (self.size, 3, self.scales))
+        march = self._march(self._profile.value(a, self._profile.fractions, move), move, scale)
+        after = march.after / ca.repmat(scale[: self.states], 1, steps)
+        energy = self.energy.value(march.outputs[0, :])
+        self.figures = ca.Function("figures", [a, move, scale], [after, march.outputs, energy])
 
-    def inputs(self) -> tuple[ca.MX, ca.MX, ca.MX]:
-        """Fresh symbols for coefficients, move and scales."""
-        sizes = {"a": self.size, "move": 3, "scale": self.scales}
-        a, move, scale = (ca.MX.sym(name, size) for name, size in sizes.items())
-        return a, move, scale
+    def basis(self, move: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What `inner` is made of where it is linear in the coefficients: constant and slopes."""
+        if self._profile.second:
+            return np.empty(0)
+        at_zero = ca.DM(self.size, 1), self._profile.fractions, ca.DM(move)
+        parts = self._profile.value(*at_zero), self._profile.first(*at_zero)
+        return np.concatenate([part.full().ravel(order="F") for part in parts])
 
-    # -- one step, and the profile at its nodes --
+    def _joint(self, inputs: Inputs) -> tuple[ca.MX, ca.MX]:
+        """`inner` at the nodes, and its derivatives by the coefficients."""
+        if self._profile.second:
+            arguments = inputs.a, self._profile.fractions, inputs.move
+            return self._profile.value(*arguments), self._profile.first(*arguments)
+        count = INNER * self.nodes
+        constant, slopes = split(inputs.basis, [count, count * self.size])
+        slopes = ca.reshape(slopes, self.size, count)
+        return ca.reshape(ca.mac(inputs.a.T, slopes, constant.T), INNER, self.nodes), slopes
 
-    def _steps_of(self, plant: Plant, profile: JointProfile) -> None:
-        inner, state = ca.SX.sym("inner", _INNER), ca.SX.sym("z", self.states)
-        h, move, scale = ca.SX.sym("h"), ca.SX.sym("move", 3), ca.SX.sym("scale", self.scales)
-        ends = ca.vertsplit(move)
-        joint = ca.vertcat(
-            *(
-                ca.vertcat(*profile.outer(ca.vertsplit(at_node), *ends))
-                for at_node in ca.vertsplit(inner, JOINT)
-            )
+    def march(self, inputs: Inputs) -> March:
+        """The motion."""
+        return self._march(self._joint(inputs)[0], inputs.move, inputs.scale)
+
+    def _march(self, inner: ca.MX, move: ca.MX, scale: ca.MX) -> March:
+        forcing, entries = self._node.linear(inner, move)
+        forcing = ca.vec(forcing).T
+        to_state, *others = self._step(
+            ca.reshape(entries, -1, self.steps), ca.DM(self.lengths).T * move[2]
         )
-        lifted = LiftedStep(plant, self.groups, state, h, scale)
-        multipliers = ca.SX.sym("lam", lifted.outputs.numel())
-        value = lifted.of(joint, lifted.outputs)
-        first, second = lifted.derivatives(joint, inner, state, multipliers)
-        inputs, options = [state, inner, h, move, scale], {"cse": True}
-        after, outputs = value[: self.states], value[self.states :]
-        self._value = ca.Function("step", inputs, [after, outputs], options)
-        self._first = ca.Function("step_first", inputs, [first], options)
-        self._second = ca.Function("step_second", [*inputs, multipliers], [second], options)
+        to_state = ca.horzsplit(to_state, self.states)
+        to_modes, force_state, force_modes = (_on_diagonal(x, self.steps) for x in others)
+        after = _states(to_state, forcing @ force_state)
+        modes = _before(after, self.states) @ to_modes + forcing @ force_modes
+        modes = ca.reshape(modes, self.states, self.nodes)
+        after = ca.reshape(after, self.states, self.steps)
+        return March(
+            inner, modes, after, after[:, -1] / scale[: self.states],
+            self._node.value(inner, modes, move, scale),
+            to_state, to_modes, force_state, force_modes,
+        )  # fmt: skip
 
-    def _profile_of(self, profile: JointProfile) -> None:
-        a, index, move = ca.SX.sym("a", self.size), ca.SX.sym("k"), ca.SX.sym("move", 3)
-        begin, length = mesh(index, self.steps)
-        ends = ca.vertsplit(move)
-        values = [profile.inner(ca.vertsplit(a), begin + c * length, *ends) for c in GAUSS_NODES]
-        inner = ca.vertcat(*(value for at_node in values for value in at_node))
-        weights = ca.SX.sym("w", _INNER)
-        inputs, options = [a, index, move], {"cse": True}
-        first = ca.densify(ca.jacobian(inner, a))
-        self._inner = ca.Function("inner", inputs, [inner, ends[2] * length], options)
-        self._inner_first = ca.Function("inner_first", inputs, [first], options)
-        self._inner_second = None
-        if not ca.is_linear(inner, a):
-            second = ca.densify(ca.hessian(ca.dot(weights, inner), a)[0])
-            self._inner_second = ca.Function("inner_second", [*inputs, weights], [second], options)
-
-    # -- all steps --
-
-    def _along(self, function: ca.Function, shared: Sequence[int], *arguments: ca.MX) -> ca.MX:
-        """A function over all steps, side by side; some of its arguments are the same for all."""
-        mapped = function.map(f"{function.name()}_all", "serial", self.steps, list(shared), [])
-        return mapped(*arguments)
-
-    def _recursion(self, function: ca.Function, first: ca.MX, *arguments: ca.MX) -> list[ca.MX]:
-        """A function over all steps, whose first output is its first input at the next."""
-        return function.mapaccum(f"{function.name()}_all", self.steps)(first, *arguments)
-
-    def _march(self, a: ca.MX, move: ca.MX, scale: ca.MX) -> tuple[list[ca.MX], ca.MX, ca.MX]:
-        """What a step starts from (state, inner, length, move, scale); states after it; outputs."""
-        inner, lengths = self._along(self._inner, [0, 2], a, self._index, move)
-        same = [ca.repmat(value, 1, self.steps) for value in (move, scale)]
-        rest = ca.DM.zeros(self.states)
-        after, outputs = self._recursion(self._value, rest, inner, lengths, *same)
-        before = ca.horzcat(rest, after[:, :-1])
-        return [before, inner, lengths, move, scale], after, outputs
-
-    def _join(self, a: ca.MX, move: ca.MX, firsts: ca.MX) -> tuple[ca.MX, ca.MX, ca.MX]:
-        """Derivatives by the coefficients: of inner and state before each step, output, arrival."""
-        inner_first = self._along(self._inner_first, [0, 2], a, self._index, move)
-        state = ca.MX.sym("S", self.states, self.size)
-        of_step = ca.MX.sym("D", self.states + self.rows, _INNER + self.states)
-        of_inner = ca.MX.sym("B", _INNER, self.size)
-        moves = ca.vertcat(of_inner, state)
-        after = of_step @ moves
-        join = ca.Function(
-            "join",
-            [state, of_step, of_inner],
-            [after[: self.states, :], moves.T, after[self.states :, :].T],
-        )
-        rest = ca.DM.zeros(self.states, self.size)
-        states, directions, outputs = self._recursion(join, rest, firsts, inner_first)
-        return directions, outputs, states[:, -self.size :]
-
-    def sensitivities(self, a: ca.MX, move: ca.MX, scale: ca.MX) -> Sensitivities:
-        """Values and first derivatives."""
-        begins, after, outputs = self._march(a, move, scale)
-        firsts = self._along(self._first, [3, 4], *begins)
-        _, of_outputs, of_arrival = self._join(a, move, firsts)
-        return Sensitivities(after[:, -1], outputs, of_arrival, of_outputs)
+    def linearised(self, inputs: Inputs) -> tuple[March, Sensitivities]:
+        """The motion with its first derivatives."""
+        inner, slopes = self._joint(inputs)
+        march = self._march(inner, inputs.move, inputs.scale)
+        firsts = self._node.first(inner, march.modes, inputs.move, inputs.scale)
+        forcing_by_inner, by_inner, by_modes = (_on_diagonal(x, self.nodes) for x in firsts)
+        forcing = slopes @ forcing_by_inner
+        after = _states(march.state_to_state, forcing @ march.forcing_to_state)
+        before = _before(after, self.states)
+        modes = before @ march.state_to_modes + forcing @ march.forcing_to_modes
+        arrival = after[:, -self.states :] / ca.repmat(inputs.scale[: self.states].T, self.size, 1)
+        return march, Sensitivities(
+            slopes, modes, arrival, slopes @ by_inner + modes @ by_modes,
+            forcing_by_inner, by_inner, by_modes,
+        )  # fmt: skip
 
     def curvature(
         self,
-        inputs: tuple[ca.MX, ca.MX, ca.MX],
+        inputs: Inputs,
+        linearised: tuple[March, Sensitivities],
         of_arrival: ca.MX,
         of_outputs: ca.MX,
-        bends: ca.MX | None = None,
     ) -> ca.MX:
         """Second derivatives by the coefficients of arrival and outputs times their multipliers.
 
         Parameters
         ----------
-        inputs : tuple of MX
-            Coefficients, move, scales.
+        inputs : Inputs
+            What the motion depends on.
+        linearised : tuple of March and Sensitivities
+            By `linearised` of it.
         of_arrival : MX, shape (states, 1)
-            Multipliers of the state on arrival.
-        of_outputs : MX, shape (rows, steps)
+            Multipliers of the scaled state on arrival.
+        of_outputs : MX, shape (rows, nodes)
             Multipliers of the outputs.
-        bends : MX, shape (NODES, NODES * steps), optional
-            Second derivatives of what is asked by the power at the nodes, step by step.
 
         Returns
         -------
         MX, shape (coefficients, coefficients)
             Symmetric.
         """
-        a, move, scale = inputs
-        begins, _, _ = self._march(a, move, scale)
-        firsts = self._along(self._first, [3, 4], *begins)
-        directions, outputs_first, _ = self._join(a, move, firsts)
-        multipliers = ca.vertcat(self._adjoint(firsts, of_arrival, of_outputs), of_outputs)
-        seconds = self._along(self._second, [3, 4], *begins, multipliers)
-        hessian = self._sandwich(seconds, directions)
-        if bends is not None:
-            of_power = self._rows_of(outputs_first, 0, NODES)
-            hessian += self._sandwich(bends, of_power)
-        if self._inner_second is not None:
-            of_step = ca.MX.sym("D", self.states + self.rows, _INNER + self.states)
-            lam = ca.MX.sym("lam", self.states + self.rows)
-            weigh = ca.Function("weigh", [of_step, lam], [of_step[:, :_INNER].T @ lam])
-            weights = self._along(weigh, [], firsts, multipliers)
-            blocks = self._along(self._inner_second, [0, 2], a, self._index, move, weights)
-            flat = ca.reshape(blocks, self.size**2, self.steps)
+        march, first = linearised
+        of_state = of_arrival / inputs.scale[: self.states]
+        of_forcing = _adjoint(march, of_state, first.outputs_by_modes @ ca.vec(of_outputs))
+        seconds = self._node.second(
+            march.inner, march.modes, inputs.move, inputs.scale,
+            ca.reshape(of_forcing, -1, self.nodes), of_outputs,
+        )  # fmt: skip
+        by_inner, mixed, by_modes = (_on_diagonal(blocks, self.nodes) for blocks in seconds)
+        half = (first.inner @ by_inner + first.modes @ mixed) @ first.inner.T
+        if by_modes.nnz():
+            half += first.modes @ by_modes @ first.modes.T
+        hessian = half + half.T
+        if self._profile.second:
+            weights = first.outputs_by_inner @ ca.vec(of_outputs)
+            weights += first.forcing_by_inner @ of_forcing
+            blocks = self._profile.second(
+                inputs.a, self._profile.fractions, inputs.move,
+                ca.reshape(weights, INNER, self.nodes),
+            )  # fmt: skip
+            flat = ca.reshape(blocks, self.size**2, self.nodes)
             hessian += ca.reshape(ca.sum2(flat), self.size, self.size)
         return hessian
 
-    def _adjoint(self, firsts: ca.MX, of_arrival: ca.MX, of_outputs: ca.MX) -> ca.MX:
-        """Multipliers of the state after every step, by the recursion backwards from arrival."""
-        after, of_rows = ca.MX.sym("lam", self.states), ca.MX.sym("w", self.rows)
-        width = _INNER + self.states
-        of_step = ca.MX.sym("D", self.states + self.rows, width)
-        before = of_step[:, _INNER:].T @ ca.vertcat(after, of_rows)
-        adjoint = ca.Function("adjoint", [after, of_rows, of_step], [before, after])
-        backward = backwards(of_outputs, 1), backwards(firsts, width)
-        return backwards(self._recursion(adjoint, of_arrival, *backward)[1], 1)
+    def of_bends(self, of_power: ca.MX, bends: ca.MX) -> ca.MX:
+        """Second derivatives by the coefficients, from those by the power at the nodes."""
+        return of_power @ _on_diagonal(bends, self.steps) @ of_power.T
 
-    def _sandwich(self, blocks: ca.MX, directions: ca.MX) -> ca.MX:
-        """Sum over the steps of directions . block . directions^T, all of them side by side."""
-        width = blocks.shape[0]
-        block, direction = ca.MX.sym("H", width, width), ca.MX.sym("T", self.size, width)
-        times = ca.Function("times", [block, direction], [direction @ block])
-        return self._along(times, [], blocks, directions) @ directions.T
-
-    def _rows_of(self, outputs_first: ca.MX, first: int, rows: int) -> ca.MX:
-        """The columns of `outputs_first` that belong to some of every step's outputs."""
-        places = np.arange(self.steps)[:, None] * self.rows + first + np.arange(rows)
-        return outputs_first[:, places.ravel().tolist()]
-
-    def of_group(self, sensitivities: Sensitivities, name: str) -> tuple[ca.MX, ca.MX]:
-        """Values of one quantity at all nodes, and their first derivatives, a row a value."""
+    def of_group(self, rows: ca.MX, name: str) -> ca.MX:
+        """The columns of a quantity among those of all outputs, node by node."""
         group = next(group for group in self.groups if group.name == name)
-        first = group.first - self.states
-        values = ca.vec(sensitivities.by_step[first : first + group.rows, :])
-        return values, self._rows_of(sensitivities.outputs_first, first, group.rows).T
+        first = np.arange(self.nodes)[:, None] * self.rows + group.first - self.states
+        return rows[:, (first + np.arange(group.rows)).ravel().tolist()]
 
-    # -- the energy --
 
-    def energy(self, by_step: ca.MX) -> tuple[ca.MX, ca.MX, ca.MX]:
-        """F2 by `resolved_energy`, scaled by duration and power, and its derivatives by the power.
+def _states(state_to_state: list[ca.MX], added: ca.MX) -> ca.MX:
+    """Rows of states after every step, side by side, from rest and what each step adds."""
+    first, *rest = ca.horzsplit(added, added.shape[1] // len(state_to_state))
+    after = [first]
+    for matrix, new in zip(state_to_state[1:], rest, strict=True):
+        after.append(ca.mac(after[-1], matrix, new))
+    return ca.horzcat(*after)
 
-        Parameters
-        ----------
-        by_step : MX, shape (rows, steps)
-            Outputs of the steps.
 
-        Returns
-        -------
-        energy : MX
-            The energy.
-        gradient : MX, shape (NODES, steps)
-            Its derivatives by the power at the nodes.
-        bends : MX, shape (NODES, NODES * steps)
-            Its second derivatives where the zeros of the power move, step by step.
-        """
-        power, lengths = by_step[:NODES, :], ca.DM(self.lengths).T
-        to_cubic, to_quartic = beyond_quadratic(self.steps)
-        flat = ca.vec(power.T).T
-        least = _LEAST_SLOPE * lengths
-        energies, gradients, bends = self._along(
-            energy_derivatives(), [], power, flat @ to_cubic, flat @ to_quartic, least
-        )
-        gradients *= ca.repmat(lengths, NODES + 2, 1)
-        beyond = to_cubic @ gradients[NODES, :].T + to_quartic @ gradients[NODES + 1, :].T
-        gradient = gradients[:NODES, :] + ca.reshape(beyond, self.steps, NODES).T
-        weights = ca.DM(np.repeat(self.lengths, NODES)).T
-        return ca.sum2(lengths * energies), gradient, bends * ca.repmat(weights, NODES, 1)
+def _before(after: ca.MX, states: int) -> ca.MX:
+    """Rows of states before every step, from those after it: rest at first."""
+    return ca.horzcat(ca.DM.zeros(after.shape[0], states), after[:, :-states])
+
+
+def _adjoint(march: March, of_arrival: ca.MX, of_modes: ca.MX) -> ca.MX:
+    """Multipliers of the forcing, by the recursion backwards from those of the arrival."""
+    after = [of_arrival]
+    added = ca.vertsplit(march.state_to_modes @ of_modes, of_arrival.numel())
+    for matrix, new in zip(march.state_to_state[:0:-1], added[:0:-1], strict=True):
+        after.append(ca.mac(matrix, after[-1], new))
+    of_states = ca.vertcat(*reversed(after))
+    return march.forcing_to_state @ of_states + march.forcing_to_modes @ of_modes
+
+
+def _on_diagonal(blocks: ca.MX, count: int) -> ca.MX:
+    """Blocks of one sparsity that stand side by side, on the diagonal of one sparse matrix."""
+    block = ca.horzsplit(blocks.sparsity(), blocks.shape[1] // count)[0]
+    return ca.sparsity_cast(blocks, ca.diagcat(*[block] * count))
 
 
 @lru_cache(maxsize=16)

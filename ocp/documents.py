@@ -6,10 +6,10 @@ import json
 import platform
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from models import __version__, known_plants
@@ -26,7 +26,7 @@ def versions() -> dict[str, str]:
     """Versions of what computed an answer."""
     return {
         "quietarm": __version__,
-        "casadi": metadata.version("casadi"),
+        "casadi": ca.__version__,
         "numpy": np.__version__,
         "python": platform.python_version(),
     }
@@ -157,7 +157,13 @@ def task_from_document(document: Document) -> PointToPoint:
 
 
 def profile_to_document(profile: JointProfile) -> Document:
-    """A profile in JSON's types."""
+    """A profile in JSON's types; ValueError where its class could not be found by its name."""
+    own = type(profile)
+    if known_profiles().get(profile.name) is not own:
+        raise ValueError(
+            f"{own.__name__} has no name of its own, and {profile.name!r} would load as another "
+            "profile; set `name` in the class"
+        )
     return {"name": profile.name, **vars(profile)}
 
 

@@ -25,6 +25,10 @@ error of the fixed steps, and the better of the two is taken."""
 _SCOUTS = 12
 """Most steps along the front, about, that tell how its points are to be spaced."""
 
+_STRIDE = 4
+"""Points from one to the next at which the sweep back compares, as long as both sweeps agree, and
+at which random starts join where they do not; what is found better is carried on to the others."""
+
 _Points = tuple[list[FrontPoint | FailedPoint], bool]
 """Points, and whether these are all."""
 _Piece = tuple[list[float], NDArray[np.float64], NDArray[np.float64]]
@@ -92,7 +96,8 @@ def epsilon_front(
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = sweep.ends()
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
-    found.append(sweep.checked(ends.cheapest, {RESIDUAL_LIMIT: ends.cheapest.residual}))
+    asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
+    found.append(sweep.checked(ends.cheapest, asked, thorough=True))
     report(2, points)
     heard = _Heard(report, points)
     iterations, complete = 0, True
@@ -184,26 +189,43 @@ class _Stretch:
         return points, complete and all_checked
 
     def _sweep(self, above: Guess, below: Guess) -> None:
-        order, doubtful = range(len(self.limits)), set[int]()
-        before_sweeps = self.sweep.iterations
+        order, before_sweeps = range(len(self.limits)), self.sweep.iterations
         for i in order:
             found = self._try(i, above, done=(i + 1) // 2)
             above = found if found.status.solved else above
-        for i in reversed(order):
-            before = self.best[i]
-            found = self._try(i, below, done=len(order) - (i + 1) // 2)
-            below = found if found.status.solved else below
-            if before is None or _differ(before, found):
-                doubtful.add(i)
+        doubtful = self._back(below)
         # many terms have many minima that differ by a hair: at most double the sweeps' work
         most = 2 * self.sweep.iterations - before_sweeps
-        for i, guess in product(sorted(doubtful), self.sweep.guesses):
+        for i, guess in product(sorted(doubtful)[::_STRIDE], self.sweep.guesses):
             if self.sweep.iterations < most:
                 self._try(i, guess)
         self._carry_on(doubtful, most)
 
+    def _back(self, below: Guess) -> set[int]:
+        """Sweep back from the still end; the points at which it ended elsewhere.
+
+        Where it comes to the same motion as the sweep before it takes long strides, since both
+        would go on alike; where it finds a better one it goes back to what it left out.
+        """
+        count, doubtful = len(self.limits), set[int]()
+        i, last = count - 1, count
+        while i >= 0:
+            before = self.best[i]
+            found = self._try(i, below, done=count - (i + 1) // 2)
+            below = found if found.status.solved else below
+            improved = self.best[i] is not before
+            if improved or before is None or _differ(before, found):
+                doubtful.add(i)
+            if improved:
+                for k in range(i + 1, last):
+                    self._try(k, below)
+            last = i
+            i -= 1 if improved else _STRIDE
+        return doubtful
+
     def _try(self, i: int, guess: Guess, done: int | None = None) -> Solution:
-        found, best = self.sweep.solve(guess, self.limits[i]), self.best[i]
+        best = self.best[i]
+        found = self.sweep.solve(guess, self.limits[i], known=best)
         if best is None or better(found, best):
             self.best[i] = found
         self.done = self.done if done is None else done

@@ -26,8 +26,6 @@ MOST_FIRST_STEPS, MOST_STEPS = 1500, 6000
 """Intervals of the first grid, and those beyond which it is refined no further."""
 _MOST_COLD = 600
 """Where a warm solve fails, intervals up to which a cold one is worth its time."""
-WITHIN = 0.005
-"""Starts whose energy is within this share of the best one's are said to agree."""
 _LEAST_LEVELS = 3
 """As many as show whether the falls of the energy become smaller, and how fast."""
 _SAME = 1e-5

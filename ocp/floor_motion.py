@@ -6,9 +6,7 @@ of a smooth motion, the jerk) jumps; torque and power are one-sided there.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
-from contextlib import redirect_stderr
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -18,10 +16,9 @@ from numpy.typing import NDArray
 
 from models import Expression, JointMotion, Plant
 from ocp.collocation import GAUSS_NODES
-from ocp.errors import SolverFailedError
+from ocp.cvodes import CVODES, Trajectory, cvodes_for, outputs_of, rates_of, rest_of
 from ocp.interrupts import keep_interrupts
 from ocp.objective import Motion, resolved_energy
-from ocp.resimulation import ABSOLUTE_TOLERANCE, RELATIVE_TOLERANCE, Trajectory, rest_of
 from ocp.task import PointToPoint
 
 _PARTS = 8
@@ -147,22 +144,15 @@ def _interval(plant: Plant) -> tuple[ca.Function, ca.Function]:
     fraction = ca.SX.sym("t")
     *initial, h = ca.vertsplit(given)
     joint = joint_after(initial, fraction * h)
-    W, dW = ca.vertsplit(state[: plant.modes]), ca.vertsplit(state[plant.modes : -1])
-    ddW = plant.modal_accelerations(joint, W, dW)
-    torque = plant.torque(joint, W, dW, ddW)
-    derivative = h * ca.vertcat(*dW, *ddW, torque * joint.speed)
-    integrate = ca.integrator(
-        "interval",
-        "cvodes",
-        {"t": fraction, "x": state, "p": given, "ode": derivative},
-        0.0,
-        [(i + 1) / _PARTS for i in range(_PARTS)],
-        {"reltol": RELATIVE_TOLERANCE, "abstol": ABSOLUTE_TOLERANCE, "max_num_steps": 200_000},
-    )
+    outputs = outputs_of(plant, joint, state[:-1])
+    power = outputs[-1] * joint.speed
+    rates = h * ca.vertcat(rates_of(plant, joint, state[:-1]), power)
+    problem = {"t": fraction, "x": state, "p": given, "ode": rates}
+    ends_of_parts = [(i + 1) / _PARTS for i in range(_PARTS)]
+    integrate = ca.integrator("interval", "cvodes", problem, 0.0, ends_of_parts, CVODES)
     x, p = ca.MX.sym("x", state.numel()), ca.MX.sym("p", given.numel())
     inside = integrate(x0=x, p=p)["xf"]
     march = ca.Function("march", [x, p], [inside[:, -1], inside])
-    outputs = ca.vertcat(*joint, *W, *plant.tip_displacements(W), torque)
     return march, ca.Function("observe", [fraction, state, given], [outputs])
 
 
@@ -188,30 +178,26 @@ def simulate(task: PointToPoint, free: FreeMotion) -> FreeSimulation:
         When CVODES cannot follow the motion.
     """
     plant, steps = task.plant, free.steps
-    march, observe = _interval(plant)
     given = np.vstack(
         [free.boundaries(task.start)[:, :-1], free.acceleration, free.jerk, free.lengths]
     )
-    try:
-        with redirect_stderr(io.StringIO()):  # the error below says it for people
-            ends, inside = march.mapaccum(steps)(ca.DM.zeros(2 * plant.modes + 1), given)
-    except RuntimeError as error:
-        raise SolverFailedError(
-            f"CVODES could not follow this motion, whose largest acceleration is "
-            f"{np.abs(free.acceleration).max():g} rad/s^2; set an acceleration limit"
-        ) from error
+    with cvodes_for(
+        f", whose largest acceleration is {np.abs(free.acceleration).max():g} rad/s^2; "
+        "set an acceleration limit"
+    ):
+        march, observe = _interval(plant)
+        ends, inside = march.mapaccum(steps)(ca.DM.zeros(2 * plant.modes + 1), given)
     size, ends = 2 * plant.modes + 1, ends.full()
     begins = np.hstack([np.zeros((size, 1)), ends[:, :-1]])
     states = np.concatenate(
         [begins.T[:, None, :], inside.full().T.reshape(steps, _PARTS, size)], axis=1
     )
     fractions = np.tile(np.arange(_PARTS + 1) / _PARTS, steps)
-    rows = observe(
+    outputs = observe(
         ca.DM(fractions).T, ca.DM(states.reshape(-1, size)).T, np.repeat(given, _PARTS + 1, axis=1)
     )
-    rows = rows.full().T
     times = np.repeat(free.times[:-1], _PARTS + 1) + fractions * np.repeat(free.lengths, _PARTS + 1)
-    moving = _trajectory(plant, times, rows)
+    moving = Trajectory.from_outputs(plant, times, outputs.full())
     resting = rest_of(task, ends[:-1, -1])
     motion = Motion.from_samples(
         task,
@@ -230,18 +216,6 @@ def simulate(task: PointToPoint, free: FreeMotion) -> FreeSimulation:
                 for name, values in vars(moving).items()
             }
         ),
-    )
-
-
-def _trajectory(plant: Plant, times: NDArray[np.float64], rows: NDArray[np.float64]) -> Trajectory:
-    joint, torque = rows[:, :3], rows[:, -1]
-    return Trajectory(
-        time=times,
-        joint=joint,
-        modes=rows[:, 3 : 3 + plant.modes],
-        tips=rows[:, 3 + plant.modes : -1],
-        torque=torque,
-        power=torque * joint[:, 1],
     )
 
 

@@ -53,6 +53,15 @@ def resolved_energy(
     return ca.sum2(h * _parted_energy(c, cubic, quartic, breaks))
 
 
+def two_samples() -> NDArray[np.float64]:
+    """What the quadratic through a step's nodes gives at the two Gauss nodes, shape (2, NODES).
+
+    Each of the two samples counts half in the mean over the step.
+    """
+    x = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
+    return x[:, None] ** np.arange(NODES) @ np.array(_TO_QUADRATIC)
+
+
 def _quadratic(power: Sequence[Expression]) -> list[Expression]:
     """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
     return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]
@@ -144,11 +153,12 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     five = np.clip(NODES * step - 1, 0, len(nodes) - 5) + np.arange(5)
     x = (nodes[five] - begin) / length
     to_quartic = np.linalg.inv(x[:, :, None] ** np.arange(5))
-    at = (five % NODES * steps + five // NODES).ravel(), np.repeat(step, 5)
+    # lists: casadi takes twenty times as long over arrays here
+    at = (five % NODES * steps + five // NODES).ravel().tolist(), np.repeat(step, 5).tolist()
     cubic, quartic = to_quartic[:, 3] + 2 * to_quartic[:, 4], to_quartic[:, 4]
     return (
-        ca.DM.triplet(*at, cubic.ravel(), len(nodes), steps),
-        ca.DM.triplet(*at, quartic.ravel(), len(nodes), steps),
+        ca.DM.triplet(*at, cubic.ravel().tolist(), len(nodes), steps),
+        ca.DM.triplet(*at, quartic.ravel().tolist(), len(nodes), steps),
     )
 
 

@@ -169,7 +169,7 @@ def _one_polished(sweep: Sweep, point: FrontPoint) -> _Tried:
     solved = sweep.solve(np.array(point.coefficients), point.residual)
     if not solved.status.solved:
         return _failed(point, solved.status.text)
-    checked = sweep.checked(solved, {RESIDUAL_LIMIT: point.residual})
+    checked = sweep.checked(solved, {RESIDUAL_LIMIT: point.residual}, point.residual)
     if isinstance(checked, FailedPoint):
         return _failed(point, checked.reason)
     if checked.energy < point.energy:

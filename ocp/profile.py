@@ -35,7 +35,7 @@ class JointProfile(ABC):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if isinstance(getattr(cls, "name", None), str):
+        if isinstance(cls.__dict__.get("name"), str):
             JointProfile._known[cls.name] = cls
 
     @property

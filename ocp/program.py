@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -14,6 +14,7 @@ from models import Plant
 from ocp.collocation import NODES
 from ocp.condensed import condensed
 from ocp.interrupts import keep_interrupts
+from ocp.objective import two_samples
 from ocp.profile import JointProfile
 from ocp.residual import extreme_rows, residual_matrix
 from ocp.status import SolveStatus
@@ -38,7 +39,7 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-_SAMPLED = {**OPTIONS, "tol": 1e-5, "mu_oracle": "probing"}
+_SAMPLED = {**OPTIONS, "tol": 1e-5}
 """What remains of the sampled program's error is much less than its own distance to the truth."""
 
 
@@ -54,15 +55,27 @@ def _warm_options(barrier: float) -> dict[str, str | int | float]:
 _BESIDE = _warm_options(1e-6)
 """From the solution beside it a point of a front takes a third of the iterations with these."""
 _RESOLVED = {**OPTIONS, "tol": 1e-8}
-_FINISH = {**_warm_options(1e-8), "mu_strategy": "monotone", "max_iter": 15}
-"""From the sampled minimum; where zeros of the power meet, more iterations gain nothing."""
+_FINISH = {
+    **_warm_options(1e-8),
+    "mu_strategy": "monotone",
+    "max_iter": 15,
+    "acceptable_tol": 1e3,
+    "acceptable_dual_inf_tol": 1e10,
+    "acceptable_constr_viol_tol": 1e-8,
+    "acceptable_compl_inf_tol": 1e-5,
+    "acceptable_obj_change_tol": 1e-7,
+    "acceptable_iter": 3,
+}
+"""From the sampled minimum. Where zeros of the power meet, second derivatives are of no more use:
+the iterations end when the energy has hardly changed three times."""
 _ROWS_AT_ONCE = 32
 """Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
 _SLACK_ROOM = 1e-2
 """How far the parts of the power start from zero, as a share of the peak power."""
-_REACHES = (0.1, 0.003)
+REACHES = (0.1, 0.003)
 """How far coefficients may move from the sampled minimum, against 1 or their own size; where zeros
 of the power meet the solver loses its way beyond the second."""
+_SAME = 1e-4
 _KEPT = 1e-7
 """A motion that passes a scaled constraint by no more than this keeps it."""
 
@@ -164,6 +177,8 @@ class TaskProgram:
         limits: Mapping[str, float],
         bound: float | None,
         minimise: Mapping[str, float] = LEAST_ENERGY,
+        known: Solution | None = None,
+        reaches: Sequence[float] = REACHES,
     ) -> Solution:
         """Run the solver from one vector of coefficients, or on from another solution.
 
@@ -179,6 +194,11 @@ class TaskProgram:
             Largest absolute coefficient.
         minimise : mapping of str to float
             Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is made least.
+        known : Solution, optional
+            What another start led to: it is returned where this start leads there, too.
+        reaches : sequence of float
+            How far the coefficients may move on from the sampled minimum, one try after another
+            until the minimum of the resolved energy is reached; none leaves them there.
 
         Returns
         -------
@@ -191,7 +211,18 @@ class TaskProgram:
         else:
             start = run.start(guess.coefficients if isinstance(guess, Solution) else guess)
         found = run.solution(run.form, run.stop(run.form, start))
-        return run.finished(found) if run.form.sampled and found.status.solved else found
+        if not (run.form.sampled and found.status.solved):
+            return found
+        if known is not None and same_minimum(found, known):
+            return replace(known, iterations=found.iterations)
+        return run.finished(found, reaches)
+
+    @keep_interrupts()
+    def finished(
+        self, found: Solution, limits: Mapping[str, float], bound: float | None
+    ) -> Solution:
+        """Go on from a sampled minimum of the energy to the resolved one; arguments as before."""
+        return _Run.of(self, limits, bound, LEAST_ENERGY).finished(found, REACHES)
 
     @keep_interrupts()
     def corrected(
@@ -281,8 +312,9 @@ class _Run:
         peak = [] if form.least is None else [self._peaks(arrival, outputs)[form.least]]
         power = np.array([energy])
         if form.sampled:
-            at_nodes = self.program.by_group(outputs)["power"].ravel(order="F")
-            power = np.append(np.maximum(at_nodes, 0), np.maximum(-at_nodes, 0)) + _SLACK_ROOM
+            at_nodes = self.program.by_group(outputs)["power"].reshape(-1, NODES).T
+            sampled = (two_samples() @ at_nodes).ravel(order="F")
+            power = np.append(np.maximum(sampled, 0), np.maximum(-sampled, 0)) + _SLACK_ROOM
         return Point(np.concatenate([guess, peak, arrival if form.residual_rows else [], power]))
 
     def stop(self, form: Form, start: Point, reach: float = np.inf) -> Stop:
@@ -326,14 +358,14 @@ class _Run:
             point=stop.point,
         )
 
-    def finished(self, found: Solution) -> Solution:
+    def finished(self, found: Solution, reaches: Sequence[float]) -> Solution:
         """Go on from the sampled minimum to that of the resolved energy.
 
         What is found must keep the constraints and be better, else the given solution stands.
         Status and point stay those of the sampled program, from which a neighbouring solve starts.
         """
         best = found
-        for reach in _REACHES:
+        for reach in reaches:
             stop = self.stop(self.resolved, best.finish or self._resolved_start(found), reach)
             best = replace(best, iterations=best.iterations + stop.iterations)
             after = self._after(best, stop)
@@ -346,7 +378,7 @@ class _Run:
     def corrected(self, found: Solution) -> Solution:
         """Solve on from a solution for what is asked now, by the program that it is of."""
         if found.finish is not None:
-            stop = self.stop(self.resolved, found.finish, _REACHES[0])
+            stop = self.stop(self.resolved, found.finish, REACHES[0])
             after = self._after(replace(found, iterations=found.iterations + stop.iterations), stop)
             if after is not None:
                 return after
@@ -370,12 +402,12 @@ class _Run:
             form=found.form,
             point=found.point,
             finish=stop.point,
-            settled=after.status.solved,
+            settled=after.status is SolveStatus.OPTIMAL,
         )
 
     def _resolved_start(self, found: Solution) -> Point:
         """The same point with one energy in the place of the power at the nodes."""
-        point, power = found.point, 2 * NODES * self.program.steps
+        point, power = found.point, 4 * self.program.steps
         return Point(
             np.append(point.unknowns[:-power], found.energy / self.program.reference[ENERGY]),
             np.append(point.bound_multipliers[:-power], 0.0),
@@ -395,6 +427,13 @@ class _Run:
         return sum(
             w * values[name] / self.program.reference[name] for name, w in self.weights.items()
         )
+
+
+def same_minimum(one: Solution, other: Solution) -> bool:
+    """Whether the sampled program ended at the same place."""
+    size = len(one.coefficients)
+    here, there = one.point.unknowns[:size], other.point.unknowns[:size]
+    return one.form == other.form and np.allclose(here, there, rtol=_SAME, atol=_SAME)
 
 
 def _residual_rows(task: PointToPoint) -> NDArray[np.float64]:

@@ -1,137 +1,43 @@
-"""The independent integrator: CVODES, and a quadrature that finds the power's sign changes.
+"""The independent integrator along a profile: CVODES, sampled at the nodes of a fine quadrature.
 
-Every figure that a plan reports comes from here, not from the optimiser's own fixed steps.
+Every figure that a plan reports comes from here, not from the optimiser's own fixed steps. CVODES
+is built once for a plant and a profile: what differs between moves is a parameter, and time is the
+fraction of the duration, so that one grid of samples serves every move.
 """
 
 from __future__ import annotations
 
-import io
 import math
-from contextlib import redirect_stderr
-from dataclasses import dataclass
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models import Expression, JointMotion
-from ocp.errors import SolverFailedError
+from models import Expression, JointMotion, Plant
+from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from ocp.cvodes import (
+    CVODES,
+    Trajectory,
+    after_arrival,
+    cvodes_for,
+    outputs_at_rest,
+    outputs_of,
+    rates_of,
+    residual_of,
+)
 from ocp.interrupts import keep_interrupts
-from ocp.objective import Motion
-from ocp.profile import CycloidPolynomial, JointProfile
+from ocp.objective import Motion, beyond_quadratic, resolved_energy
+from ocp.profile import JointProfile
 from ocp.residual import fastest_mode, residual_samples
 from ocp.task import PointToPoint
 
-RELATIVE_TOLERANCE = 1e-11
-ABSOLUTE_TOLERANCE = 1e-13
-_SAMPLES = 1000
-_RADIANS_A_SAMPLE = 0.003
-"""Phase of the fastest mode between samples of the residual: misses 1.2e-6 of a peak at most."""
-
-
-@dataclass(frozen=True)
-class Trajectory:
-    """A motion sampled in time; rows are samples, arrays are read-only.
-
-    Attributes
-    ----------
-    time : ndarray, shape (samples,)
-        Times [s]; arrival is at the task's duration.
-    joint : ndarray, shape (samples, 3)
-        Angle, speed and acceleration of the joint [rad, rad/s, rad/s^2].
-    modes : ndarray, shape (samples, modes)
-        Modal amplitudes W [m].
-    tips : ndarray, shape (samples, tips)
-        Tip displacements [m].
-    torque : ndarray, shape (samples,)
-        Joint torque [N m]; after arrival, what holds the joint against the vibration.
-    power : ndarray, shape (samples,)
-        torque * speed [W].
-    """
-
-    time: NDArray[np.float64]
-    joint: NDArray[np.float64]
-    modes: NDArray[np.float64]
-    tips: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    power: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            array.setflags(write=False)
-
-
-class _Resimulation:
-    """CVODES and the plant's outputs for one task along one member of a profile."""
-
-    def __init__(
-        self, task: PointToPoint, profile: JointProfile, coefficients: tuple[float, ...]
-    ) -> None:
-        self.task, self.profile, self.coefficients = task, profile, coefficients
-        self.modes = task.plant.modes
-        self.time = ca.SX.sym("t")
-        self.state = ca.SX.sym("x", 2 * self.modes + 1)  # W, W', work
-
-    def _equations(self, moving: bool) -> tuple[JointMotion, Expression, Expression]:
-        """Joint, state derivative and outputs [angle, speed, acceleration, W, tips, torque]."""
-        plant, m = self.task.plant, self.modes
-        if moving:
-            fraction = self.time / self.task.duration
-            joint = self.profile.motion(self.coefficients, fraction, *self.task.move)
-        else:
-            joint = JointMotion(self.task.target, 0.0, 0.0)
-        W, dW = ca.vertsplit(self.state[:m]), ca.vertsplit(self.state[m : 2 * m])
-        ddW = plant.modal_accelerations(joint, W, dW)
-        torque = plant.torque(joint, W, dW, ddW)
-        derivative = ca.vertcat(*dW, *ddW, torque * joint.speed)
-        outputs = ca.vertcat(*joint, *W, *plant.tip_displacements(W), torque)
-        return joint, derivative, outputs
-
-    def run(
-        self, times: NDArray[np.float64], initial: NDArray[np.float64], moving: bool
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """States and outputs (samples in rows) at increasing times; `initial` is at the first."""
-        _, derivative, outputs = self._equations(moving)
-        if len(times) > 1:
-            integrate = ca.integrator(
-                "resimulation",
-                "cvodes",
-                {"t": self.time, "x": self.state, "ode": derivative},
-                float(times[0]),
-                times[1:].tolist(),
-                {"reltol": RELATIVE_TOLERANCE, "abstol": ABSOLUTE_TOLERANCE,
-                 "max_num_steps": 200_000},
-            )  # fmt: skip
-            try:
-                with redirect_stderr(io.StringIO()):  # the error below says it for people
-                    later = integrate(x0=ca.DM(initial))["xf"].full().T
-            except RuntimeError as error:
-                raise SolverFailedError(
-                    "CVODES could not follow this motion; are the coefficients far out of scale? "
-                    f"(largest is {max(map(abs, self.coefficients), default=0.0):g})"
-                ) from error
-            states = np.vstack([initial, later])
-        else:
-            states = initial[None, :]
-        observe = ca.Function("observe", [self.time, self.state], [outputs])
-        return states, observe(ca.DM(times).T, ca.DM(states.T)).full().T
-
-    def trajectory(self, times: NDArray[np.float64], rows: NDArray[np.float64]) -> Trajectory:
-        """Outputs, a row a time, by their names."""
-        m = self.modes
-        joint, torque = rows[:, :3].copy(), rows[:, -1].copy()
-        return Trajectory(
-            time=times.copy(),
-            joint=joint,
-            modes=rows[:, 3 : 3 + m].copy(),
-            tips=rows[:, 3 + m : -1].copy(),
-            torque=torque,
-            power=torque * joint[:, 1],
-        )
-
-    @property
-    def at_rest(self) -> NDArray[np.float64]:
-        return np.zeros(2 * self.modes + 1)
+_STEPS = 500
+"""Steps of the quadrature, or a multiple: its nodes are a thousandth of the move apart at most."""
+_STEPS_A_RADIAN = 10
+"""The same in radians of the plant's fastest mode."""
 
 
 @keep_interrupts()  # casadi loses a Ctrl-C
@@ -167,16 +73,16 @@ def sample_trajectory(
     ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
     if not (ordered and np.all(np.isfinite(grid))):
         raise ValueError("sample times must be finite and increase from 0 or later")
-    flow = _Resimulation(task, profile, profile.checked(coefficients))
-    before = grid[grid <= task.duration]
-    after = grid[grid > task.duration]
-    move_times = np.union1d(before, [0.0, task.duration])
-    states, outputs = flow.run(move_times, flow.at_rest, moving=True)
-    rows = outputs[np.isin(move_times, before)]
-    if after.size:
-        rest_times = np.concatenate([[task.duration], after])
-        rows = np.vstack([rows, flow.run(rest_times, states[-1], moving=False)[1][1:]])
-    return flow.trajectory(grid, rows)
+    checked = profile.checked(coefficients)
+    moving, later = grid[grid <= task.duration], grid[grid > task.duration] - task.duration
+    fractions, at = np.unique(np.append(moving / task.duration, [0.0, 1.0]), return_inverse=True)
+    with _cvodes_along(checked):
+        states, outputs = _along(task.plant, profile, fractions)([*checked, *task.move])
+        rows = outputs.full()[:, at[:-2]]
+        if later.size:
+            resting = after_arrival(task.plant, task.target, later)(x0=states[:, -1])["xf"]
+            rows = np.hstack([rows, outputs_at_rest(task, resting)])
+    return Trajectory.from_outputs(task.plant, grid, rows)
 
 
 def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Motion:
@@ -193,8 +99,7 @@ def resimulated(
 ) -> tuple[Motion, NDArray[np.float64]]:
     """Residual, energy and diagnostics of a motion by CVODES, and its state on arrival.
 
-    The signed work is integrated along with the modes; the energy is the sum of its absolute
-    changes between the power's sign changes, which are located on a fine grid first.
+    CVODES gives the modes at the nodes of a fine quadrature, which finds the power's sign changes.
 
     Parameters
     ----------
@@ -220,42 +125,64 @@ def resimulated(
         When CVODES cannot follow the motion.
     """
     residual_samples(task)  # refuses a window beyond reason
-    flow = _Resimulation(task, profile, profile.checked(coefficients))
-    samples = max(_SAMPLES, math.ceil(20 * fastest_mode(task) * task.duration))
-    times = np.linspace(0.0, task.duration, samples + 1)
-    states, outputs = flow.run(times, flow.at_rest, moving=True)
-    power = outputs[:, -1] * outputs[:, 1]
-    energy = _energy(flow, times, power)
-
-    tip_columns = slice(3 + flow.modes, -1)
+    checked = profile.checked(coefficients)
+    blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / _STEPS)
+    with _cvodes_along(checked):
+        figures = _figures(task.plant, profile, _STEPS * max(1, blocks))
+        values = [value.full() for value in figures([*checked, *task.move])]
+    extremes, arrival, energy, net_work = values
+    extreme = Trajectory.from_outputs(task.plant, np.zeros(2), extremes)
     motion = Motion.from_samples(
         task,
-        outputs[:, :3],
-        outputs[:, tip_columns],
-        outputs[:, -1],
-        residual=float(np.abs(rest_of(task, states[-1, :-1]).tips).max()),
-        energy=energy,
-        net_work=float(states[-1, -1]),
+        extreme.joint,
+        extreme.tips,
+        extreme.torque,
+        residual=residual_of(task, arrival[:, 0]),
+        energy=energy.item(),
+        net_work=net_work.item(),
     )
-    return motion, states[-1, :-1]
+    return motion, arrival[:, 0]
 
 
+def _cvodes_along(coefficients: Sequence[float]) -> AbstractContextManager[None]:
+    largest = max(map(abs, coefficients), default=0.0)
+    return cvodes_for(f"; are the coefficients far out of scale? (largest is {largest:g})")
+
+
+@lru_cache(maxsize=16)
 @keep_interrupts()
-def rest_of(task: PointToPoint, arrival: ArrayLike) -> Trajectory:
-    """What happens in the residual window, from W (m) and then W' (m/s) at arrival, by CVODES."""
-    flow = _Resimulation(task, CycloidPolynomial(0), ())
-    window = math.ceil(task.residual_window * fastest_mode(task) / _RADIANS_A_SAMPLE) + 1
-    times = task.duration + np.linspace(0.0, task.residual_window, window)
-    _, outputs = flow.run(times, np.append(arrival, 0.0), moving=False)
-    return flow.trajectory(times, outputs)
+def _figures(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
+    """(coefficients and move) -> extremes of the outputs, state at arrival, energy, net work."""
+    begin, length = mesh(ca.DM(np.arange(steps)).T, steps)
+    nodes = ca.vec(ca.vertcat(*(begin + node * length for node in GAUSS_NODES))).full().ravel()
+    given = ca.MX.sym("p", profile.size + 3)
+    states, outputs = _along(plant, profile, np.concatenate([[0.0], nodes, [1.0]]))(given)
+    rows = ca.vertsplit(outputs)
+    extremes = ca.vertcat(*(ca.horzcat(ca.mmin(row), ca.mmax(row)) for row in rows))
+    power, h = (rows[-1] * rows[1])[1:-1], given[-1] * length
+    at_nodes = ca.vertsplit(ca.reshape(power, NODES, steps))
+    beyond = (ca.horzcat(*at_nodes) @ weights for weights in beyond_quadratic(steps))
+    energy = resolved_energy(at_nodes, h, *beyond)
+    net_work = ca.sum2(h * sum(w * p for w, p in zip(GAUSS_WEIGHTS, at_nodes, strict=True)))
+    return ca.Function("figures", [given], [extremes, states[:, -1], energy, net_work])
 
 
-def _energy(flow: _Resimulation, times: NDArray[np.float64], power: NDArray[np.float64]) -> float:
-    """Integral of |power|, from the signed work at its sign changes."""
-    change = np.flatnonzero(power[:-1] * power[1:] < 0)
-    share = power[change] / (power[change] - power[change + 1])
-    zeros = times[change] + share * (times[change + 1] - times[change])
-    # The ends, and samples where the power is exactly 0, as halfway through a symmetric motion.
-    breaks = np.union1d(zeros, np.concatenate([times[[0, -1]], times[power == 0]]))
-    work = flow.run(breaks, flow.at_rest, moving=True)[0][:, -1]
-    return float(np.abs(np.diff(work)).sum())
+def _along(plant: Plant, profile: JointProfile, fractions: NDArray[np.float64]) -> ca.Function:
+    """(coefficients and move) -> states and outputs at these fractions of the move, from 0 on."""
+
+    def joint(given: Expression, fraction: Expression) -> JointMotion:
+        entries = ca.vertsplit(given)
+        return profile.motion(entries[:-3], fraction, *entries[-3:])
+
+    size, count = 2 * plant.modes, len(fractions)
+    state, fraction, given = ca.SX.sym("x", size), ca.SX.sym("t"), ca.SX.sym("p", profile.size + 3)
+    rates = given[-1] * rates_of(plant, joint(given, fraction), state)
+    problem = {"t": fraction, "x": state, "p": given, "ode": rates}
+    integrate = ca.integrator("move", "cvodes", problem, 0.0, fractions[1:].tolist(), CVODES)
+    states, fraction = ca.MX.sym("x", size, count), ca.MX.sym("t", 1, count)
+    given = ca.MX.sym("p", profile.size + 3)
+    outputs = outputs_of(plant, joint(given, fraction), states)
+    observe = ca.Function("observe", [fraction, states, given], [outputs])
+    at_rest = ca.DM.zeros(size)
+    states = ca.horzcat(at_rest, integrate(x0=at_rest, p=given)["xf"])
+    return ca.Function("along", [given], [states, observe(ca.DM(fractions).T, states, given)])

@@ -12,15 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 from ocp.feasibility import explain, least_peaks
 from ocp.plan import Plan
 from ocp.profile import CycloidPolynomial, JointProfile
-from ocp.program import Solution, TaskProgram
+from ocp.program import Solution, TaskProgram, same_minimum
 from ocp.provenance import Provenance, SolveSettings, Verification
 from ocp.rollout import default_steps
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 from ocp.verification import MOST_STEPS, verified
 
-LEAST_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 24, 80, 8
+LEAST_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 32, 80, 8
 """Steps that a profile needs: more where more terms let the power change sign more often."""
+_HIDDEN = 2e-3
+"""Share of the energy by which sampled minima can lie above the resolved ones beside them."""
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
 
@@ -118,7 +120,7 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = min(max(LEAST_STEPS, STEPS_A_TERM * (profile.size - 3)), MOST_LEAST_STEPS)
+    least = min(max(LEAST_STEPS, STEPS_A_TERM * (profile.size - 2)), MOST_LEAST_STEPS)
     steps = settings.steps or default_steps(task, least=least)
     if steps > MOST_STEPS and settings.steps is None:
         raise ValueError(
@@ -170,15 +172,25 @@ def least_energy(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    solutions = [program.solve(guess, limits, bound) for guess in guesses]
+    solutions = [program.solve(guess, limits, bound, reaches=()) for guess in guesses]
     solved = [solution for solution in solutions if solution.status.solved]
     if not solved:
         least = least_peaks(program, profile, limits, bound, guesses[:2])
         rescues = [found.coefficients for name, found in least.items()
                    if found.peaks[name] <= limits[name]]  # fmt: skip
-        solutions += [program.solve(guess, limits, bound) for guess in rescues]
+        solutions += [program.solve(guess, limits, bound, reaches=()) for guess in rescues]
         solved = [solution for solution in solutions if solution.status.solved]
         if not solved:
             raise explain(profile, limits, bound, solutions, least)
-    best = min(solved, key=lambda solution: solution.energy)
-    return replace(best, iterations=sum(solution.iterations for solution in solutions))
+    before = sum(solution.iterations for solution in solutions)
+    least, finished = min(map(_energy, solved)), list[Solution]()
+    for found in sorted(solved, key=_energy):
+        near = found.energy <= least * (1 + _HIDDEN)
+        if near and not any(same_minimum(found, other) for other in finished):
+            finished.append(program.finished(replace(found, iterations=0), limits, bound))
+    best = min(finished, key=_energy)
+    return replace(best, iterations=before + sum(found.iterations for found in finished))
+
+
+def _energy(found: Solution) -> float:
+    return found.energy

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from models import JointMotion, Plant
-from ocp.collocation import NODES, eliminate, step
+from models import Expression, JointMotion, Plant
+from ocp.collocation import NODES, NodeState, eliminate, step
 
 JOINT = len(JointMotion._fields)
 """Numbers that say how the joint moves at one time."""
@@ -39,6 +39,20 @@ def groups_of(plant: Plant, quantities: Sequence[str]) -> list[Group]:
     return groups
 
 
+def quantities_at(
+    plant: Plant, joint: JointMotion, node: NodeState
+) -> dict[str, Sequence[Expression]]:
+    """The power and every quantity that can be limited, at one node [SI units]."""
+    torque = plant.torque(joint, node.W, node.dW, node.ddW)
+    return {
+        "power": [torque * joint.speed],
+        "torque": [torque],
+        "speed": [joint.speed],
+        "acceleration": [joint.acceleration],
+        "deflection": plant.tip_displacements(node.W),
+    }
+
+
 class LiftedStep:
     """A step's outputs and collocation equations in its joint q, state and accelerations W''.
 
@@ -66,21 +80,14 @@ class LiftedStep:
             for joint, node in zip(joints, nodes, strict=True)
         ]
         self.residual = self.accelerations - ca.vertcat(*(x for row in equations for x in row))
-        torque = [
-            plant.torque(joint, node.W, node.dW, node.ddW)
-            for joint, node in zip(joints, nodes, strict=True)
+        at_nodes = [
+            quantities_at(plant, joint, node) for joint, node in zip(joints, nodes, strict=True)
         ]
-        values = {
-            "power": [t * joint.speed for t, joint in zip(torque, joints, strict=True)],
-            "torque": torque,
-            "speed": [joint.speed for joint in joints],
-            "acceleration": [joint.acceleration for joint in joints],
-            "deflection": [tip for node in nodes for tip in plant.tip_displacements(node.W)],
-        }
         W_after, dW_after = one.end(W, dW, ddW)
         rows = [ca.vertcat(*W_after, *dW_after) / scale[:size]]
         for i, group in enumerate(groups[1:]):
-            rows.append(ca.vertcat(*values[group.name]) / scale[size + i])
+            values = [value for at_node in at_nodes for value in at_node[group.name]]
+            rows.append(ca.vertcat(*values) / scale[size + i])
         self.outputs = ca.vertcat(*rows)
 
     def of(self, joint: ca.SX, expression: ca.SX) -> ca.SX:
@@ -101,10 +108,10 @@ class LiftedStep:
         """
         explicit = ca.vertcat(self.joint, state)
         by_acceleration = ca.jacobian(self.residual, self.accelerations)
-        moves = -_solve(by_acceleration, ca.jacobian(self.residual, explicit))
+        moves = -solve(by_acceleration, ca.jacobian(self.residual, explicit))
         lagrangian = ca.dot(multipliers, self.outputs)
         adjoint = ca.SX.sym("mu", self.residual.numel())
-        stationary = -_solve(by_acceleration.T, ca.gradient(lagrangian, self.accelerations))
+        stationary = -solve(by_acceleration.T, ca.gradient(lagrangian, self.accelerations))
         hessian, gradient = ca.hessian(
             lagrangian + ca.dot(adjoint, self.residual), ca.vertcat(explicit, self.accelerations)
         )
@@ -123,7 +130,8 @@ class LiftedStep:
         return self.of(joint, first), self.of(joint, second)
 
 
-def _solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
+def solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
+    """`matrix`^-1 `right`; what is zero in both for good stays out of the graph."""
     rows = eliminate(_nested(matrix), _nested(right))
     return ca.vertcat(*(ca.horzcat(*row) for row in rows))
 

@@ -15,12 +15,12 @@ from ocp.front import FailedPoint, Front, FrontPoint, non_dominated, reference_c
 from ocp.interrupts import note_interrupts
 from ocp.objective import Motion
 from ocp.profile import JointProfile
-from ocp.program import LEAST_ENERGY, Solution, TaskProgram
+from ocp.program import LEAST_ENERGY, REACHES, Solution, TaskProgram
 from ocp.provenance import SolveSettings
 from ocp.solver import first_steps, least_energy, start_coefficients
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
-from ocp.verification import STILL, verified
+from ocp.verification import ENOUGH_STEPS, MOST_STEPS, STILL, verified
 
 RESIDUAL_LIMIT = "residual_limit"
 Guess = NDArray[np.float64] | Solution
@@ -120,6 +120,7 @@ class Sweep:
         guess: Guess,
         residual_limit: float = np.inf,
         minimise: Mapping[str, float] = LEAST_ENERGY,
+        known: Solution | None = None,
     ) -> Solution:
         """Run the solver from one start, and again without its multipliers where that fails.
 
@@ -131,6 +132,8 @@ class Sweep:
             Largest residual [m].
         minimise : mapping of str to float
             As for `TaskProgram.solve`.
+        known : Solution, optional
+            As for `TaskProgram.solve`.
 
         Returns
         -------
@@ -138,10 +141,12 @@ class Sweep:
             The solution, whatever its status.
         """
         limits = {**self.task.limits, RESIDUAL: residual_limit}
-        found = self.program.solve(guess, limits, self.settings.bound, minimise)
+        found = self.program.solve(
+            guess, limits, self.settings.bound, minimise, known, reaches=REACHES[:1]
+        )
         self.iterations += found.iterations
         if isinstance(guess, Solution) and not found.status.solved:
-            return self.solve(guess.coefficients, residual_limit, minimise)
+            return self.solve(guess.coefficients, residual_limit, minimise, known)
         return found
 
     def ends(self) -> Ends:
@@ -184,16 +189,25 @@ class Sweep:
         bound, limits = self.settings.bound, {**self.task.limits, RESIDUAL: 0.0}
         try:
             found = least_energy(self.program, self.profile, limits, bound, self.guesses)
-            found, motion, self.steps = verified(self.program, found, limits, bound)
+            found, motion, self.steps = verified(
+                self.program, found, limits, bound, enough_steps=self.steps
+            )
+            end, motion, _ = verified(self.program, found, limits, bound)
         except SolverFailedError:
             return None
-        self.iterations += found.iterations
-        return found, self._point(found, motion)
+        self.iterations += end.iterations
+        return found, self._point(end, motion)
 
     def _point(self, found: Solution, motion: Motion) -> FrontPoint:
         return FrontPoint(self.profile.checked(found.coefficients), motion.residual, motion.energy)
 
-    def checked(self, found: Solution, asked: Mapping[str, float]) -> FrontPoint | FailedPoint:
+    def checked(
+        self,
+        found: Solution,
+        asked: Mapping[str, float],
+        most_residual: float = np.inf,
+        thorough: bool = False,
+    ) -> FrontPoint | FailedPoint:
         """Give a solution the figures of the independent integrator.
 
         Parameters
@@ -202,23 +216,28 @@ class Sweep:
             A solution of the program.
         asked : mapping of str to float
             What was asked for.
+        most_residual : float
+            Largest residual [m] that the point may have; it may be a little off that asked for.
+        thorough : bool
+            Whether to take more steps where the solver did not settle at the minimum.
 
         Returns
         -------
         FrontPoint or FailedPoint
             The point, or why it cannot be trusted.
         """
-        limit = max(found.peaks[RESIDUAL], STILL) * (1 + _SAMPLING)
-        limits = {**self.task.limits, RESIDUAL: limit}
+        limits = {**self.task.limits, RESIDUAL: found.residual}
+        kept = {**self.task.limits, RESIDUAL: most_residual}
         try:
-            kept, motion, _ = verified(
+            point, motion, _ = verified(
                 self.program, found, limits, self.settings.bound,
-                most_steps=_MORE_STEPS * self.steps,
+                most_steps=MOST_STEPS if thorough else _MORE_STEPS * self.steps,
+                enough_steps=ENOUGH_STEPS if thorough else self.steps, kept=kept,
             )  # fmt: skip
         except SolverFailedError as error:
             return FailedPoint(asked, str(error))
-        self.iterations += kept.iterations - found.iterations  # more steps, or tighter limits
-        return self._point(kept, motion)
+        self.iterations += point.iterations - found.iterations  # more steps, or tighter limits
+        return self._point(point, motion)
 
     def all_checked(
         self,

@@ -4,9 +4,10 @@ Unknowns are the coefficients, the least peak where one is asked for, the state 
 residual is limited (its many rows then have few entries), and what the energy is made of. This
 comes in two forms of the same program:
 
-- sampled: the power at every Gauss node is the difference of two unknowns that are not negative,
-  and their sum is |power| there. The solver decides node by node, as in a linear program, and comes
-  to the minimum from far away in 15 to 30 iterations; but between the nodes energy can hide;
+- sampled: the power at two samples of every step is the difference of two unknowns that are not
+  negative, and their sum is |power| there. The solver decides sample by sample, as in a linear
+  program, and comes to the minimum from far away in 15 to 30 iterations; but between the samples a
+  little energy can hide;
 - resolved: one unknown is the energy with its sign changes resolved. Its second derivatives are
   exact where a solution is near, and unbounded where zeros of the power meet: a few iterations lead
   from the sampled minimum to the true one.
@@ -26,9 +27,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.collocation import GAUSS_WEIGHTS, NODES
-from ocp.condensed import Condensed
+from ocp.collocation import NODES
+from ocp.condensed import Condensed, Inputs, March, Sensitivities
 from ocp.interrupts import keep_interrupts
+from ocp.objective import two_samples
 from ocp.symbols import split
 
 RESIDUAL = "residual"
@@ -93,30 +95,29 @@ class NonlinearProgram:
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, motion: Condensed, form: Form, options: Options, warm_options: Options):
         self.motion, self.form = motion, form
+        self._samples, self._sampling = 2 * motion.steps, two_samples()
         self.sizes = {
             "coefficients": motion.size,
             "peak": 0 if form.least is None else 1,
             "arrival": motion.states if form.residual_rows else 0,
-            "power": 2 * NODES * motion.steps if form.sampled else 1,
+            "power": 2 * self._samples if form.sampled else 1,
         }
         """How many unknowns of each kind, in their order."""
         x = ca.MX.sym("x", self.unknowns)
         parts = dict(zip(self.sizes, split(x, list(self.sizes.values())), strict=True))
         sizes = [3, motion.scales, 2, motion.states, form.residual_rows * motion.states]
+        sizes.append(motion.basis_size)
         p = ca.MX.sym("p", sum(sizes))
-        move, scale, weights, offset, residual = split(p, sizes)
+        move, scale, weights, offset, residual, basis = split(p, sizes)
         residual = ca.reshape(residual, form.residual_rows, motion.states)
-        inputs = (parts["coefficients"], move, scale)
+        inputs = Inputs(parts["coefficients"], move, scale, basis)
         objective = weights[0] * self._energy(parts["power"]) + weights[1] * ca.sum1(parts["peak"])
-        arrival, by_step = motion.simulate(*inputs)
-        values = (arrival + offset, by_step)
-        g = ca.vertcat(*(row for rows in self._rows(values, parts, residual) for row in rows))
-        first = ca.Function(
-            "nlp_jac_g", [x, p], [g, self._jacobian(inputs, residual)], ["x", "p"], ["g", "jac_g_x"]
-        )
+        linearised = march, first = motion.linearised(inputs)
+        g = self._constraints(march, parts, offset, residual)
+        jacobian = self._jacobian(march, first, residual)
         options_of_both = {
-            "jac_g": first,
-            "hess_lag": self._hessian(x, p, inputs, g.numel()),
+            "jac_g": ca.Function("nlp_jac_g", [x, p], [g, jacobian], ["x", "p"], ["g", "jac_g_x"]),
+            "hess_lag": self._hessian(x, p, inputs, linearised, g.numel()),
             "calc_lam_p": False,
             "no_nlp_grad": True,
             "print_time": False,
@@ -172,7 +173,7 @@ class NonlinearProgram:
         with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
             result = solver(
                 x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper,
-                p=parameters, **known,
+                p=np.append(parameters, self.motion.basis(parameters[:3])), **known,
             )  # fmt: skip
         point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
         g, stats = result["g"].full().ravel(), solver.stats()
@@ -184,26 +185,26 @@ class NonlinearProgram:
     def _energy(self, power: ca.MX) -> ca.MX:
         if not self.form.sampled:
             return power
-        above, below = ca.vertsplit(power, NODES * self.motion.steps)
-        return ca.dot(np.outer(self.motion.lengths, GAUSS_WEIGHTS).ravel(), above + below)
+        above, below = ca.vertsplit(power, self._samples)
+        return ca.dot(np.repeat(self.motion.lengths, 2) / 2, above + below)
 
-    def _rows(
-        self, values: Sequence[ca.MX], parts: Mapping[str, ca.MX], residual: ca.MX
-    ) -> list[list[ca.MX]]:
-        arrival, by_step = values
+    def _constraints(
+        self, march: March, parts: Mapping[str, ca.MX], offset: ca.MX, residual: ca.MX
+    ) -> ca.MX:
+        motion, power, arrival = self.motion, march.outputs[0, :], march.arrival + offset
         if self.form.sampled:
-            above, below = ca.vertsplit(parts["power"], NODES * self.motion.steps)
-            rows = [[ca.vec(by_step[:NODES, :]) - above + below]]
+            above, below = ca.vertsplit(parts["power"], self._samples)
+            sampled = self._sampling @ ca.reshape(power, NODES, motion.steps)
+            rows = [ca.vec(sampled) - above + below]
         else:
-            rows = [[self.motion.energy(by_step)[0] - parts["power"]]]
-        rows.append([arrival - parts["arrival"] if self.form.residual_rows else arrival])
+            rows = [motion.energy.value(power) - parts["power"]]
+        rows.append(arrival - parts["arrival"] if self.form.residual_rows else arrival)
         for group in self._limited:
-            first = group.first - self.motion.states
-            value = ca.vec(by_step[first : first + group.rows, :])
-            rows.append(self._within(group.name, value, parts["peak"]))
+            value = motion.of_group(ca.vec(march.outputs).T, group.name).T
+            rows += self._within(group.name, value, parts["peak"])
         if self.form.residual_rows:
-            rows.append(self._within(RESIDUAL, residual @ parts["arrival"], parts["peak"]))
-        return rows
+            rows += self._within(RESIDUAL, residual @ parts["arrival"], parts["peak"])
+        return ca.vertcat(*rows)
 
     def _within(self, name: str, value: ca.MX, peak: ca.MX) -> list[ca.MX]:
         return [value - peak, value + peak] if name == self.form.least else [value]
@@ -216,9 +217,9 @@ class NonlinearProgram:
         self, limits: Mapping[str, float]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         motion, form = self.motion, self.form
-        zeros = (NODES * motion.steps if form.sampled else 1) + motion.states
+        zeros = (self._samples if form.sampled else 1) + motion.states
         lower, upper = [np.zeros(zeros)], [np.zeros(zeros)]
-        counts = {group.name: group.rows * motion.steps for group in self._limited}
+        counts = {group.name: group.rows * motion.nodes for group in self._limited}
         if form.residual_rows:
             counts[RESIDUAL] = form.residual_rows
         for name, count in counts.items():
@@ -239,62 +240,72 @@ class NonlinearProgram:
             *(ca.MX(blocks.get(name, ca.DM(count, size))) for name, size in self.sizes.items())
         )
 
-    def _jacobian(self, inputs: tuple[ca.MX, ca.MX, ca.MX], residual: ca.MX) -> ca.MX:
+    def _jacobian(self, march: March, first: Sensitivities, residual: ca.MX) -> ca.MX:
         motion, form = self.motion, self.form
-        found = motion.sensitivities(*inputs)
-        power, power_first = motion.of_group(found, "power")
-        count = power.numel()
+        power_first = motion.of_group(first.outputs, "power")
         if form.sampled:
+            count = self._samples
+            by_node = ca.reshape(power_first.T, NODES, motion.steps * motion.size)
+            of_samples = ca.reshape(self._sampling @ by_node, count, motion.size)
             signs = ca.horzcat(-ca.DM.eye(count), ca.DM.eye(count))
-            rows = [self._row(count, coefficients=power_first, power=signs)]
+            rows = [self._row(count, coefficients=of_samples, power=signs)]
         else:
-            gradient = ca.vec(motion.energy(found.by_step)[1]).T @ power_first
-            rows = [self._row(1, coefficients=gradient, power=ca.DM(-1))]
+            gradient = power_first @ motion.energy.first(march.outputs[0, :])[0]
+            rows = [self._row(1, coefficients=gradient.T, power=ca.DM(-1))]
         arrived = -ca.DM.eye(motion.states) if form.residual_rows else ca.DM(motion.states, 0)
-        rows.append(self._row(motion.states, coefficients=found.arrival_first, arrival=arrived))
+        rows.append(self._row(motion.states, coefficients=first.arrival.T, arrival=arrived))
 
-        def limited(name: str, count: int, **first: ca.MX) -> None:
+        def limited(name: str, count: int, **blocks: ca.MX) -> None:
             if name == form.least:
                 ones = ca.DM.ones(count, 1)
-                rows.extend(self._row(count, **first, peak=sign * ones) for sign in (-1, 1))
+                rows.extend(self._row(count, **blocks, peak=sign * ones) for sign in (-1, 1))
             else:
-                rows.append(self._row(count, **first))
+                rows.append(self._row(count, **blocks))
 
         for group in self._limited:
-            of_values = motion.of_group(found, group.name)[1]
+            of_values = motion.of_group(first.outputs, group.name).T
             limited(group.name, of_values.shape[0], coefficients=of_values)
         if form.residual_rows:
             limited(RESIDUAL, form.residual_rows, arrival=residual)
         return ca.vertcat(*rows)
 
     def _hessian(
-        self, x: ca.MX, p: ca.MX, inputs: tuple[ca.MX, ca.MX, ca.MX], constraints: int
+        self,
+        x: ca.MX,
+        p: ca.MX,
+        inputs: Inputs,
+        linearised: tuple[March, Sensitivities],
+        constraints: int,
     ) -> ca.Function:
         motion, form = self.motion, self.form
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
-        sizes = [NODES * motion.steps if form.sampled else 1, motion.states]
+        sizes = [self._samples if form.sampled else 1, motion.states]
         for group in self._limited:
-            sizes += [group.rows * motion.steps] * (2 if group.name == form.least else 1)
+            sizes += [group.rows * motion.nodes] * (2 if group.name == form.least else 1)
         of_energy, of_arrival, *of_values, _ = split(
             multipliers, [*sizes, constraints - sum(sizes)]
         )
-        bends = None
+        march, first = linearised
+        by_energy = ca.MX(motion.size, motion.size)
         if form.sampled:
-            of_outputs = [ca.reshape(of_energy, NODES, motion.steps)]
+            of_samples = ca.reshape(of_energy, 2, motion.steps)
+            of_outputs = [ca.vec(self._sampling.T @ of_samples).T]
         else:
-            _, gradient, bends = motion.energy(motion.simulate(*inputs)[1])
-            of_outputs, bends = [of_energy * gradient], of_energy * bends
+            gradient, bends = motion.energy.first(march.outputs[0, :])
+            of_outputs = [of_energy * gradient.T]
+            of_power = motion.of_group(first.outputs, "power")
+            by_energy = of_energy * motion.of_bends(of_power, bends)
         for group in self._limited:
             weight = of_values.pop(0)
             if group.name == form.least:
                 weight += of_values.pop(0)
-            of_outputs.append(ca.reshape(weight, group.rows, motion.steps))
-        curvature = motion.curvature(inputs, of_arrival, ca.vertcat(*of_outputs), bends)
+            of_outputs.append(ca.reshape(weight, group.rows, motion.nodes))
+        curvature = motion.curvature(inputs, linearised, of_arrival, ca.vertcat(*of_outputs))
         rest = self.unknowns - motion.size
         return ca.Function(
             "nlp_hess_l",
             [x, p, of_objective, multipliers],
-            [ca.triu(ca.diagcat(curvature, ca.MX(rest, rest)))],
+            [ca.triu(ca.diagcat(curvature + by_energy, ca.MX(rest, rest)))],
             ["x", "p", "lam_f", "lam_g"],
             ["triu_hess_gamma_x_x"],
         )

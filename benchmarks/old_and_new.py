@@ -1,0 +1,247 @@
+"""Plans and fronts by two versions of quietarm in one run: time ratios and energies.
+
+    python benchmarks/old_and_new.py [--old a41b84d] [--repetitions 3] [--only plans fronts ...]
+
+The old version is taken from this repository's history into a temporary folder; nothing needs to be
+installed for it. Each version runs in a process of its own, the two in turn, so that what else the
+machine does meets both alike. Only functions that both have are called: `plan_move`,
+`epsilon_front`. Times are the processor's. Printed are medians, the ratio old / new, and how much
+higher (+) or lower (-) the new energies are, all by each version's own CVODES figures.
+
+- plans: the second plan of the same shape, one start, six terms; the paper's six conditions in its
+  boxes and four others.
+- fronts: 50 points by the epsilon constraint; the same conditions.
+- hard: 20 terms, all limits at once, two modes; one start, second plan.
+- modes: plants of 1 to 12 modes at rest on arrival, 2 x modes + 4 terms, first plan of its shape.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tarfile
+import tempfile
+import time
+from dataclasses import dataclass
+from io import BytesIO
+from math import pi
+from pathlib import Path
+from statistics import median
+from typing import ClassVar
+
+ROOT = Path(__file__).resolve().parents[1]
+BEFORE = "a41b84d"
+"""The last commit before the program was condensed."""
+
+
+def main() -> None:
+    """Compare two versions, or be one of them."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--old", default=BEFORE, help="commit of the old version")
+    parser.add_argument("--repetitions", type=int, default=3)
+    parser.add_argument("--only", nargs="*", default=["plans", "fronts", "hard", "modes"])
+    parser.add_argument("--serve", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.serve:
+        serve()
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        unpack(options.old, Path(folder))
+        versions = [Version(Path(folder)), Version(ROOT)]
+        for group in options.only:
+            compare(group, versions, 1 if group == "modes" else options.repetitions)
+
+
+def unpack(commit: str, folder: Path) -> None:
+    """The files of a commit."""
+    archive = subprocess.run(
+        ["git", "archive", commit], cwd=ROOT, stdout=subprocess.PIPE, check=True
+    ).stdout
+    with tarfile.open(fileobj=BytesIO(archive)) as tar:
+        tar.extractall(folder, filter="data")
+
+
+class Version:
+    """A process that runs one version."""
+
+    def __init__(self, folder: Path) -> None:
+        self.process = subprocess.Popen(
+            [sys.executable, "-W", "ignore", __file__, "--serve"],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=folder,
+            env={"PYTHONPATH": str(folder), "PATH": "/usr/bin:/bin"},
+        )  # fmt: skip
+
+    def __call__(self, group: str, name: str) -> dict:
+        """Do one piece of work there."""
+        self.process.stdin.write(json.dumps([group, name]) + "\n")
+        self.process.stdin.flush()
+        return json.loads(self.process.stdout.readline())
+
+
+def compare(group: str, versions: list[Version], repetitions: int) -> None:
+    """Print a table for a group of work."""
+    print(f"\n| {group} | old [s] | new [s] | old / new | energy | |")
+    print("|---|---|---|---|---|---|")
+    ratios = []
+    for name in versions[1](group, ""):
+        runs = [[version(group, name) for version in versions] for _ in range(repetitions)]
+        old, new = (median(run[i]["seconds"] for run in runs) for i in range(2))
+        ratio = median(run[0]["seconds"] / run[1]["seconds"] for run in runs)
+        ratios.append(ratio)
+        before, after = (run["energy"] for run in runs[-1])
+        change = f"{after / before - 1:+.1e}" if before and after else ""
+        notes = " / ".join(run["note"] for run in runs[-1])
+        print(f"| {name} | {old:.3f} | {new:.3f} | {ratio:.1f} | {change} | {notes} |", flush=True)
+    print(f"| median | | | {median(ratios):.1f} | least {min(ratios):.1f} | |")
+
+
+# -- in the process of one version --
+
+
+def serve() -> None:
+    """Answer a line with a line, until there are no more."""
+    work = {"plans": plans(), "fronts": fronts(), "hard": hard(), "modes": modes()}
+    for line in sys.stdin:
+        group, name = json.loads(line)
+        answer = list(work[group]) if not name else work[group][name]()
+        print(json.dumps(answer), flush=True)
+
+
+def conditions() -> dict:
+    """The paper's six, in its boxes, and four of our own, by name: task and bound."""
+    from models import ArmOnFlexibleLink, SingleLinkManipulator
+    from ocp import PointToPoint
+
+    link, arm = SingleLinkManipulator(), ArmOnFlexibleLink()
+    return {
+        "link, 0 to pi/6, 0.8 s": (PointToPoint(link, pi / 6, 0.8), 0.2),
+        "link, 0 to pi/2, 1.0 s": (PointToPoint(link, pi / 2, 1.0), 0.2),
+        "link, 0 to pi/2, 1.1 s": (PointToPoint(link, pi / 2, 1.1), 0.2),
+        "arm, 0 to pi/2, 0.8 s": (PointToPoint(arm, pi / 2, 0.8), 0.5),
+        "arm, -pi/2 to pi/4, 1.0 s": (PointToPoint(arm, pi / 4, 1.0, -pi / 2), 0.5),
+        "arm, -pi/2 to pi/2, 1.2 s": (PointToPoint(arm, pi / 2, 1.2, -pi / 2), 0.5),
+        "link, 0 to pi/4, 0.9 s, no box": (PointToPoint(link, pi / 4, 0.9), None),
+        "link, 0 to 1, 1.0 s, no box": (PointToPoint(link, 1.0, 1.0), None),
+        "arm, 0 to pi/2, 0.8 s, no box": (PointToPoint(arm, pi / 2, 0.8), None),
+        "arm, 0 to 1, 0.7 s, 0.5 N m": (PointToPoint(arm, 1.0, 0.7, torque_limit=0.5), 0.5),
+    }
+
+
+def plan(task, terms: int, first: bool = False, **settings) -> dict:
+    """Time the second plan of a shape, or the first, and say what it found."""
+    from ocp import CycloidPolynomial, QuietarmError, plan_move
+
+    profile = CycloidPolynomial(terms)
+    try:
+        if not first:
+            plan_move(task, profile, starts=1, **settings)
+        began = time.process_time()
+        found = plan_move(task, profile, starts=1, **settings)
+    except (QuietarmError, ValueError) as error:
+        note = " ".join(str(error).split()[:8])
+        return {"seconds": time.process_time() - began, "energy": None, "note": note}
+    note = f"{found.residual:.0e} m"
+    return {"seconds": time.process_time() - began, "energy": found.energy, "note": note}
+
+
+def plans() -> dict:
+    """One plan for each condition."""
+    return {
+        name: lambda task=task, bound=bound: plan(task, 6, bound=bound)
+        for name, (task, bound) in conditions().items()
+    }
+
+
+def fronts() -> dict:
+    """One front for each condition."""
+    from ocp import epsilon_front
+
+    def front(task, bound) -> dict:
+        began = time.process_time()
+        found = epsilon_front(task, bound=bound)
+        seconds = time.process_time() - began
+        return {
+            "seconds": seconds,
+            "energy": found.energies.mean(),
+            "note": f"{len(found.points)} points, {found.evaluations} iterations",
+        }
+
+    return {
+        name: lambda task=task, bound=bound: front(task, bound)
+        for name, (task, bound) in conditions().items()
+    }
+
+
+def hard() -> dict:
+    """What was slow before."""
+    from models import ArmOnFlexibleLink, SingleLinkManipulator
+    from ocp import PointToPoint
+
+    arm = PointToPoint(ArmOnFlexibleLink(), pi / 2, 0.8)
+    link = PointToPoint(SingleLinkManipulator(), pi / 2, 1.0)
+    limited = PointToPoint(
+        SingleLinkManipulator(), pi / 6, 0.8,
+        torque_limit=0.13, speed_limit=1.4, acceleration_limit=20.0, deflection_limit=0.06,
+    )  # fmt: skip
+    two = PointToPoint(links(2), pi / 2, 0.9)
+    return {
+        "arm, 20 terms, box 0.5": lambda: plan(arm, 20, bound=0.5),
+        "arm, 20 terms, no box": lambda: plan(arm, 20),
+        "link, 20 terms, box 0.2": lambda: plan(link, 20, bound=0.2),
+        "link, all limits": lambda: plan(limited, 6),
+        "link, all limits, 1 mm": lambda: plan(limited, 6, residual_limit=1e-3),
+        "two modes, 6 terms": lambda: plan(two, 6),
+        "two modes, 10 terms, box 0.5": lambda: plan(two, 10, bound=0.5),
+    }
+
+
+def modes() -> dict:
+    """Plants of many modes."""
+    from ocp import PointToPoint
+
+    return {
+        f"{count} modes": lambda count=count: plan(
+            PointToPoint(links(count), pi / 2, 1.0), 2 * count + 4, first=True
+        )
+        for count in (1, 2, 4, 6, 8, 10, 12)
+    }
+
+
+def links(count: int):
+    """Flexible links on one hub, invented; frequencies from 8 to 40 rad/s."""
+    import numpy as np
+
+    from models import Plant, parameter
+
+    frequencies = np.linspace(8.0, 40.0, count).tolist()
+
+    @dataclass(frozen=True)
+    class Links(Plant):
+        name: ClassVar[str] = f"links-{count}"
+        modes: ClassVar[int] = count
+
+        inertia: float = parameter(0.03, "kg m^2", "invented")
+        c: float = parameter(0.03, "N m s", "invented")
+
+        def modal_accelerations(self, joint, W, dW):
+            return [
+                -0.02 * omega * dW[i]
+                - (omega**2 + 0.01 * joint.speed**2) * W[i]
+                - 0.25 * joint.acceleration / (1 + i)
+                for i, omega in enumerate(frequencies)
+            ]
+
+        def torque(self, joint, W, dW, ddW):
+            of_links = sum(0.05 / (1 + i) * ddW[i] for i in range(count))
+            return self.inertia * joint.acceleration + self.c * joint.speed + of_links
+
+        def tip_displacements(self, W):
+            return [sum(2 * (-1) ** i * W[i] for i in range(count))]
+
+    return Links()
+
+
+if __name__ == "__main__":
+    main()
