@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from ocp import CycloidPolynomial, residual_matrix, rollout
-from ocp.collocation import GAUSS_WEIGHTS, NODES
+from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from ocp.condensed import Condensed
 from ocp.transcription import RESIDUAL, Form, NonlinearProgram, Point
 
 STEPS, TERMS, ROWS = 4, 3, 6
+SAMPLES = 2 * STEPS
 PROFILE = CycloidPolynomial(TERMS)
 COEFFICIENTS = np.array([0.1, -0.2, 0.15])
 QUIET = {"print_level": 0, "sb": "yes"}
@@ -64,12 +65,12 @@ def _functions(program):
 
 
 def _parameters(program, seed):
-    """Move, scales, weights, correction of the arrival, residual matrix by columns."""
+    """Move, scales, weights, correction of the arrival, residual matrix by columns, basis."""
     random, motion = np.random.default_rng(seed), program.motion
     move, scale = [-0.4, 1.1, 0.7], random.uniform(0.5, 2.0, motion.scales)
     weights, offset = random.uniform(0.1, 1.0, 2), random.normal(size=motion.states)
     matrix = random.normal(size=program.form.residual_rows * motion.states)
-    return np.concatenate([move, scale, weights, offset, matrix])
+    return np.concatenate([move, scale, weights, offset, matrix, motion.basis(np.array(move))])
 
 
 def _random_point(program, seed):
@@ -162,13 +163,20 @@ def test_the_hessian_of_the_resolved_energy_is_that_of_differences(compiled, nam
 # -- what the program states --
 
 
+def _samples(power):
+    """The quadratic through a step's three nodes at the two Gauss nodes, step by step."""
+    at = (np.polynomial.legendre.leggauss(2)[0] + 1) / 2
+    steps = np.reshape(power, (-1, NODES))
+    return np.concatenate([np.polyval(np.polyfit(GAUSS_NODES, step, 2), at) for step in steps])
+
+
 class _Stated:
     """A motion put into a program: what it is, and the unknowns that agree with it."""
 
     def __init__(self, program, p, a=COEFFICIENTS):
         motion, form = program.motion, program.form
         sizes = [3, motion.scales, 2, motion.states, form.residual_rows * motion.states]
-        move, scale, self.weights, offset, matrix = np.split(p, np.cumsum(sizes)[:-1])
+        move, scale, self.weights, offset, matrix, _ = np.split(p, np.cumsum(sizes))
         states, outputs, energy = (x.full() for x in motion.figures(a, move, scale))
         self.energy, self.arrival = energy.item(), states[:, -1] + offset
         first = motion.states
@@ -177,16 +185,17 @@ class _Stated:
             for group in motion.groups[1:]
         }
         self.power = self.values.pop("power")
+        self.samples = _samples(self.power)
         if form.residual_rows:
             rows = matrix.reshape(form.residual_rows, motion.states, order="F")
             self.values[RESIDUAL] = rows @ self.arrival
         self.peaks = {name: np.abs(value).max() for name, value in self.values.items()}
-        self.mean = np.outer(motion.lengths, GAUSS_WEIGHTS).ravel() @ np.abs(self.power)
+        self.mean = np.repeat(motion.lengths, 2) / 2 @ np.abs(self.samples)
         parts = {
             "coefficients": a,
             "peak": [] if form.least is None else [self.peaks[form.least]],
             "arrival": self.arrival if form.residual_rows else [],
-            "power": np.append(np.maximum(self.power, 0), np.maximum(-self.power, 0))
+            "power": np.append(np.maximum(self.samples, 0), np.maximum(-self.samples, 0))
             if form.sampled
             else [self.energy],
         }
@@ -203,13 +212,13 @@ def test_the_unknowns_stand_in_their_order(program):
         peak = stated.unknowns[program.part("peak")]
         assert peak.tolist() == [stated.peaks[program.form.least]]
     power = stated.unknowns[program.part("power")]
-    assert len(power) == (2 * NODES * STEPS if program.form.sampled else 1)
+    assert len(power) == (2 * SAMPLES if program.form.sampled else 1)
 
 
 def test_the_constraints_are_equations_and_values_to_be_bounded(program):
     stated, form = _Stated(program, p := _parameters(program, 3)), program.form
     rest = _functions(program)["nlp_g"](stated.unknowns, p).full().ravel()
-    energy, rest = np.split(rest, [NODES * STEPS if form.sampled else 1])
+    energy, rest = np.split(rest, [SAMPLES if form.sampled else 1])
     assert np.abs(energy).max() < 1e-13
     arrival, rest = np.split(rest, [program.motion.states])
     expected = np.zeros_like(arrival) if form.residual_rows else stated.arrival
@@ -242,7 +251,7 @@ def test_limits_bound_their_own_quantity_from_both_sides(program, limits):
     lower, upper = program._constraint_bounds(limits)
     stated, form = _Stated(program, p := _parameters(program, 5)), program.form
     assert len(lower) == len(upper) == _functions(program)["nlp_g"](stated.unknowns, p).numel()
-    equations = (NODES * STEPS if form.sampled else 1) + program.motion.states
+    equations = (SAMPLES if form.sampled else 1) + program.motion.states
     assert not lower[:equations].any()
     assert not upper[:equations].any()
     place = equations
@@ -272,7 +281,8 @@ def test_both_forms_state_what_the_rollout_finds(tasks, compiled, sampled, name,
     program = compiled(name, "all limits", form, steps)
     scale, weights = np.ones(program.motion.scales), [1.0, 0.0]
     nothing = np.zeros(program.motion.states)
-    p = np.concatenate([task.move, scale, weights, nothing, matrix.ravel(order="F")])
+    parts = [task.move, scale, weights, nothing, matrix.ravel(order="F")]
+    p = np.concatenate([*parts, program.motion.basis(np.array(task.move))])
     stated = _Stated(program, p)
     fixed = rollout(task, PROFILE, COEFFICIENTS, steps=steps)
     assert stated.arrival == pytest.approx(np.array(fixed.arrival), rel=1e-10)
@@ -282,11 +292,11 @@ def test_both_forms_state_what_the_rollout_finds(tasks, compiled, sampled, name,
     net_work = task.duration * weights @ stated.power
     assert net_work == pytest.approx(fixed.motion.net_work, rel=1e-9)
     functions = _functions(program)
-    equations = (NODES * steps if sampled else 1) + program.motion.states
+    equations = (2 * steps if sampled else 1) + program.motion.states
     g = functions["nlp_g"](stated.unknowns, p).full().ravel()
     assert np.abs(g[:equations]).max() < 1e-12
     energy = task.duration * float(functions["nlp_f"](stated.unknowns, p))
-    if sampled:  # between the nodes some energy hides: never less than the net work is seen
+    if sampled:  # between the samples some energy hides: never less than the net work is seen
         assert energy >= abs(fixed.motion.net_work)
         assert energy == pytest.approx(task.duration * stated.mean, rel=1e-12)
     else:
@@ -300,7 +310,7 @@ def test_scales_divide_states_and_quantities(compiled):
         x.full() for x in program.motion.figures(COEFFICIENTS, move, np.ones(4))
     )
     divided = [x.full() for x in program.motion.figures(COEFFICIENTS, move, scale)]
-    expected = states / [[2.0], [3.0]], outputs / np.repeat([5.0, 7.0], NODES)[:, None], energy / 5
+    expected = states / [[2.0], [3.0]], outputs / [[5.0], [7.0]], energy / 5
     for found, value in zip(divided, expected, strict=True):
         assert found == pytest.approx(value, rel=1e-12, abs=1e-15)
 
