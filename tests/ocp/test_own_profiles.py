@@ -10,7 +10,8 @@ import pytest
 
 from models import JointMotion
 from ocp import JointProfile, Plan, PointToPoint, plan_move, resimulate, rollout
-from ocp.condensed import Condensed
+from ocp.condensed import Condensed, Inputs
+from ocp.pieces import ProfilePieces
 from ocp.program import TaskProgram
 from ocp.rollout import symbolic_rollout
 from ocp.transcription import RESIDUAL
@@ -158,34 +159,32 @@ def test_first_and_second_derivatives_are_those_of_the_plain_rollout(plants, pro
     plant, a = plants[name], ca.SX.sym("a", profile.size)
     numbers, move = _coefficients(profile, seed=steps), [-0.4, 1.1, 0.7]
     plain = symbolic_rollout(plant, profile, ca.vertsplit(a), move, steps)
-    everything = ca.vertcat(plain.arrival.T, ca.vec(ca.vertcat(*plain.power, *plain.torque)))
+    in_time = [ca.vec(ca.vertcat(*entries)).T for entries in (plain.power, plain.torque)]
+    everything = ca.vertcat(plain.arrival.T, ca.vec(ca.vertcat(*in_time)))
     multipliers = np.random.default_rng(3).normal(size=everything.numel())
     hessian = ca.hessian(ca.dot(multipliers, everything), a)[0]
     plain = ca.Function("plain", [a], [everything, ca.jacobian(everything, a), hessian])
     value, first, second = (x.full() for x in plain(numbers))
 
     motion = Condensed(plant, profile, steps, ("torque",))
-    symbols = motion.inputs()
-    of_arrival = multipliers[: motion.states]
-    of_outputs = multipliers[motion.states :].reshape(motion.rows, steps, order="F")
-    curvature = motion.curvature(symbols, ca.MX(ca.DM(of_arrival)), ca.MX(ca.DM(of_outputs)))
-    found = ca.Function("found", [*symbols], [*motion.sensitivities(*symbols), curvature])
-    arrival, by_step, arrival_first, outputs_first, found_second = (
-        x.full() for x in found(numbers, move, np.ones(motion.scales))
-    )
-    states = motion.states
-    assert arrival.ravel() == pytest.approx(value[:states].ravel(), rel=1e-9)
-    assert by_step.ravel(order="F") == pytest.approx(value[states:].ravel(), rel=1e-9, abs=1e-12)
-    size = np.abs(first).max()
-    assert arrival_first == pytest.approx(first[:states], abs=1e-11 * size)
-    of_outputs_first = outputs_first.T
-    assert of_outputs_first == pytest.approx(first[states:], abs=1e-11 * size)
+    at = (numbers, move, np.ones(motion.scales), motion.basis(np.array(move)))
+    symbols = Inputs(*(ca.MX.sym("x", len(x)) for x in at))
+    linearised = march, slopes = motion.linearised(symbols)
+    of_arrival = ca.DM(multipliers[: motion.states])
+    of_outputs = ca.DM(multipliers[motion.states :].reshape(motion.rows, -1, order="F"))
+    curvature = motion.curvature(symbols, linearised, ca.MX(of_arrival), ca.MX(of_outputs))
+    values = ca.vertcat(march.arrival, ca.vec(march.outputs))
+    both = ca.horzcat(slopes.arrival, slopes.outputs).T
+    found = ca.Function("found", [*symbols], [values, both, curvature])(*at)
+    found_value, found_first, found_second = (x.full() for x in found)
+    assert found_value == pytest.approx(value, rel=1e-9, abs=1e-12)
+    assert found_first == pytest.approx(first, abs=1e-11 * np.abs(first).max())
     assert found_second == pytest.approx(second, abs=1e-10 * np.abs(second).max())
 
 
-def test_only_a_linear_inner_layer_has_no_second_derivatives(plants):
-    motions = {name: Condensed(plants["arm"], profile, 2, ()) for name, profile in PROFILES.items()}
-    bent = {name for name, motion in motions.items() if motion._inner_second is not None}
+def test_only_a_linear_inner_layer_has_no_second_derivatives():
+    pieces = {name: ProfilePieces(profile, 2) for name, profile in PROFILES.items()}
+    bent = {name for name, piece in pieces.items() if piece.second is not None}
     assert bent == {"waves", "neurons"}
 
 
