@@ -17,7 +17,7 @@ from ocp import (
 )
 from ocp.feasibility import explain
 from ocp.program import Solution
-from ocp.transcription import Point
+from ocp.transcription import Form, Point
 
 # Name, terms, task's limits, settings of the solve.
 CASES = {
@@ -136,7 +136,8 @@ def test_an_infeasible_task_is_a_failed_solve_is_quietarms_own():
 
 
 def _solution(status, **peaks):
-    return Solution(np.zeros(3), 1.0, peaks, status, 0.0, 9, Point(np.empty(0)))
+    stopped = {"form": Form(False, 0, None), "point": Point(np.empty(0))}
+    return Solution(np.zeros(3), 1.0, peaks, status, 0.0, 9, np.zeros(2), **stopped)
 
 
 @pytest.mark.parametrize("status", [SolveStatus.ITERATION_LIMIT, SolveStatus.NUMERICAL_TROUBLE])

@@ -1,25 +1,19 @@
-"""The gradient answer: the paper's moves, limits, determinism, optimality, users' own parts."""
+"""The gradient answer: optimality, determinism, limits, other moves, a user's own plant."""
 
 import itertools
 import math
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
-import casadi as ca
 import numpy as np
 import pytest
 
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import (
     CycloidPolynomial,
-    JointProfile,
-    Plan,
     PointToPoint,
     SolveSettings,
-    SolveStatus,
     plan_move,
     resimulate,
     rollout,
@@ -29,81 +23,8 @@ from ocp.task import LIMITS
 
 pi = math.pi
 
-# The rows of Tables 3 and 6: name, start, target, duration, and the box of eqs (12) and (17).
-ROWS = {
-    "single link, pi/6 in 0.8 s": ("single link", 0.0, pi / 6, 0.8, 0.2),
-    "single link, pi/2 in 1.0 s": ("single link", 0.0, pi / 2, 1.0, 0.2),
-    "single link, pi/2 in 1.1 s": ("single link", 0.0, pi / 2, 1.1, 0.2),
-    "arm, 0 to pi/2 in 0.8 s": ("arm", 0.0, pi / 2, 0.8, 0.5),
-    "arm, -pi/2 to pi/4 in 1.0 s": ("arm", -pi / 2, pi / 4, 1.0, 0.5),
-    "arm, -pi/2 to pi/2 in 1.2 s": ("arm", -pi / 2, pi / 2, 1.2, 0.5),
-}
-# F2 in the box (docs/physics.md, 'The published optima are not optimal'), rounded up.
-ASKED = dict(zip(ROWS, (0.0445, 0.2199, 0.1591, 0.1316, 0.1379, 0.1954), strict=True))
-# F2 of another optimiser (the same table): in the box and without it, each with its last digit.
-IN_BOX = dict(zip(ROWS, ("0.0445", "0.220", "0.159", "0.1315", "0.138", "0.195"), strict=True))
-WITHOUT = dict(zip(ROWS, ("0.0237", "0.142", "0.121", "0.124", "0.136", "0.193"), strict=True))
-# F2 printed in Tables 3 and 6, 'Present'.
-PRINTED = dict(zip(ROWS, (5.15e-2, 2.96e-1, 2.23e-1, 1.49e-1, 1.43e-1, 2.00e-1), strict=True))
 
-
-@pytest.fixture
-def planned(plants, solved):
-    """The plan of a row, in its box or without."""
-
-    def of(row, in_box):
-        name, start, target, duration, box = ROWS[row]
-        task = PointToPoint(plants[name], target, duration, start=start)
-        return solved(task, bound=box if in_box else None)
-
-    return of
-
-
-def _digit(text):
-    return 10.0 ** -len(text.partition(".")[2])
-
-
-# -- the paper's moves --
-
-
-@pytest.mark.parametrize("row", ROWS)
-def test_the_least_energy_is_reached_in_the_papers_box(planned, row):
-    plan = planned(row, in_box=True)
-    verified = resimulate(plan.task, plan.profile, plan.coefficients)
-    assert verified.energy <= ASKED[row]
-    assert verified.residual < 1e-7
-    assert len(plan.coefficients) == 6
-    assert np.abs(plan.coefficients).max() <= ROWS[row][-1] * (1 + 1e-7)
-    assert plan.status is SolveStatus.OPTIMAL
-
-
-@pytest.mark.parametrize("row", ROWS)
-@pytest.mark.parametrize(("in_box", "energies"), [(True, IN_BOX), (False, WITHOUT)])
-def test_the_energy_is_that_of_another_gradient_solve(planned, row, in_box, energies):
-    energy, expected = planned(row, in_box).energy, energies[row]
-    assert energy == pytest.approx(float(expected), abs=0.5 * _digit(expected))
-
-
-@pytest.mark.parametrize("row", ROWS)
-def test_the_energy_is_lower_without_the_box_and_still_at_rest(planned, row):
-    free = planned(row, in_box=False)
-    assert free.energy < planned(row, in_box=True).energy
-    assert resimulate(free.task, free.profile, free.coefficients).residual < 1e-7
-
-
-@pytest.mark.parametrize("row", ROWS)
-def test_the_papers_energy_is_beaten_in_its_own_box(planned, row):
-    assert planned(row, in_box=True).energy < 0.98 * PRINTED[row]
-
-
-@pytest.mark.parametrize("row", ROWS)
-def test_a_plans_figures_are_those_of_the_other_integrator(planned, row):
-    plan = planned(row, in_box=True)
-    assert plan.motion == resimulate(plan.task, plan.profile, plan.coefficients)
-    check = plan.verification
-    assert check.fixed_step_energy == pytest.approx(plan.energy, rel=1e-3)
-    assert check.energy_difference == check.fixed_step_energy - plan.energy
-    assert check.residual_difference == check.fixed_step_residual - plan.residual
+# -- terms --
 
 
 @pytest.mark.parametrize("name", ["single link", "arm"])
@@ -324,13 +245,16 @@ def test_tiny_and_huge_moves_arrive_at_rest(span):
     assert plan.residual < 1e-7 * max(1.0, span)
 
 
+@pytest.mark.parametrize("steps", [2, 3])
 @pytest.mark.parametrize("limit", [0.0, 1e-6])
-def test_too_few_steps_are_doubled_until_the_integrators_agree(tasks, limit):
-    profile, settings = CycloidPolynomial(4), {"starts": 2, "residual_limit": limit}
-    plan = plan_move(tasks["single link"], profile, steps=10, **settings)
-    assert plan.verification.steps in (20, 40, 80, 160)
-    assert plan.residual <= max(limit, 1e-7) * (1 + 1e-6)
+def test_too_few_steps_are_doubled_until_the_integrators_agree(tasks, solved, limit, steps):
+    settings = {"starts": 2, "residual_limit": limit}
+    plan = plan_move(tasks["single link"], CycloidPolynomial(4), steps=steps, **settings)
+    assert plan.verification.steps in [steps * 2**k for k in range(1, 8)]
+    assert plan.residual <= max(limit, 1e-8) * (1 + 1e-6)
     assert plan.verification.fixed_step_energy == pytest.approx(plan.energy, rel=1e-3)
+    usual = solved(tasks["single link"], 4, **settings)
+    assert plan.energy == pytest.approx(usual.energy, rel=1e-5)
 
 
 def test_six_terms_by_default(tasks, solved):
@@ -339,7 +263,7 @@ def test_six_terms_by_default(tasks, solved):
     assert default.profile == CycloidPolynomial(6)
 
 
-# -- a user's own plant and profile --
+# -- a user's own plant --
 
 
 def test_a_users_plant_of_two_modes_arrives_at_rest(tasks, solved):
@@ -357,49 +281,14 @@ def test_four_terms_still_two_modes_but_two_do_not(tasks, solved):
     assert solved(tasks["two links"], 6).energy < solved(tasks["two links"], 4).energy
 
 
-@pytest.mark.parametrize("limit", ["torque_limit", "deflection_limit"])
-def test_a_users_plant_keeps_limits(tasks, solved, limit):
+# Six terms, four of them for rest, leave little: no motion has less than 0.953 of the torque.
+@pytest.mark.parametrize(("limit", "share"), [("torque_limit", 0.97), ("deflection_limit", 0.95)])
+def test_a_users_plant_keeps_limits(tasks, solved, limit, share):
     task, quantity = tasks["two links"], limit.removesuffix("_limit")
-    value = 0.95 * solved(task).motion.peak(quantity)
+    value = share * solved(task).motion.peak(quantity)
     plan = solved(PointToPoint(task.plant, task.target, task.duration, **{limit: value}))
     assert plan.motion.peak(quantity) <= value * (1 + 1e-6)
     assert plan.energy > solved(task).energy
-
-
-@dataclass(frozen=True)
-class _Waves(JointProfile):
-    """A user's own family: U = x + sum_j a_j sin(j pi x), x = t/T."""
-
-    name: ClassVar[str] = "waves-of-a-test"
-    waves: int = 4
-
-    @property
-    def size(self):
-        return self.waves
-
-    def derivatives(self, coefficients, fraction, start, target, duration):
-        U, dU, ddU, dddU = fraction, 1 / duration, 0.0, 0.0
-        for j, a in enumerate(coefficients, start=1):
-            rate = j * pi / duration
-            sine, cosine = ca.sin(j * pi * fraction), ca.cos(j * pi * fraction)
-            U, dU = U + a * sine, dU + a * rate * cosine
-            ddU, dddU = ddU - a * rate**2 * sine, dddU - a * rate**3 * cosine
-        span, turn = target - start, 2 * pi
-        sine, cosine = ca.sin(turn * U), ca.cos(turn * U)
-        return (
-            start + span * (U - sine / turn),
-            span * (1 - cosine) * dU,
-            span * (turn * sine * dU**2 + (1 - cosine) * ddU),
-            span * (turn**2 * cosine * dU**3 + 3 * turn * sine * dU * ddU + (1 - cosine) * dddU),
-        )
-
-
-def test_a_users_profile_is_planned_with_and_kept(tasks, tmp_path):
-    plan = plan_move(tasks["single link"], _Waves(5), starts=2)
-    assert plan.residual < 1e-7
-    assert plan.energy < 0.0911  # the plain cycloid's 0.09115 J (docs/physics.md), which also rings
-    plan.save(tmp_path / "plan.json")
-    assert Plan.load(tmp_path / "plan.json") == plan
 
 
 # -- bad input --
