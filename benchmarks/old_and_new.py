@@ -211,7 +211,7 @@ def modes() -> dict:
 
 
 def links(count: int):
-    """Flexible links on one hub, invented; frequencies 8, 15, 22, ... rad/s, told apart within a move of 1 s."""
+    """Flexible links on one hub, invented; 8, 15, 22, ... rad/s: told apart within 1 s."""
     import numpy as np
 
     from models import Plant, parameter
