@@ -17,7 +17,7 @@ from models import Expression, JointMotion
 
 MAX_TERMS = 32
 """Most terms of the polynomial. Its powers of T on [-1, 1] are told apart by double precision with
-a condition number that grows like (1 + sqrt 2)^N: 2e12 at 32 terms, which leaves four digits of a
+a condition number that grows like (1 + sqrt 2)^N: 4e11 at 32 terms, which leaves four digits of a
 coefficient. The solver works along other axes, in which that does not matter."""
 
 

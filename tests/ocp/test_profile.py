@@ -282,8 +282,8 @@ def test_a_users_family_is_known_from_its_definition_on(monkeypatch):
     assert known_profiles()["of-a-user"] is mine
 
 
-def test_twenty_terms_still_tell_the_powers_apart():
-    # The doc of MAX_TERMS: the condition number of the powers of T on [-1, 1] leaves eight digits.
+def test_the_most_terms_still_tell_the_powers_apart():
+    # The doc of MAX_TERMS: the condition number of the powers of T on [-1, 1] leaves four digits.
     T = np.cos(np.linspace(0, np.pi, 400))
     condition = np.linalg.cond(np.vander(T, MAX_TERMS))
-    assert condition * np.finfo(float).eps < 1e-8
+    assert condition * np.finfo(float).eps < 1e-4
