@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -183,7 +183,8 @@ class Condensed:
         if self._profile.second:
             return np.eye(self.size)
         weights = np.sqrt(np.repeat(self.lengths, NODES))
-        triangle = np.linalg.qr((self._linear_inner(move)[1][:, ::INNER] * weights).T, mode="r")
+        slopes: Any = self._linear_inner(move)[1][:, ::INNER]
+        triangle: Any = np.linalg.qr((slopes * weights).T, mode="r")
         return np.linalg.inv(triangle) * triangle[0, 0]
 
     def _linear_inner(

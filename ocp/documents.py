@@ -26,7 +26,7 @@ def versions() -> dict[str, str]:
     """Versions of what computed an answer."""
     return {
         "quietarm": __version__,
-        "casadi": ca.__version__,
+        "casadi": ca.CasadiMeta.version(),
         "numpy": np.__version__,
         "python": platform.python_version(),
     }

@@ -289,12 +289,12 @@ class NonlinearProgram:
         by_energy = ca.MX(motion.size, motion.size)
         if form.sampled:
             of_samples = ca.reshape(of_energy, 2, motion.steps)
-            of_outputs = [ca.vec(self._sampling.T @ of_samples).T]
+            of_power = ca.vec(self._sampling.T @ of_samples).T
         else:
             gradient, bends = motion.energy.first(march.outputs[0, :])
-            of_outputs = [of_energy * gradient.T]
-            of_power = motion.of_group(first.outputs, "power")
-            by_energy = of_energy * motion.of_bends(of_power, bends)
+            of_power = of_energy * gradient.T
+            by_energy = of_energy * motion.of_bends(motion.of_group(first.outputs, "power"), bends)
+        of_outputs: list[ca.MX] = [of_power]
         for group in self._limited:
             weight = of_values.pop(0)
             if group.name == form.least:
