@@ -66,11 +66,12 @@ def _plain(plant, profile, steps, quantities, second):
 class _Both:
     """The condensed motion and the plain rollout of the same case, with scales."""
 
-    def __init__(self, plant, profile, quantities, steps, second):
+    def __init__(self, plant, profile, quantities, steps, second, axes=None):
         self.motion = motion = Condensed(plant, profile, steps, quantities)
         self.plain = _plain(plant, profile, steps, quantities, second)
         scale = np.random.default_rng(steps).uniform(0.5, 2.0, motion.scales)
         self.inputs = (np.resize(COEFFICIENTS, profile.size), MOVE, scale)
+        self.basis = motion.basis(MOVE, np.eye(profile.size) if axes is None else axes)
         self.symbols = Inputs(
             *(ca.MX.sym("x", x.size) for x in self.inputs), ca.MX.sym("b", motion.basis_size)
         )
@@ -83,15 +84,15 @@ class _Both:
 
     def evaluated(self, *expressions):
         """Numbers of expressions in the symbols, where the case stands."""
-        return _full(self._function(*expressions)(*self.inputs, self.motion.basis(MOVE)))
+        return _full(self._function(*expressions)(*self.inputs, self.basis))
 
     def simulated(self, a):
         """Arrival (states, 1) and outputs (rows, nodes)."""
-        return _full(self._march(a, *self.inputs[1:], self.motion.basis(MOVE)))
+        return _full(self._march(a, *self.inputs[1:], self.basis))
 
     def firsts(self, a):
         """Derivatives by the coefficients: of the arrival and of the outputs, node by node."""
-        return _full(self._first(a, *self.inputs[1:], self.motion.basis(MOVE)))
+        return _full(self._first(a, *self.inputs[1:], self.basis))
 
     def curvature(self, of_arrival, of_outputs):
         given = ca.MX(ca.DM(of_arrival)), ca.MX(ca.DM(of_outputs))
@@ -205,6 +206,37 @@ def test_first_derivatives_are_the_limit_of_differences(case):
         size = np.abs(outputs).max()
         assert of_arrival[i] == pytest.approx(arrival.ravel(), abs=1e-8 * size)
         assert of_outputs[i] == pytest.approx(outputs.ravel(order="F"), abs=1e-8 * size)
+
+
+@pytest.mark.parametrize("name", ["arm", "two links"])
+def test_along_other_axes_the_same_motion_is_a_function_of_other_unknowns(plants, name):
+    # The coefficients are the axes times the unknowns; derivatives follow by the chain rule.
+    axes = np.random.default_rng(7).uniform(-1.0, 1.0, (TERMS, TERMS))
+    case = _Both(plants[name], CycloidPolynomial(TERMS), ("torque",), 4, second=False, axes=axes)
+    usual = _Both(plants[name], CycloidPolynomial(TERMS), ("torque",), 4, second=False)
+    a = np.linalg.solve(axes, COEFFICIENTS)
+    for found, expected in zip(case.simulated(a), usual.simulated(COEFFICIENTS), strict=True):
+        assert found == pytest.approx(expected, rel=1e-10, abs=1e-12)
+    for found, expected in zip(case.firsts(a), usual.firsts(COEFFICIENTS), strict=True):
+        assert found == pytest.approx(axes.T @ expected, abs=1e-11 * np.abs(expected).max())
+    multipliers = _multipliers(case.motion, 0)
+    case.inputs = (a, *case.inputs[1:])
+    expected = axes.T @ usual.curvature(*multipliers) @ axes
+    found = case.curvature(*multipliers)
+    assert found == pytest.approx(expected, abs=1e-11 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("terms", [3, 12, 20])
+def test_along_even_axes_the_input_moves_alike_and_independently(plants, terms):
+    # U at the nodes moves by functions of T that are orthogonal over the move, all of one size.
+    motion = Condensed(plants["arm"], CycloidPolynomial(terms), 80, ())
+    basis = motion.basis(MOVE, motion.even_axes(MOVE))
+    slopes = basis[3 * motion.nodes :].reshape(terms, 3, motion.nodes, order="F")
+    U = slopes[:, 0]
+    gram = (U * np.repeat(motion.lengths, NODES)) @ U.T
+    assert gram == pytest.approx(gram[0, 0] * np.eye(terms), abs=1e-6 * gram[0, 0])
+    # The first of them is that of a_1: 1 - T^2, whose integral of squares over T is 16/15.
+    assert gram[0, 0] == pytest.approx(NODES * 16 / 15 / 2, rel=1e-3)
 
 
 # -- second derivatives --

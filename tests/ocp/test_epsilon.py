@@ -25,6 +25,7 @@ from ocp import (
 )
 from ocp.epsilon import _Stretch
 from ocp.provenance import SolveSettings
+from ocp.solver import first_steps
 from ocp.status import SolveStatus
 from ocp.sweep import Sweep
 from ocp.transcription import NonlinearProgram
@@ -84,7 +85,10 @@ def test_every_point_has_the_figures_of_the_independent_integrator(case):
 def test_a_front_says_where_it_comes_from(case, tmp_path):
     task, bound, front = case
     assert (front.method, front.complete, front.failures) == ("epsilon", True, ())
-    assert front.settings == {"bound": bound, "points": POINTS, "starts": 4, "steps": 80}
+    asked, steps = dict(front.settings), front.settings["steps"]
+    assert asked == {"bound": bound, "points": POINTS, "starts": 4, "steps": steps}
+    # The first steps, doubled while the independent integrator disagrees.
+    assert steps in [first_steps(task, front.profile, SolveSettings()) * 2**k for k in range(4)]
     assert front.reference == reference_corner(task)
     assert front.evaluations > POINTS  # iterations: several a point
     front.save(tmp_path / "front.json")
@@ -164,7 +168,7 @@ def test_a_process_that_dies_costs_its_own_stretch_only():
 
 def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
     task, bound = CASES["arm"]
-    monkeypatch.setattr(Sweep, "checked", lambda self, found, asked: FailedPoint(asked, "why"))
+    monkeypatch.setattr(Sweep, "checked", lambda self, found, asked, **_: FailedPoint(asked, "why"))
     for method in (epsilon_front, weighted_front):
         front = method(task, CycloidPolynomial(3), bound=bound, points=2)
         assert (len(front.points), len(front.failures)) == (1, 1)

@@ -167,7 +167,7 @@ def test_first_and_second_derivatives_are_those_of_the_plain_rollout(plants, pro
     value, first, second = (x.full() for x in plain(numbers))
 
     motion = Condensed(plant, profile, steps, ("torque",))
-    at = (numbers, move, np.ones(motion.scales), motion.basis(np.array(move)))
+    at = (numbers, move, np.ones(motion.scales), motion.basis(move, np.eye(profile.size)))
     symbols = Inputs(*(ca.MX.sym("x", len(x)) for x in at))
     linearised = march, slopes = motion.linearised(symbols)
     of_arrival = ca.DM(multipliers[: motion.states])

@@ -22,6 +22,8 @@ from ocp import (
     polish_front,
     resimulate,
 )
+from ocp.provenance import SolveSettings
+from ocp.solver import first_steps
 from ocp.status import SolveStatus
 from ocp.sweep import Sweep
 
@@ -92,7 +94,8 @@ def test_the_figures_are_those_of_the_independent_integrator(polish):
 def test_the_polished_front_says_where_it_comes_from(rough, polish):
     front = polish.front
     assert (front.method, front.seed, front.reference) == ("random, polished", 0, rough.reference)
-    assert front.settings == {"bound": BOUND, "population": 60, "steps": 80}
+    steps = first_steps(TASK, PROFILE, SolveSettings())
+    assert front.settings == {"bound": BOUND, "population": 60, "steps": steps}
     assert front.evaluations > rough.evaluations
     assert front.seconds > rough.seconds
 

@@ -75,6 +75,7 @@ def test_everything_is_measured_against_the_plain_cycloid(task, programs):
     reference = programs(task).reference["energy"]
     assert energy * reference == pytest.approx(plain.motion.energy, rel=1e-12)
     assert np.abs(programs(task).matrix).max() == pytest.approx(1.0, rel=1e-12)  # the residual
+    assert programs(task).of_cycloid == pytest.approx(plain.motion.residual, rel=1e-9)
 
 
 # -- at rest --
@@ -257,6 +258,14 @@ def test_a_bound_is_kept(task, programs):
     assert boxed.status.solved
     assert np.abs(boxed.coefficients).max() == pytest.approx(bound, rel=1e-6)
     assert boxed.energy > free.energy
+
+
+def test_a_box_that_is_not_in_the_way_changes_nothing(task, programs):
+    # With a box the solver works along the coefficients, without one along even axes.
+    free = programs(task).solve(START, {RESIDUAL: 5e-3}, None)
+    boxed = programs(task).solve(START, {RESIDUAL: 5e-3}, 100.0)
+    assert boxed.energy == pytest.approx(free.energy, rel=1e-6)
+    assert boxed.coefficients == pytest.approx(free.coefficients, abs=1e-3)
 
 
 def test_a_limit_that_cannot_be_met_is_infeasible(tasks):

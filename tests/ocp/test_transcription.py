@@ -70,7 +70,7 @@ def _parameters(program, seed):
     move, scale = [-0.4, 1.1, 0.7], random.uniform(0.5, 2.0, motion.scales)
     weights, offset = random.uniform(0.1, 1.0, 2), random.normal(size=motion.states)
     matrix = random.normal(size=program.form.residual_rows * motion.states)
-    return np.concatenate([move, scale, weights, offset, matrix, motion.basis(np.array(move))])
+    return np.concatenate([move, scale, weights, offset, matrix, motion.basis(move, np.eye(TERMS))])
 
 
 def _random_point(program, seed):
@@ -282,7 +282,7 @@ def test_both_forms_state_what_the_rollout_finds(tasks, compiled, sampled, name,
     scale, weights = np.ones(program.motion.scales), [1.0, 0.0]
     nothing = np.zeros(program.motion.states)
     parts = [task.move, scale, weights, nothing, matrix.ravel(order="F")]
-    p = np.concatenate([*parts, program.motion.basis(np.array(task.move))])
+    p = np.concatenate([*parts, program.motion.basis(task.move, np.eye(TERMS))])
     stated = _Stated(program, p)
     fixed = rollout(task, PROFILE, COEFFICIENTS, steps=steps)
     assert stated.arrival == pytest.approx(np.array(fixed.arrival), rel=1e-10)
@@ -321,7 +321,9 @@ def test_scales_divide_states_and_quantities(compiled):
 def test_a_run_says_how_far_a_bound_is_passed(tasks, compiled):
     task = tasks["arm"]
     program = compiled("arm", "one limit", Form(True, 0, None), 12)
-    p = np.concatenate([task.move, np.ones(program.motion.scales), [1.0, 0.0], np.zeros(2)])
+    basis = program.motion.basis(task.move, np.eye(TERMS))
+    scale = np.ones(program.motion.scales)
+    p = np.concatenate([task.move, scale, [1.0, 0.0], np.zeros(2), basis])
     stated = _Stated(program, p, np.zeros(TERMS))
     free = np.full(program.unknowns, np.inf)
     lower = -free
