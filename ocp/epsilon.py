@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from ocp.checks import whole
 from ocp.front import FailedPoint, Front, FrontPoint
 from ocp.profile import CycloidPolynomial, JointProfile
-from ocp.program import Solution
 from ocp.provenance import SolveSettings
+from ocp.solution import Solution
 from ocp.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, better, no_report
 from ocp.task import PointToPoint
 from ocp.workers import Say, Workers, death_of_process

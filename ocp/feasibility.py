@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from ocp.errors import InfeasibleTaskError, SolverFailedError
 from ocp.profile import JointProfile
-from ocp.program import Solution, TaskProgram
+from ocp.program import TaskProgram
+from ocp.solution import Solution
 from ocp.status import SolveStatus
 from ocp.task import LIMITS
 from ocp.transcription import RESIDUAL

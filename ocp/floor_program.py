@@ -15,8 +15,9 @@ from ocp.floor_grid import first_grid
 from ocp.floor_motion import FreeMotion
 from ocp.floor_transcription import FreePoint, FreeProgram
 from ocp.interrupts import keep_interrupts
+from ocp.ipopt import OPTIONS
 from ocp.profile import CycloidPolynomial, JointPath
-from ocp.program import ENERGY, OPTIONS
+from ocp.solution import ENERGY
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
 

@@ -14,60 +14,15 @@ from models import Plant
 from ocp.collocation import NODES
 from ocp.condensed import condensed
 from ocp.interrupts import keep_interrupts
+from ocp.ipopt import BESIDE, FINISH, RESOLVED, SAMPLED
 from ocp.objective import two_samples
 from ocp.profile import JointProfile
 from ocp.residual import extreme_rows, residual_matrix
+from ocp.solution import ENERGY, LEAST_ENERGY, Solution, same_minimum
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop
 
-ENERGY = "energy"
-LEAST_ENERGY = {ENERGY: 1.0}
-OPTIONS: dict[str, str | int | float] = {
-    "print_level": 0,
-    "sb": "yes",
-    "tol": 1e-9,
-    "constr_viol_tol": 1e-10,
-    "mu_strategy": "adaptive",
-    "max_iter": 500,
-    # Without these an infeasible task takes a hundred times as long: MUMPS's permutation fills in
-    # the restoration phase's system, and IPOPT turns to that phase late. Feasible ones take the
-    # same iterations either way.
-    "mumps_permuting_scaling": 0,
-    # Approximate minimum fill copes best with the dense columns of the coefficients: at 400 steps
-    # and 20 terms a fifth of the default ordering's time.
-    "mumps_pivot_order": 2,
-    "expect_infeasible_problem": "yes",
-}
-_SAMPLED = {**OPTIONS, "tol": 1e-5}
-"""What remains of the sampled program's error is much less than its own distance to the truth."""
-
-
-def _warm_options(barrier: float) -> dict[str, str | int | float]:
-    pushes = ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac", "mult_bound_push")
-    return {
-        "warm_start_init_point": "yes",
-        "mu_init": barrier,
-        **{f"warm_start_{name}": barrier for name in pushes},
-    }
-
-
-_BESIDE = _warm_options(1e-6)
-"""From the solution beside it a point of a front takes a third of the iterations with these."""
-_RESOLVED = {**OPTIONS, "tol": 1e-8}
-_FINISH = {
-    **_warm_options(1e-8),
-    "mu_strategy": "monotone",
-    "max_iter": 15,
-    "acceptable_tol": 1e3,
-    "acceptable_dual_inf_tol": 1e10,
-    "acceptable_constr_viol_tol": 1e-8,
-    "acceptable_compl_inf_tol": 1e-5,
-    "acceptable_obj_change_tol": 1e-9,
-    "acceptable_iter": 3,
-}
-"""From the sampled minimum. Where zeros of the power meet, second derivatives are of no more use:
-the iterations end when the energy has hardly changed three times."""
 _ROWS_AT_ONCE = 32
 """Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
 _SLACK_ROOM = 1e-2
@@ -75,7 +30,6 @@ _SLACK_ROOM = 1e-2
 REACHES = (0.1, 0.003)
 """How far coefficients may move from the sampled minimum, against 1 or their own size; where zeros
 of the power meet the solver loses its way beyond the second."""
-_SAME = 1e-4
 _KEPT = 1e-7
 """A motion that passes a scaled constraint by no more than this keeps it."""
 
@@ -86,56 +40,8 @@ def _compiled(
 ) -> NonlinearProgram:
     motion = condensed(plant, profile, steps, quantities)
     if form.sampled:
-        return NonlinearProgram(motion, form, _SAMPLED, _BESIDE)
-    return NonlinearProgram(motion, form, _RESOLVED, _FINISH)
-
-
-@dataclass(frozen=True)
-class Solution:
-    """What one run of the solver gives, in SI units and by its own discretisation.
-
-    Attributes
-    ----------
-    coefficients : ndarray, shape (profile.size,)
-        The profile's coefficients.
-    energy : float
-        F2 [J].
-    peaks : dict of str to float
-        Residual [m] and each limited quantity [SI units], at the nodes.
-    status : SolveStatus
-        How it ended.
-    slope : float
-        Change of the least energy with the residual limit [J/m], at most 0; 0 without a limit.
-    iterations : int
-        Iterations of the solver that it took, those of other starts included.
-    arrival : ndarray, shape (2 * modes,)
-        W (m) and then W' (m/s) on arrival, corrected as asked.
-    form : Form
-        The program whose solution `point` is.
-    point : Point
-        Where the solver stopped, to start a neighbouring solve from.
-    finish : Point or None
-        Where the program of the resolved energy stopped after that.
-    settled : bool
-        Whether that ended at its minimum.
-    """
-
-    coefficients: NDArray[np.float64]
-    energy: float
-    peaks: dict[str, float]
-    status: SolveStatus
-    slope: float
-    iterations: int
-    arrival: NDArray[np.float64]
-    form: Form
-    point: Point
-    finish: Point | None = None
-    settled: bool = False
-
-    @property
-    def residual(self) -> float:
-        """F1 [m] at the sampled times of the residual window."""
-        return self.peaks[RESIDUAL]
+        return NonlinearProgram(motion, form, SAMPLED, BESIDE)
+    return NonlinearProgram(motion, form, RESOLVED, FINISH)
 
 
 class TaskProgram:
@@ -441,13 +347,6 @@ class _Run:
         return sum(
             w * values[name] / self.program.reference[name] for name, w in self.weights.items()
         )
-
-
-def same_minimum(one: Solution, other: Solution) -> bool:
-    """Whether the sampled program ended at the same place."""
-    size = len(one.coefficients)
-    here, there = one.point.unknowns[:size], other.point.unknowns[:size]
-    return one.form == other.form and np.allclose(here, there, rtol=_SAME, atol=_SAME)
 
 
 def _residual_rows(task: PointToPoint) -> NDArray[np.float64]:

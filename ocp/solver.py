@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from ocp.feasibility import explain, least_peaks
 from ocp.plan import Plan
 from ocp.profile import CycloidPolynomial, JointProfile
-from ocp.program import Solution, TaskProgram, same_minimum
+from ocp.program import TaskProgram
 from ocp.provenance import Provenance, SolveSettings, Verification
 from ocp.rollout import default_steps
+from ocp.solution import Solution, same_minimum
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL
 from ocp.verification import MOST_STEPS, verified

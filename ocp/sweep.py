@@ -15,8 +15,9 @@ from ocp.front import FailedPoint, Front, FrontPoint, non_dominated, reference_c
 from ocp.interrupts import note_interrupts
 from ocp.objective import Motion
 from ocp.profile import JointProfile
-from ocp.program import LEAST_ENERGY, REACHES, Solution, TaskProgram
+from ocp.program import REACHES, TaskProgram
 from ocp.provenance import SolveSettings
+from ocp.solution import LEAST_ENERGY, Solution
 from ocp.solver import first_steps, least_energy, start_coefficients
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL

@@ -294,7 +294,7 @@ class NonlinearProgram:
             gradient, bends = motion.energy.first(march.outputs[0, :])
             of_power = of_energy * gradient.T
             by_energy = of_energy * motion.of_bends(motion.of_group(first.outputs, "power"), bends)
-        of_outputs: list[ca.MX] = [of_power]
+        of_outputs = [ca.MX(of_power)]
         for group in self._limited:
             weight = of_values.pop(0)
             if group.name == form.least:

@@ -8,8 +8,9 @@ import numpy as np
 
 from ocp.errors import SolverFailedError
 from ocp.objective import Motion
-from ocp.program import Solution, TaskProgram
+from ocp.program import TaskProgram
 from ocp.resimulation import resimulated
+from ocp.solution import Solution
 from ocp.transcription import RESIDUAL
 
 MOST_STEPS = 3200

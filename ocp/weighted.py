@@ -9,8 +9,8 @@ import numpy as np
 from ocp.checks import finite, whole
 from ocp.front import FailedPoint, Front, FrontPoint
 from ocp.profile import CycloidPolynomial, JointProfile
-from ocp.program import ENERGY, Solution
 from ocp.provenance import SolveSettings
+from ocp.solution import ENERGY, Solution
 from ocp.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, no_report
 from ocp.task import PointToPoint
 from ocp.transcription import RESIDUAL

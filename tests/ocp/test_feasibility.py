@@ -16,7 +16,7 @@ from ocp import (
     rollout,
 )
 from ocp.feasibility import explain
-from ocp.program import Solution
+from ocp.solution import Solution
 from ocp.transcription import Form, Point
 
 # Name, terms, task's limits, settings of the solve.

@@ -9,8 +9,9 @@ import pytest
 
 from ocp import CycloidPolynomial, PointToPoint, SolveStatus, resimulate, rollout
 from ocp import program as program_module
-from ocp.program import TaskProgram, same_minimum
+from ocp.program import TaskProgram
 from ocp.resimulation import resimulated
+from ocp.solution import same_minimum
 from ocp.solver import _HIDDEN
 from ocp.task import LIMITS
 from ocp.transcription import RESIDUAL
