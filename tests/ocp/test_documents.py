@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from ocp import (
+    MAX_TERMS,
     FileFormatError,
     Plan,
     PointToPoint,
@@ -186,7 +187,7 @@ def test_a_number_beyond_double_precision_is_refused(whole, refused, keys, numbe
     [
         (("plant",), "rocket", "'rocket' is not known.*single-link"),
         (("profile", "name"), "spline", "profile 'spline' is not known"),
-        (("profile", "terms"), 21, "terms is 21"),
+        (("profile", "terms"), MAX_TERMS + 1, f"terms is {MAX_TERMS + 1}"),
         (("profile", "terms"), -1, "terms is -1"),
         (("profile", "terms"), 3, "got 2 coefficients for a profile of 3"),
         (("coefficients",), [0.1], "got 1 coefficients"),

@@ -1,4 +1,4 @@
-"""Plants of one to six modes: rest is planned, and judged by what the plain cycloid leaves."""
+"""Plants of one to twelve modes: rest is planned, and judged by what the plain cycloid leaves."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -10,7 +10,7 @@ import pytest
 from models import Plant
 from ocp import CycloidPolynomial, PointToPoint, plan_move, resimulate
 
-EXAMPLES = [(modes, seed) for modes in (1, 2, 3, 4, 6) for seed in (0, 1)]
+EXAMPLES = [*((modes, seed) for modes in (1, 2, 3, 4, 6) for seed in (0, 1)), (8, 0), (12, 0)]
 
 
 @cache

@@ -223,7 +223,9 @@ def test_six_terms_by_default():
     assert CycloidPolynomial() == CycloidPolynomial(6)  # section 3.1: N = 6
 
 
-@pytest.mark.parametrize("terms", [-1, 21, 1000, 2.5, 6.0, True, False, "6", None, math.nan])
+@pytest.mark.parametrize(
+    "terms", [-1, MAX_TERMS + 1, 1000, 2.5, 6.0, True, False, "6", None, math.nan]
+)
 def test_terms_out_of_range_are_named_with_the_range(terms):
     with pytest.raises(ValueError, match=f"terms is .*{MAX_TERMS}") as error:
         CycloidPolynomial(terms)
