@@ -176,22 +176,19 @@ def measure(move: Move, steps: tuple[int, int]) -> Repetition:
     )
 
 
-def show(title: str, rows: list[tuple[Move, tuple[int, int], list[Repetition]]]) -> Table:
-    """Both sides of every move, and a last column for the ratio."""
-    table = Table("", "", "quietarm", "rockit", "rockit / quietarm", title=title)
-    for move, steps, repetitions in rows:
-        table.add_section()
-        table.add_row(move.title, "steps", *map(str, steps))
-        for name in QUANTITIES:
-            pairs = [one.times[name] for one in repetitions]
-            ours, theirs = (median(side) for side in zip(*pairs, strict=True))
-            ratio = median(second / first for first, second in pairs)
-            table.add_row("", name, f"{ours:.3f} s", f"{theirs:.3f} s", f"{ratio:.1f}")
-        last = repetitions[-1]
-        table.add_row("", "iterations", *map(str, last.iterations))
-        table.add_row(
-            f"best {move.best:.6f} J", "energy / best - 1", *(f"{one:+.1e}" for one in last.above)
-        )
+def show(move: Move, steps: tuple[int, int], repetitions: list[Repetition]) -> Table:
+    """The table of one move."""
+    title = f"{move.title}: {move.best:.6f} J"
+    table = Table("", "quietarm", "rockit", "rockit / quietarm", title=title)
+    table.add_row("steps", *map(str, steps))
+    for name in QUANTITIES:
+        pairs = [one.times[name] for one in repetitions]
+        ours, theirs = (median(side) for side in zip(*pairs, strict=True))
+        ratio = median(second / first for first, second in pairs)
+        table.add_row(name, f"{ours:.3f} s", f"{theirs:.3f} s", f"{ratio:.1f}")
+    last = repetitions[-1]
+    table.add_row("iterations", *map(str, last.iterations))
+    table.add_row("energy / best - 1", *(f"{one:+.1e}" for one in last.above))
     return table
 
 
@@ -204,7 +201,7 @@ def main() -> None:
     load_plugins()
     screen = console()
     screen.print(machine("rockit-meco"))
-    rows: list[tuple[Move, tuple[int, int], list[Repetition]]] = []
+    screen.print(f"one start, median of {arguments.repetitions}, within {arguments.within:g}")
     for title, (task, bound) in conditions().items():
         if task.limits:
             continue
@@ -213,9 +210,8 @@ def main() -> None:
             fewest(lambda n: move.plan(n).energy / move.best - 1, arguments.within),  # noqa: B023
             fewest(lambda n: move.above(RockitMove(move, n).solve()[0]), arguments.within),  # noqa: B023
         )
-        rows.append((move, steps, [measure(move, steps) for _ in range(arguments.repetitions)]))
-    title = f"one start, median of {arguments.repetitions} repetitions, within {arguments.within}"
-    screen.print(show(title, rows))
+        repetitions = [measure(move, steps) for _ in range(arguments.repetitions)]
+        screen.print(show(move, steps, repetitions))
 
 
 if __name__ == "__main__":
