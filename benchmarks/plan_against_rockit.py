@@ -129,11 +129,14 @@ class RockitMove:
         options = {**OPTIONS, "tol": TOLERANCE}
         ocp.solver("ipopt", {"expand": True, "print_time": False, "ipopt": options})
 
-    def solve(self) -> tuple[np.ndarray, int]:
-        """Transcribe where that has not been done, run IPOPT: coefficients and iterations."""
-        solution = self.ocp.solve()
-        found = np.array([float(solution.value(unknown)) for unknown in self.coefficients])
-        return found, solution.stats["iter_count"]
+    def solve(self) -> rockit.ocp.OcpSolution:
+        """Transcribe where that has not been done, and run IPOPT."""
+        return self.ocp.solve()
+
+    def found(self) -> np.ndarray:
+        """Solve for the coefficients."""
+        solution = self.solve()
+        return np.array([float(solution.value(unknown)) for unknown in self.coefficients])
 
 
 def _boundaries(steps: int) -> list[float]:
@@ -158,21 +161,22 @@ def measure(move: Move, steps: tuple[int, int]) -> Repetition:
     """Run quietarm, rockit, quietarm, rockit, ... once each."""
     ours, theirs = steps
 
-    def pose_and_solve() -> tuple[RockitMove, np.ndarray]:
+    def pose_and_solve() -> RockitMove:
         posed = RockitMove(move, theirs)
-        return posed, posed.solve()[0]
+        posed.solve()
+        return posed
 
     forget_compiled()
     ours_cold, plan = timed(lambda: move.plan(ours), process_time)
-    theirs_cold, (posed, found) = timed(pose_and_solve, process_time)
+    theirs_cold, posed = timed(pose_and_solve, process_time)
     ours_again, _ = timed(lambda: move.plan(ours), process_time)
-    theirs_again, (_, iterations) = timed(posed.solve, process_time)
+    theirs_again, again = timed(posed.solve, process_time)
     ours_alone, solution = timed(lambda: move.solve(ours), process_time)
     pairs = ((ours_cold, theirs_cold), (ours_again, theirs_again), (ours_alone, theirs_again))
     return Repetition(
         times=dict(zip(QUANTITIES, pairs, strict=True)),
-        iterations=(solution.iterations, iterations),
-        above=(plan.energy / move.best - 1, move.above(found)),
+        iterations=(solution.iterations, again.stats["iter_count"]),
+        above=(plan.energy / move.best - 1, move.above(posed.found())),
     )
 
 
@@ -208,7 +212,7 @@ def main() -> None:
         move = Move.of(title, task, bound)
         steps = (
             fewest(lambda n: move.plan(n).energy / move.best - 1, arguments.within),  # noqa: B023
-            fewest(lambda n: move.above(RockitMove(move, n).solve()[0]), arguments.within),  # noqa: B023
+            fewest(lambda n: move.above(RockitMove(move, n).found()), arguments.within),  # noqa: B023
         )
         repetitions = [measure(move, steps) for _ in range(arguments.repetitions)]
         screen.print(show(move, steps, repetitions))
