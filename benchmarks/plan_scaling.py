@@ -19,8 +19,7 @@ then 100 to 1600 steps at six terms. Every repetition begins cold, with nothing 
 
 Times are medians over repetitions, each of which runs through all rows of a table. They are the
 processor's, not the wall clock's: on one thread the two are the same on an idle machine, and other
-work on a shared one disturbs the processor's less. From about 16 terms on MUMPS's BLAS takes more
-threads, whose waiting counts, too; `OPENBLAS_NUM_THREADS=1` in the environment keeps it to one.
+work on a shared one disturbs the processor's less.
 """
 
 from __future__ import annotations
