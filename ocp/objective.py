@@ -48,9 +48,7 @@ def resolved_energy(
         Energy [J], shape (candidates, 1).
     """
     c = _quadratic(power)
-    zeros = [ca.fmin(ca.fmax(zero, 0), 1) for zero in _zeros(c)]
-    breaks = [ca.fmin(*zeros), ca.fmax(*zeros)]
-    return ca.sum2(h * _parted_energy(c, cubic, quartic, breaks))
+    return ca.sum2(h * _parted_energy(c, cubic, quartic, _breaks(c)))
 
 
 def two_samples() -> NDArray[np.float64]:
@@ -67,11 +65,15 @@ def _quadratic(power: Sequence[Expression]) -> list[Expression]:
     return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]
 
 
-def _zeros(c: Sequence[Expression]) -> tuple[Expression, Expression]:
-    """The zeros of a quadratic without cancellation; anything finite where there are none."""
-    root = ca.sqrt(ca.fmax(c[1] * c[1] - 4 * c[0] * c[2], 0))
-    half = -(c[1] + ca.copysign(root, c[1])) / 2
-    return half / (c[2] + _TINY), c[0] / (half + _TINY)
+def _breaks(c: Sequence[Expression]) -> list[Expression]:
+    """The zeros of a quadratic on a step, in order; twice its least value's place without zeros."""
+    discriminant = c[1] * c[1] - 4 * c[0] * c[2]
+    half = -(c[1] + ca.copysign(ca.sqrt(ca.fmax(discriminant, 0)), c[1])) / 2  # no cancellation
+    first, second = (
+        ca.fmin(ca.fmax(zero, 0), 1) for zero in (half / (c[2] + _TINY), c[0] / (half + _TINY))
+    )
+    second = first + (discriminant > 0) * (second - first)
+    return [ca.fmin(first, second), ca.fmax(first, second)]
 
 
 def _parted_energy(
@@ -120,11 +122,8 @@ def energy_derivatives() -> ca.Function:
         gradient[:NODES] += ca.if_else(inside, moved, 0) * at_zero
         bend = 2 / ca.fmax(ca.fabs(slope), least_slope)
         bends += ca.if_else(inside, bend, 0) * (at_zero @ at_zero.T)
-    zeros = ca.fmin(ca.fmax(ca.vertcat(*_zeros(c)), 0), 1)
-    sorted_zeros = ca.vertcat(ca.fmin(zeros[0], zeros[1]), ca.fmax(zeros[0], zeros[1]))
-    outputs = [
-        ca.densify(ca.substitute(e, breaks, sorted_zeros)) for e in (energy, gradient, bends)
-    ]
+    places = ca.vertcat(*_breaks(c))
+    outputs = [ca.densify(ca.substitute(e, breaks, places)) for e in (energy, gradient, bends)]
     return ca.Function("energy", [power, cubic, quartic, least_slope], outputs, {"cse": True})
 
 

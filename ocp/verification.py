@@ -81,16 +81,18 @@ def verified(
         rough = abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
         rough = rough or not (best.settled or program.steps >= enough_steps)
         missed = abs(best.residual - motion.residual) > tolerated
-        if rough and 2 * program.steps <= most_steps:
-            program = TaskProgram(program.task, program.profile, 2 * program.steps)
-            again = program.solve(best.coefficients, limits, bound)
-            used = dict(limits)
-        elif missed or any(ratio > 1 for ratio in overrun.values()):
+        again = None
+        if not rough and (missed or any(ratio > 1 for ratio in overrun.values())):
             again = program.corrected(best, arrival, used, bound)
-        else:
+        elif not rough or 2 * program.steps > most_steps:
             break
-        if not again.status.solved:
-            break
+        if again is None or not again.status.solved:
+            if 2 * program.steps > most_steps:
+                break
+            program = TaskProgram(program.task, program.profile, 2 * program.steps)
+            again, used = program.solve(best.coefficients, limits, bound), dict(limits)
+            if not again.status.solved:
+                break
         best = again
         motion, arrival = resimulated(program.task, program.profile, best.coefficients)
     for name, limit in kept.items():
