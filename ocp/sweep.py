@@ -233,7 +233,7 @@ class Sweep:
             point, motion, _ = verified(
                 self.program, found, limits, self.settings.bound,
                 most_steps=MOST_STEPS if thorough else _MORE_STEPS * self.steps,
-                enough_steps=ENOUGH_STEPS if thorough else self.steps, kept=kept,
+                enough_steps=ENOUGH_STEPS if thorough else _MORE_STEPS * self.steps, kept=kept,
             )  # fmt: skip
         except SolverFailedError as error:
             return FailedPoint(asked, str(error))
