@@ -97,7 +97,7 @@ def epsilon_front(
     ends = sweep.ends()
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
-    found.append(sweep.checked(ends.cheapest, asked, thorough=True))
+    found.append(sweep.checked(ends.cheapest, asked, free=True))
     report(2, points)
     heard = _Heard(report, points)
     iterations, complete = 0, True

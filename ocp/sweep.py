@@ -207,7 +207,7 @@ class Sweep:
         found: Solution,
         asked: Mapping[str, float],
         most_residual: float = np.inf,
-        thorough: bool = False,
+        free: bool = False,
     ) -> FrontPoint | FailedPoint:
         """Give a solution the figures of the independent integrator.
 
@@ -219,21 +219,21 @@ class Sweep:
             What was asked for.
         most_residual : float
             Largest residual [m] that the point may have; it may be a little off that asked for.
-        thorough : bool
-            Whether to take more steps where the solver did not settle at the minimum.
+        free : bool
+            Whether the residual is free: an end of the front, which more steps may move.
 
         Returns
         -------
         FrontPoint or FailedPoint
             The point, or why it cannot be trusted.
         """
-        limits = {**self.task.limits, RESIDUAL: found.residual}
+        limits = {**self.task.limits, RESIDUAL: np.inf if free else found.residual}
         kept = {**self.task.limits, RESIDUAL: most_residual}
         try:
             point, motion, _ = verified(
                 self.program, found, limits, self.settings.bound,
-                most_steps=MOST_STEPS if thorough else _MORE_STEPS * self.steps,
-                enough_steps=ENOUGH_STEPS if thorough else _MORE_STEPS * self.steps, kept=kept,
+                most_steps=MOST_STEPS if free else _MORE_STEPS * self.steps,
+                enough_steps=ENOUGH_STEPS if free else _MORE_STEPS * self.steps, kept=kept,
             )  # fmt: skip
         except SolverFailedError as error:
             return FailedPoint(asked, str(error))

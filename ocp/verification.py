@@ -23,7 +23,7 @@ _AT_REST = 0.3
 """Share of that which the residual at rest is brought below."""
 ENOUGH_STEPS = 150
 """Steps with which a minimum counts though the solver did not settle there."""
-_ROUNDS = 8
+_ROUNDS = 12
 _OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
 
@@ -75,16 +75,18 @@ def verified(
     kept, used = limits if kept is None else kept, dict(limits)
     still = max(STILL, STILL_SHARE * program.of_cycloid)
     tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
+    tried: list[tuple[Solution, Motion, int]] = []
     for _ in range(_ROUNDS):
+        tried.append((best, motion, program.steps))
         overrun = {name: motion.peak(name) / limit for name, limit in kept.items() if limit > 0}
         used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
         rough = abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
-        rough = rough or not (best.settled or program.steps >= enough_steps)
+        unsettled = not best.settled and program.steps < enough_steps
         missed = abs(best.residual - motion.residual) > tolerated
         again = None
         if not rough and (missed or any(ratio > 1 for ratio in overrun.values())):
             again = program.corrected(best, arrival, used, bound)
-        elif not rough or 2 * program.steps > most_steps:
+        elif not (rough or unsettled):
             break
         if again is None or not again.status.solved:
             if 2 * program.steps > most_steps:
@@ -95,6 +97,9 @@ def verified(
                 break
         best = again
         motion, arrival = resimulated(program.task, program.profile, best.coefficients)
+    else:
+        tried.append((best, motion, program.steps))
+    best, motion, steps = _cheapest_kept(tried, kept, still)
     for name, limit in kept.items():
         if motion.peak(name) > max(limit * (1 + _OVERRUN), still):
             raise SolverFailedError(
@@ -102,4 +107,16 @@ def verified(
                 "the solver's steps are too coarse for this motion; bound the coefficients or use "
                 "fewer terms"
             )
-    return best, motion, program.steps
+    return best, motion, steps
+
+
+def _cheapest_kept(
+    tried: list[tuple[Solution, Motion, int]], kept: Mapping[str, float], still: float
+) -> tuple[Solution, Motion, int]:
+    """The cheapest of the verified motions that keep every limit; else the last."""
+    keeping = [
+        one
+        for one in tried
+        if all(one[1].peak(name) <= max(limit, still) for name, limit in kept.items())
+    ]
+    return min(keeping, key=lambda one: one[1].energy) if keeping else tried[-1]
