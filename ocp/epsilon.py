@@ -200,6 +200,8 @@ class _Stretch:
             if self.sweep.iterations < most:
                 self._try(i, guess)
         self._carry_on(doubtful, most)
+        self.done = len(self.limits)
+        self.report(self.done)
 
     def _back(self, below: Guess) -> set[int]:
         """Sweep back from the still end; the points at which it ended elsewhere.
