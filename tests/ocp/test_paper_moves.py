@@ -59,8 +59,8 @@ def test_finer_steps_do_not_find_less_energy(planned, row, in_box):
     fine = plan_move(
         plan.task, plan.profile, bound=bound, starts=1, steps=400, guess=plan.coefficients
     )
-    # Within 1e-6 for eleven of the twelve; the arm's last row without a box is 5e-6 above, where the
-    # power meets zero along a stretch and the solver does not settle at any number of steps.
+    # Within 1e-6 for eleven of the twelve. The arm's last row without a box is 5e-6 above: the
+    # power meets zero along a stretch, and the solver settles at no number of steps.
     assert plan.energy <= fine.energy * (1 + 1e-5)
     assert plan.residual < 1e-8
     assert fine.residual < 1e-8
