@@ -17,7 +17,7 @@ from ocp.interrupts import keep_interrupts
 from ocp.ipopt import BESIDE, FINISH, RESOLVED, SAMPLED
 from ocp.objective import two_samples
 from ocp.profile import JointProfile
-from ocp.residual import extreme_rows, residual_matrix
+from ocp.residual import residual_rows
 from ocp.solution import ENERGY, LEAST_ENERGY, Solution, same_minimum
 from ocp.status import SolveStatus
 from ocp.task import PointToPoint
@@ -78,7 +78,7 @@ class TaskProgram:
         names = [group.name for group in motion.groups[1:]]
         self.reference = dict(zip(names, self.scale[motion.states :].tolist(), strict=True))
         self.reference[ENERGY] = self.reference["power"] * task.duration
-        matrix = _residual_rows(task) * self.scale[: motion.states]
+        matrix = _filled_up(residual_rows(task)) * self.scale[: motion.states]
         self.of_cycloid = float(
             np.abs(matrix @ (states[:, -1] / self.scale[: motion.states])).max()
         )
@@ -349,6 +349,5 @@ class _Run:
         )
 
 
-def _residual_rows(task: PointToPoint) -> NDArray[np.float64]:
-    rows = extreme_rows(residual_matrix(task), task.plant.tips)
+def _filled_up(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.pad(rows, ((0, -len(rows) % _ROWS_AT_ONCE), (0, 0)), mode="edge")

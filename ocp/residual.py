@@ -88,6 +88,19 @@ def _residual_matrix(
     return matrix
 
 
+def residual_rows(task: PointToPoint) -> NDArray[np.float64]:
+    """The rows of `residual_matrix` that hold the largest displacement of some state; read-only."""
+    samples = residual_samples(task)
+    return _residual_rows(task.plant, task.target, task.residual_window, samples)
+
+
+@lru_cache(maxsize=256)
+def _residual_rows(plant: Plant, target: float, window: float, samples: int) -> NDArray[np.float64]:
+    rows = extreme_rows(_residual_matrix(plant, target, window, samples), plant.tips)
+    rows.setflags(write=False)
+    return rows
+
+
 def extreme_rows(matrix: NDArray[np.float64], tips: int) -> NDArray[np.float64]:
     """The rows of a residual matrix that hold the largest displacement of some state.
 

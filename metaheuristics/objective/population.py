@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models import Expression, Plant
-from ocp import JointProfile, PointToPoint, residual_matrix, symbolic_rollout
+from ocp import JointProfile, PointToPoint, symbolic_rollout
 from ocp.checks import whole
 from ocp.interrupts import keep_interrupts
-from ocp.residual import extreme_rows
+from ocp.residual import residual_rows
 from ocp.rollout import SymbolicRollout, default_steps
 
 LEAST_STEPS = 24
@@ -85,7 +85,7 @@ class PopulationObjective:
         self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
         default = default_steps(task, least=LEAST_STEPS)
         self.steps = default if steps is None else whole("steps", steps, 1)
-        self._tip_of_state = extreme_rows(residual_matrix(task), task.plant.tips).T
+        self._tip_of_state = residual_rows(task).T
         self._limits = np.array(list(task.limits.values()))
         self._idle: list[_Workspace] = []
         self._function = _compiled(task.plant, profile, self.steps, tuple(task.limits))
