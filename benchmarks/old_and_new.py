@@ -88,12 +88,13 @@ def compare(group: str, versions: list[Version], repetitions: int) -> None:
     for name in versions[1](group, ""):
         runs = [[version(group, name) for version in versions] for _ in range(repetitions)]
         old, new = (median(run[i]["seconds"] for run in runs) for i in range(2))
-        ratio = median(run[0]["seconds"] / run[1]["seconds"] for run in runs)
-        ratios.append(ratio)
         before, after = (run["energy"] for run in runs[-1])
-        change = f"{after / before - 1:+.1e}" if before and after else ""
         notes = " / ".join(run["note"] for run in runs[-1])
-        print(f"| {name} | {old:.3f} | {new:.3f} | {ratio:.1f} | {change} | {notes} |", flush=True)
+        ratio = change = "-"  # where one of them found nothing
+        if before and after:
+            ratios.append(median(run[0]["seconds"] / run[1]["seconds"] for run in runs))
+            ratio, change = f"{ratios[-1]:.1f}", f"{after / before - 1:+.1e}"
+        print(f"| {name} | {old:.3f} | {new:.3f} | {ratio} | {change} | {notes} |", flush=True)
     print(f"| median | | | {median(ratios):.1f} | least {min(ratios):.1f} | |")
 
 
