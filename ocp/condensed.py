@@ -203,10 +203,6 @@ class Condensed:
         slopes = ca.reshape(slopes, self.size, count)
         return ca.reshape(ca.mac(inputs.a.T, slopes, constant.T), INNER, self.nodes), slopes
 
-    def march(self, inputs: Inputs) -> March:
-        """The motion."""
-        return self._march(self._joint(inputs)[0], inputs.move, inputs.scale)
-
     def _march(self, inner: ca.MX, move: ca.MX, scale: ca.MX) -> March:
         forcing, entries = self._node.linear(inner, move)
         forcing = ca.vec(forcing).T

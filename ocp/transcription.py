@@ -43,7 +43,7 @@ class Form(NamedTuple):
     Attributes
     ----------
     sampled : bool
-        Whether |power| is taken at the nodes, or the energy with its sign changes resolved.
+        Whether |power| is taken at samples, or the energy with its sign changes resolved.
     residual_rows : int
         Rows of the residual matrix; 0 asks for rest on arrival.
     least : str or None
