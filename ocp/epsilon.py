@@ -227,7 +227,7 @@ class _Stretch:
 
     def _try(self, i: int, guess: Guess, done: int | None = None) -> Solution:
         best = self.best[i]
-        found = self.sweep.solve(guess, self.limits[i], known=best)
+        found = self.sweep.solve(guess, self.limits[i])
         if best is None or better(found, best):
             self.best[i] = found
         self.done = self.done if done is None else done

@@ -18,7 +18,7 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-SAMPLED = {**OPTIONS, "tol": 1e-5}
+SAMPLED = {**OPTIONS, "tol": 1e-5, "mu_strategy": "monotone", "mu_init": 1e-3}
 """What remains of the sampled program's error is much less than its own distance to the truth."""
 
 
@@ -37,7 +37,8 @@ RESOLVED = {**OPTIONS, "tol": 1e-8}
 FINISH = {
     **_warm_options(1e-8),
     "mu_strategy": "monotone",
-    "max_iter": 15,
+    "max_iter": 30,
+    "delta": 1e-12,
     "acceptable_tol": 1e3,
     "acceptable_dual_inf_tol": 1e10,
     "acceptable_constr_viol_tol": 1e-8,

@@ -27,7 +27,8 @@ _ROWS_AT_ONCE = 32
 """Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
 _SLACK_ROOM = 1e-2
 """How far the parts of the power start from zero, as a share of the peak power."""
-REACHES = (0.1, 0.003)
+_FIRST_REACH = 0.25
+REACH = 0.1
 """How far coefficients may move from the sampled minimum, against 1 or their own size; where zeros
 of the power meet the solver loses its way beyond the second."""
 _KEPT = 1e-7
@@ -92,8 +93,7 @@ class TaskProgram:
         limits: Mapping[str, float],
         bound: float | None,
         minimise: Mapping[str, float] = LEAST_ENERGY,
-        known: Solution | None = None,
-        reaches: Sequence[float] = REACHES,
+        finish: bool = True,
     ) -> Solution:
         """Run the solver from one vector of coefficients, or on from another solution.
 
@@ -109,11 +109,8 @@ class TaskProgram:
             Largest absolute coefficient.
         minimise : mapping of str to float
             Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is made least.
-        known : Solution, optional
-            What another start led to: it is returned where this start leads there, too.
-        reaches : sequence of float
-            How far the coefficients may move on from the sampled minimum, one try after another
-            until the minimum of the resolved energy is reached; none leaves them there.
+        finish : bool
+            Whether to go on from the sampled minimum to that of the resolved energy.
 
         Returns
         -------
@@ -122,22 +119,23 @@ class TaskProgram:
         """
         run = _Run.of(self, limits, bound, minimise)
         if isinstance(guess, Solution) and guess.form == run.form:
-            start = guess.point
+            beside = run.beside(replace(guess, iterations=0))
+            if beside is not None and beside.ended.solved:
+                return beside
+        if isinstance(guess, Solution) and guess.form == run.form:
+            found = run.solution(run.form, run.stop(run.form, guess.point))
         else:
-            start = run.start(guess.coefficients if isinstance(guess, Solution) else guess)
-        found = run.solution(run.form, run.stop(run.form, start))
-        if not (run.form.sampled and found.status.solved):
-            return found
-        if known is not None and same_minimum(found, known):
-            return replace(known, iterations=found.iterations)
-        return run.finished(found, reaches)
+            found = run.cold(guess.coefficients if isinstance(guess, Solution) else guess)
+        if finish and run.form.sampled and found.status.solved:
+            return run.finished(found)
+        return found
 
     @keep_interrupts()
     def finished(
         self, found: Solution, limits: Mapping[str, float], bound: float | None
     ) -> Solution:
         """Go on from a sampled minimum of the energy to the resolved one; arguments as before."""
-        return _Run.of(self, limits, bound, LEAST_ENERGY).finished(found, REACHES)
+        return _Run.of(self, limits, bound, LEAST_ENERGY).finished(found)
 
     @keep_interrupts()
     def corrected(
@@ -168,6 +166,18 @@ class TaskProgram:
         states, _, _ = self.figures(found.coefficients)
         offset = arrival / self.scale[: self.motion.states] - states[:, -1]
         return _Run.of(self, limits, bound, LEAST_ENERGY, offset).corrected(found)
+
+    @keep_interrupts()
+    def refined(
+        self, found: Solution, limits: Mapping[str, float], bound: float | None
+    ) -> Solution:
+        """Solve on from a solution of least energy with other steps; arguments as before."""
+        if found.finish is None or self.task.limits:  # whose multipliers belong to the nodes
+            return self.solve(found.coefficients, limits, bound)
+        run = _Run.of(self, limits, bound, LEAST_ENERGY)
+        start = replace(found.finish, unknowns=run.start(found.coefficients, run.resolved).unknowns)
+        after = run.beside(replace(found, form=run.resolved, point=start, finish=start))
+        return self.solve(found.coefficients, limits, bound) if after is None else after
 
     def figures(
         self, coefficients: NDArray[np.float64]
@@ -223,12 +233,30 @@ class _Run:
             axes=program.even_axes if bound is None else np.eye(program.motion.size),
         )
 
-    def start(self, guess: NDArray[np.float64]) -> Point:
+    def cold(self, guess: NDArray[np.float64]) -> Solution:
+        """Solve from coefficients alone; where nothing bounds them, in steps that are not too long.
+
+        Far from the cycloid, IPOPT's first steps lose their way.
+        """
+        start, even = self.start(guess, self.form), self.axes is self.program.even_axes
+        place, iterations = slice(self.program.motion.size), 0
+        for reach in (_FIRST_REACH, 4 * _FIRST_REACH) if even and self.form.sampled else ():
+            stop = self.stop(self.form, start, reach)
+            iterations += stop.iterations
+            moved = np.abs(stop.point.unknowns[place] - start.unknowns[place])
+            if SolveStatus.from_ipopt(stop.return_status).solved and moved.max() < 0.99 * reach:
+                break
+        else:
+            stop = self.stop(self.form, start)
+            iterations += stop.iterations
+        return replace(self.solution(self.form, stop), iterations=iterations)
+
+    def start(self, guess: NDArray[np.float64], form: Form) -> Point:
         """Unknowns that agree with the guess: its own peak, arrival and power."""
         states, outputs, energy = self.program.figures(guess)
-        arrival, form = states[:, -1] + self.offset, self.form
+        arrival = states[:, -1] + self.offset
         peak = [] if form.least is None else [self._peaks(arrival, outputs)[form.least]]
-        power = np.array([energy])
+        power = np.empty(0)
         if form.sampled:
             at_nodes = self.program.by_group(outputs)["power"].reshape(-1, NODES).T
             sampled = (two_samples() @ at_nodes).ravel(order="F")
@@ -278,32 +306,32 @@ class _Run:
             point=stop.point,
         )
 
-    def finished(self, found: Solution, reaches: Sequence[float]) -> Solution:
+    def finished(self, found: Solution) -> Solution:
         """Go on from the sampled minimum to that of the resolved energy.
 
         What is found must keep the constraints and be better, else the given solution stands.
         Status and point stay those of the sampled program, from which a neighbouring solve starts.
         """
-        best = found
-        for reach in reaches:
-            stop = self.stop(self.resolved, best.finish or self._resolved_start(found), reach)
-            best = replace(best, iterations=best.iterations + stop.iterations)
-            after = self._after(best, stop)
-            if after is not None and self._value(after) <= self._value(best):
-                best = after
-            if best.settled:
-                break
-        return best
+        stop = self.stop(self.resolved, self._resolved_start(found), REACH)
+        found = replace(found, iterations=found.iterations + stop.iterations)
+        after = self._after(found, stop)
+        better = after is not None and self._value(after) <= self._value(found)
+        return after if better else found
 
     def corrected(self, found: Solution) -> Solution:
         """Solve on from a solution for what is asked now, by the program that it is of."""
-        if found.finish is not None:
-            stop = self.stop(self.resolved, found.finish, REACHES[0])
-            after = self._after(replace(found, iterations=found.iterations + stop.iterations), stop)
-            if after is not None:
-                return after
-        again = self.solution(self.form, self.stop(self.form, found.point))
+        after = self.beside(found)
+        if after is not None:
+            return after
+        again = self.solution(found.form, self.stop(found.form, found.point))
         return replace(again, iterations=found.iterations + again.iterations)
+
+    def beside(self, found: Solution) -> Solution | None:
+        """Go on from a neighbour's minimum of the resolved energy to one's own, if there is one."""
+        if found.finish is None:
+            return None
+        stop = self.stop(self.resolved, found.finish, REACH)
+        return self._after(replace(found, iterations=found.iterations + stop.iterations), stop)
 
     @property
     def resolved(self) -> Form:
@@ -322,16 +350,16 @@ class _Run:
             form=found.form,
             point=found.point,
             finish=stop.point,
-            settled=after.status.solved,
+            ended=after.status,
         )
 
     def _resolved_start(self, found: Solution) -> Point:
         """The same point with one energy in the place of the power at the nodes."""
         point, power = found.point, 4 * self.program.steps
         return Point(
-            np.append(point.unknowns[:-power], found.energy / self.program.reference[ENERGY]),
-            np.append(point.bound_multipliers[:-power], 0.0),
-            np.append(self.weights[ENERGY], point.multipliers[power // 2 :]),
+            point.unknowns[:-power],
+            point.bound_multipliers[:-power],
+            point.multipliers[power // 2 :],
         )
 
     def _peaks(

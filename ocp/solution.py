@@ -55,7 +55,12 @@ class Solution:
     form: Form
     point: Point
     finish: Point | None = None
-    settled: bool = False
+    ended: SolveStatus | None = None
+
+    @property
+    def settled(self) -> bool:
+        """Whether"""
+        return self.ended is SolveStatus.OPTIMAL
 
     @property
     def residual(self) -> float:

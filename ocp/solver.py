@@ -175,13 +175,13 @@ def least_energy(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    solutions = [program.solve(guess, limits, bound, reaches=()) for guess in guesses]
+    solutions = [program.solve(guess, limits, bound, finish=False) for guess in guesses]
     solved = [solution for solution in solutions if solution.status.solved]
     if not solved:
         least = least_peaks(program, profile, limits, bound, guesses[:2])
         rescues = [found.coefficients for name, found in least.items()
                    if found.peaks[name] <= limits[name]]  # fmt: skip
-        solutions += [program.solve(guess, limits, bound, reaches=()) for guess in rescues]
+        solutions += [program.solve(guess, limits, bound, finish=False) for guess in rescues]
         solved = [solution for solution in solutions if solution.status.solved]
         if not solved:
             raise explain(profile, limits, bound, solutions, least)

@@ -15,7 +15,7 @@ from ocp.front import FailedPoint, Front, FrontPoint, non_dominated, reference_c
 from ocp.interrupts import note_interrupts
 from ocp.objective import Motion
 from ocp.profile import JointProfile
-from ocp.program import REACHES, TaskProgram
+from ocp.program import TaskProgram
 from ocp.provenance import SolveSettings
 from ocp.solution import LEAST_ENERGY, Solution
 from ocp.solver import first_steps, least_energy, start_coefficients
@@ -121,7 +121,6 @@ class Sweep:
         guess: Guess,
         residual_limit: float = np.inf,
         minimise: Mapping[str, float] = LEAST_ENERGY,
-        known: Solution | None = None,
     ) -> Solution:
         """Run the solver from one start, and again without its multipliers where that fails.
 
@@ -133,8 +132,6 @@ class Sweep:
             Largest residual [m].
         minimise : mapping of str to float
             As for `TaskProgram.solve`.
-        known : Solution, optional
-            As for `TaskProgram.solve`.
 
         Returns
         -------
@@ -142,12 +139,10 @@ class Sweep:
             The solution, whatever its status.
         """
         limits = {**self.task.limits, RESIDUAL: residual_limit}
-        found = self.program.solve(
-            guess, limits, self.settings.bound, minimise, known, reaches=REACHES[:1]
-        )
+        found = self.program.solve(guess, limits, self.settings.bound, minimise)
         self.iterations += found.iterations
         if isinstance(guess, Solution) and not found.status.solved:
-            return self.solve(guess.coefficients, residual_limit, minimise, known)
+            return self.solve(guess.coefficients, residual_limit, minimise)
         return found
 
     def ends(self) -> Ends:

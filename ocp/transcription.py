@@ -100,7 +100,7 @@ class NonlinearProgram:
             "coefficients": motion.size,
             "peak": 0 if form.least is None else 1,
             "arrival": motion.states if form.residual_rows else 0,
-            "power": 2 * self._samples if form.sampled else 1,
+            "power": 2 * self._samples if form.sampled else 0,
         }
         """How many unknowns of each kind, in their order."""
         x = ca.MX.sym("x", self.unknowns)
@@ -111,13 +111,16 @@ class NonlinearProgram:
         move, scale, weights, offset, residual, basis = split(p, sizes)
         residual = ca.reshape(residual, form.residual_rows, motion.states)
         inputs = Inputs(parts["coefficients"], move, scale, basis)
-        objective = weights[0] * self._energy(parts["power"]) + weights[1] * ca.sum1(parts["peak"])
         linearised = march, first = motion.linearised(inputs)
+        energy, by_energy = self._energy(parts["power"], march, first)
+        objective = weights[0] * energy + weights[1] * ca.sum1(parts["peak"])
+        by_objective = self._row(1, peak=weights[1] * ca.MX.ones(1, self.sizes["peak"]), **{k: weights[0] * v for k, v in by_energy.items()})
         g = self._constraints(march, parts, offset, residual)
         jacobian = self._jacobian(march, first, residual)
         options_of_both = {
             "jac_g": ca.Function("nlp_jac_g", [x, p], [g, jacobian], ["x", "p"], ["g", "jac_g_x"]),
-            "hess_lag": self._hessian(x, p, inputs, linearised, g.numel()),
+            "grad_f": ca.Function("nlp_grad_f", [x, p], [objective, ca.densify(by_objective.T)], ["x", "p"], ["f", "grad_f_x"]),
+            "hess_lag": self._hessian(x, p, weights, inputs, linearised, g.numel()),
             "calc_lam_p": False,
             "no_nlp_grad": True,
             "print_time": False,
@@ -182,11 +185,15 @@ class NonlinearProgram:
 
     # -- the constraints, in this order: energy, arrival, limited quantities, residual --
 
-    def _energy(self, power: ca.MX) -> ca.MX:
+    def _energy(self, power, march, first):
         if not self.form.sampled:
-            return power
+            at_nodes = march.outputs[0, :]
+            gradient = self.motion.energy.first(at_nodes)[0]
+            of_power = self.motion.of_group(first.outputs, "power")
+            return self.motion.energy.value(at_nodes), {"coefficients": (of_power @ gradient).T}
         above, below = ca.vertsplit(power, self._samples)
-        return ca.dot(np.repeat(self.motion.lengths, 2) / 2, above + below)
+        w = np.repeat(self.motion.lengths, 2) / 2
+        return ca.dot(w, above + below), {"power": ca.MX(ca.DM(np.tile(w, 2)).T)}
 
     def _constraints(
         self, march: March, parts: Mapping[str, ca.MX], offset: ca.MX, residual: ca.MX
@@ -197,7 +204,7 @@ class NonlinearProgram:
             sampled = self._sampling @ ca.reshape(power, NODES, motion.steps)
             rows = [ca.vec(sampled) - above + below]
         else:
-            rows = [motion.energy.value(power) - parts["power"]]
+            rows = []
         rows.append(arrival - parts["arrival"] if self.form.residual_rows else arrival)
         for group in self._limited:
             value = motion.of_group(ca.vec(march.outputs).T, group.name).T
@@ -217,7 +224,7 @@ class NonlinearProgram:
         self, limits: Mapping[str, float]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         motion, form = self.motion, self.form
-        zeros = (self._samples if form.sampled else 1) + motion.states
+        zeros = (self._samples if form.sampled else 0) + motion.states
         lower, upper = [np.zeros(zeros)], [np.zeros(zeros)]
         counts = {group.name: group.rows * motion.nodes for group in self._limited}
         if form.residual_rows:
@@ -250,8 +257,7 @@ class NonlinearProgram:
             signs = ca.horzcat(-ca.DM.eye(count), ca.DM.eye(count))
             rows = [self._row(count, coefficients=of_samples, power=signs)]
         else:
-            gradient = power_first @ motion.energy.first(march.outputs[0, :])[0]
-            rows = [self._row(1, coefficients=gradient.T, power=ca.DM(-1))]
+            rows = []
         arrived = -ca.DM.eye(motion.states) if form.residual_rows else ca.DM(motion.states, 0)
         rows.append(self._row(motion.states, coefficients=first.arrival.T, arrival=arrived))
 
@@ -273,13 +279,14 @@ class NonlinearProgram:
         self,
         x: ca.MX,
         p: ca.MX,
+        weights,
         inputs: Inputs,
         linearised: tuple[March, Sensitivities],
         constraints: int,
     ) -> ca.Function:
         motion, form = self.motion, self.form
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
-        sizes = [self._samples if form.sampled else 1, motion.states]
+        sizes = [self._samples if form.sampled else 0, motion.states]
         for group in self._limited:
             sizes += [group.rows * motion.nodes] * (2 if group.name == form.least else 1)
         of_energy, of_arrival, *of_values, _ = split(
@@ -292,6 +299,7 @@ class NonlinearProgram:
             of_power = ca.vec(self._sampling.T @ of_samples).T
         else:
             gradient, bends = motion.energy.first(march.outputs[0, :])
+            of_energy = of_objective * weights[0]
             of_power = of_energy * gradient.T
             by_energy = of_energy * motion.of_bends(motion.of_group(first.outputs, "power"), bends)
         of_outputs = [ca.MX(of_power)]

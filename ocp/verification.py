@@ -92,7 +92,7 @@ def verified(
             if 2 * program.steps > most_steps:
                 break
             program = TaskProgram(program.task, program.profile, 2 * program.steps)
-            again, used = program.solve(best.coefficients, limits, bound), dict(limits)
+            again, used = program.refined(best, limits, bound), dict(limits)
             if not again.status.solved:
                 break
         best = again
