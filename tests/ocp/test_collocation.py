@@ -8,7 +8,7 @@ import pytest
 
 from models import ArmOnFlexibleLink, JointMotion, SingleLinkManipulator
 from ocp import CycloidPolynomial
-from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh, modal_system, step
+from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh, modal_system, step
 
 STILL = JointMotion(0.4, 0.0, 0.0)
 

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from ocp import CycloidPolynomial, PointToPoint, rollout
-from ocp.collocation import NODES, mesh
-from ocp.condensed import Condensed, Inputs
-from ocp.pieces import EnergyPieces
-from ocp.rollout import symbolic_rollout
+from ocp.program.condensed import Condensed, Inputs
+from ocp.program.pieces import EnergyPieces
+from ocp.simulation.collocation import NODES, mesh
+from ocp.simulation.rollout import symbolic_rollout
 
 TERMS = 3
 MOVE = np.array([-0.4, 1.1, 0.7])

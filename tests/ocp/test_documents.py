@@ -16,7 +16,12 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from ocp.documents import read_document, task_from_document, task_to_document, write_document
+from ocp.answers.documents import (
+    read_document,
+    task_from_document,
+    task_to_document,
+    write_document,
+)
 
 
 @pytest.fixture(scope="module")

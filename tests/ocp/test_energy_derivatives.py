@@ -9,8 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
-from ocp.objective import energy_derivatives, resolved_energy
+from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
+from ocp.simulation.objective import energy_derivatives, resolved_energy
 
 NODE = np.array(GAUSS_NODES)
 X = Polynomial([0.0, 1.0])

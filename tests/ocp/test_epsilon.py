@@ -23,13 +23,13 @@ from ocp import (
     resimulate,
     weighted_front,
 )
-from ocp.epsilon import _Stretch
-from ocp.provenance import SolveSettings
-from ocp.solver import first_steps
-from ocp.status import SolveStatus
-from ocp.sweep import Sweep
-from ocp.transcription import NonlinearProgram
-from ocp.verification import STILL
+from ocp.answers.provenance import SolveSettings
+from ocp.base.status import SolveStatus
+from ocp.front.epsilon import _Stretch
+from ocp.front.sweep import Sweep
+from ocp.plan.solver import first_steps
+from ocp.plan.verification import STILL
+from ocp.program.transcription import NonlinearProgram
 
 POINTS = 12
 CASES = {

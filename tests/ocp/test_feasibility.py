@@ -15,9 +15,9 @@ from ocp import (
     plan_move,
     rollout,
 )
-from ocp.feasibility import explain
-from ocp.solution import Solution
-from ocp.transcription import Form, Point
+from ocp.plan.feasibility import explain
+from ocp.program.solution import Solution
+from ocp.program.transcription import Form, Point
 
 # Name, terms, task's limits, settings of the solve.
 CASES = {
@@ -33,7 +33,7 @@ CASES = {
     "torque and speed": ("arm", 4, {"torque_limit": 0.05, "speed_limit": 20.0}, {}),
 }
 ALLOWED = 1e-3
-"""Share of a limit by which ocp.solver lets a verified peak pass it, where there is no room."""
+"""Share of a limit by which ocp.plan.solver lets a verified peak pass it, if there is no room."""
 QUOTED = re.compile(r"(residual|torque|speed|acceleration|deflection) limit (\S+) (?:N m|rad|m)")
 
 

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from ocp.files import check_writable, write_whole
+from ocp.base.files import check_writable, write_whole
 
 
 def _left_over(folder):

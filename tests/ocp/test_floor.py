@@ -24,8 +24,8 @@ from ocp import (
     SolveStatus,
     energy_floor,
 )
-from ocp.floor_answer import Level
-from ocp.floor_program import FloorProgram
+from ocp.floor.answer import Level
+from ocp.floor.program import FloorProgram
 
 ROOT = Path(__file__).parents[2]
 ARM = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)

@@ -6,8 +6,8 @@ from scipy.integrate import quad, solve_ivp
 
 from models import JointMotion
 from ocp import CycloidPolynomial, resimulate
-from ocp.floor_grid import finer, first_grid
-from ocp.floor_motion import FreeMotion, simulate
+from ocp.floor.grid import finer, first_grid
+from ocp.floor.motion import FreeMotion, simulate
 
 COARSE = np.array([0.0, 0.01, 0.3, 0.45, 0.8])
 

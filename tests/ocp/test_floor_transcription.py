@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from ocp.floor_transcription import FreeProgram
+from ocp.floor.transcription import FreeProgram
 
 STEPS = 3
 LIMITED = {

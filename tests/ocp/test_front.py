@@ -21,7 +21,7 @@ from ocp import (
     non_dominated,
     plan_move,
 )
-from ocp.documents import versions
+from ocp.answers.documents import versions
 
 TASK = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, torque_limit=0.4)
 

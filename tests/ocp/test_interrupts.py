@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from models import ArmOnFlexibleLink
-from ocp import CycloidPolynomial, PointToPoint, collocation, residual, rollout
-from ocp.interrupts import defer_interrupts, keep_interrupts, note_interrupts
+from ocp import CycloidPolynomial, PointToPoint, rollout
+from ocp.base.interrupts import defer_interrupts, keep_interrupts, note_interrupts
+from ocp.simulation import collocation, residual
 
 ROOT = Path(__file__).parents[2]
 

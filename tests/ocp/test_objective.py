@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from models import SingleLinkManipulator
 from ocp import Motion, PointToPoint
-from ocp.collocation import GAUSS_NODES, NODES, mesh
-from ocp.objective import beyond_quadratic, resolved_energy
+from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
+from ocp.simulation.objective import beyond_quadratic, resolved_energy
 
 numbers = st.floats(-10.0, 10.0)
 

@@ -10,11 +10,11 @@ import pytest
 
 from models import JointMotion
 from ocp import JointProfile, Plan, PointToPoint, plan_move, resimulate, rollout
-from ocp.condensed import Condensed, Inputs
-from ocp.pieces import ProfilePieces
-from ocp.program import TaskProgram
-from ocp.rollout import symbolic_rollout
-from ocp.transcription import RESIDUAL
+from ocp.program.condensed import Condensed, Inputs
+from ocp.program.pieces import ProfilePieces
+from ocp.program.task_program import TaskProgram
+from ocp.program.transcription import RESIDUAL
+from ocp.simulation.rollout import symbolic_rollout
 
 pi = math.pi
 

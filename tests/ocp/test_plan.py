@@ -24,7 +24,7 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.provenance import Provenance
+from ocp.answers.provenance import Provenance
 
 # Table 1, N = 2.
 TWO_TERMS = [3.347e-3, -1.697e-1]

@@ -21,10 +21,10 @@ from ocp import (
     polish_front,
     resimulate,
 )
-from ocp.provenance import SolveSettings
-from ocp.solver import first_steps
-from ocp.status import SolveStatus
-from ocp.sweep import Sweep
+from ocp.answers.provenance import SolveSettings
+from ocp.base.status import SolveStatus
+from ocp.front.sweep import Sweep
+from ocp.plan.solver import first_steps
 
 TASK, BOUND, PROFILE = (
     PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8),

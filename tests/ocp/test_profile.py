@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ocp import MAX_TERMS, CycloidPolynomial
-from ocp.profile import JointProfile, known_profiles
+from ocp.profiles.joint_profile import JointProfile, known_profiles
 
 angles = st.floats(-2 * math.pi, 2 * math.pi)
 durations = st.floats(0.1, 10.0)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from ocp import CycloidPolynomial, PointToPoint, SolveStatus, resimulate, rollout
-from ocp import program as program_module
-from ocp.program import TaskProgram
-from ocp.resimulation import resimulated
-from ocp.solution import same_minimum
-from ocp.solver import _HIDDEN
-from ocp.task import LIMITS
-from ocp.transcription import RESIDUAL
+from ocp.plan.solver import _HIDDEN
+from ocp.program import task_program as program_module
+from ocp.program.solution import same_minimum
+from ocp.program.task_program import TaskProgram
+from ocp.program.transcription import RESIDUAL
+from ocp.simulation.resimulation import resimulated
+from ocp.task.point_to_point import LIMITS
 
 STEPS, TERMS = 60, 6
 START = np.zeros(TERMS)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint, residual_matrix
-from ocp.residual import (
+from ocp.simulation.residual import (
     MOST_SAMPLES,
     RADIANS_A_SAMPLE,
     extreme_rows,

@@ -20,8 +20,8 @@ from ocp import (
     resimulate,
     sample_trajectory,
 )
-from ocp.cvodes import rest_of
-from ocp.profile import JointProfile
+from ocp.profiles.joint_profile import JointProfile
+from ocp.simulation.cvodes import rest_of
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)

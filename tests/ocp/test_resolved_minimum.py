@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ocp import CycloidPolynomial, resimulate
-from ocp.program import TaskProgram
-from ocp.solver import _HIDDEN
-from ocp.transcription import RESIDUAL
+from ocp.plan.solver import _HIDDEN
+from ocp.program.task_program import TaskProgram
+from ocp.program.transcription import RESIDUAL
 
 TERMS = 6
 START = np.zeros(TERMS)

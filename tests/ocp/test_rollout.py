@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import CycloidPolynomial, PointToPoint, resimulate, rollout, symbolic_rollout
-from ocp.resimulation import sample_trajectory
-from ocp.rollout import LEAST_STEPS, default_steps
+from ocp.simulation.resimulation import sample_trajectory
+from ocp.simulation.rollout import LEAST_STEPS, default_steps
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)
@@ -100,7 +100,7 @@ def test_default_steps_are_accurate_for_any_number_of_terms(tasks, name, terms):
     for a in random.uniform(-BOXES[name], BOXES[name], (3, terms)):
         fixed, reference = rollout(task, profile, a), resimulate(task, profile, a)
         assert fixed.motion.energy == pytest.approx(reference.energy, rel=1e-5)
-        # Sampling misses 5e-5 of a peak at most (ocp.residual), beside 1e-7 m of the state.
+        # Sampling misses 5e-5 of a peak at most (`residual`), beside 1e-7 m of the state.
         close = 6e-5 * reference.residual + 1e-6
         assert fixed.motion.residual == pytest.approx(reference.residual, abs=close)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from ocp.shadowing import refuse_shadow
+from ocp.base.shadowing import refuse_shadow
 
 ROOT = Path(__file__).parents[2]
 

@@ -18,8 +18,8 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.solver import LEAST_STEPS, start_coefficients
-from ocp.task import LIMITS
+from ocp.plan.solver import LEAST_STEPS, start_coefficients
+from ocp.task.point_to_point import LIMITS
 
 pi = math.pi
 
@@ -157,7 +157,7 @@ def test_a_limit_is_kept_and_costs_energy(plants, tasks, solved, name, limit):
     value, task = 0.9 * free.motion.peak(quantity), tasks[name]
     limited = solved(PointToPoint(task.plant, task.target, task.duration, **{limit: value}))
     # Kept to the solver's tolerance by the verified motion, and between its samples to the share
-    # that ocp.solver allows.
+    # that ocp.plan.solver allows.
     assert limited.motion.peak(quantity) <= value * (1 + 1e-6)
     sampled = limited.trajectory(np.linspace(0.0, task.duration, 20_001))
     peak = {

@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from ocp.symbols import over_columns
+from ocp.program.symbols import over_columns
 
 COLUMNS = 5
 

@@ -8,7 +8,7 @@ import pytest
 
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
-from ocp.task import LIMITS
+from ocp.task.point_to_point import LIMITS
 
 PLANT = SingleLinkManipulator()
 NOT_POSITIVE = [0, 0.0, -0.0, -0.8, math.nan, math.inf, -math.inf]

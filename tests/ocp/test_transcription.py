@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from ocp import CycloidPolynomial, residual_matrix, rollout
-from ocp.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
-from ocp.condensed import Condensed
-from ocp.transcription import RESIDUAL, Form, NonlinearProgram, Point
+from ocp.program.condensed import Condensed
+from ocp.program.transcription import RESIDUAL, Form, NonlinearProgram, Point
+from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 
 STEPS, TERMS, ROWS = 4, 3, 6
 SAMPLES = 2 * STEPS

@@ -7,7 +7,7 @@ import pytest
 
 from models import SingleLinkManipulator
 from ocp import CycloidPolynomial, Plan, PointToPoint, evaluate_coefficients
-from ocp.profile import known_profiles
+from ocp.profiles.joint_profile import known_profiles
 
 
 @dataclass(frozen=True)

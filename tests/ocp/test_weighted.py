@@ -14,8 +14,8 @@ from ocp import (
     resimulate,
     weighted_front,
 )
-from ocp.status import SolveStatus
-from ocp.sweep import Sweep
+from ocp.base.status import SolveStatus
+from ocp.front.sweep import Sweep
 
 CASES = {
     "arm": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
