@@ -39,16 +39,25 @@ from cosmic_ray.mutating import mutate_code
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # this checkout's packages, also where quietarm is installed
 TESTS = {
-    "models/plant.py": ["models/test_plants.py", "ocp/test_task.py"],
+    "models/plant.py": ["models/test_plants.py", "ocp/task/test_point_to_point.py"],
     "models/single_link.py": ["models/test_plants.py"],
     "models/arm_on_flexible_link.py": ["models/test_plants.py"],
-    "ocp/simulation/collocation.py": ["ocp/test_collocation.py", "ocp/test_rollout.py"],
-    "ocp/simulation/objective.py": ["ocp/test_objective.py", "ocp/test_rollout.py"],
-    "ocp/profiles/joint_profile.py": ["ocp/test_profile.py"],
-    "ocp/profiles/polynomial.py": ["ocp/test_profile.py"],
-    "ocp/simulation/residual.py": ["ocp/test_residual.py", "ocp/test_rollout.py"],
-    "ocp/simulation/rollout.py": ["ocp/test_rollout.py"],
-    "ocp/simulation/resimulation.py": ["ocp/test_resimulation.py"],
+    "ocp/simulation/collocation.py": [
+        "ocp/simulation/test_collocation.py",
+        "ocp/simulation/test_rollout.py",
+    ],
+    "ocp/simulation/objective.py": [
+        "ocp/simulation/test_objective.py",
+        "ocp/simulation/test_rollout.py",
+    ],
+    "ocp/profiles/joint_profile.py": ["ocp/profiles/test_polynomial.py"],
+    "ocp/profiles/polynomial.py": ["ocp/profiles/test_polynomial.py"],
+    "ocp/simulation/residual.py": [
+        "ocp/simulation/test_residual.py",
+        "ocp/simulation/test_rollout.py",
+    ],
+    "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py"],
+    "ocp/simulation/resimulation.py": ["ocp/simulation/test_resimulation.py"],
 }
 """The modules to change, and the tests that should notice."""
 

@@ -27,7 +27,7 @@ from ocp import (
 from ocp.floor.answer import Level
 from ocp.floor.program import FloorProgram
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 ARM = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
 SHORT = {"starts": 1}
 

@@ -9,7 +9,7 @@ import pytest
 
 from ocp.base.shadowing import refuse_shadow
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def test_the_packages_own_modules_are_not_refused():

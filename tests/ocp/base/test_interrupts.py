@@ -16,7 +16,7 @@ from ocp import CycloidPolynomial, PointToPoint, rollout
 from ocp.base.interrupts import defer_interrupts, keep_interrupts, note_interrupts
 from ocp.simulation import collocation, residual
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def _swallow_ctrl_c():

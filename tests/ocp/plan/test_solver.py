@@ -107,7 +107,7 @@ def test_another_process_gives_identical_coefficients():
         "task = PointToPoint(Arm(), math.pi / 2, 0.8);"
         "print(plan_move(task, CycloidPolynomial(4), bound=0.5).coefficients)"
     )
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[3]
     run = subprocess.run(
         [sys.executable, "-c", text], cwd=root, capture_output=True, text=True, check=True
     )
