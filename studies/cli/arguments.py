@@ -11,7 +11,7 @@ from click.core import ParameterSource
 
 from models import Plant
 from ocp import Plan, PointToPoint
-from ocp.plan import ticks_of_move
+from ocp.plan.answer import ticks_of_move
 from studies.runs.files import refuse_same_file
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from rich.console import Console
 
 from ocp import Front, QuietarmError
-from ocp.files import check_writable, write_whole
-from ocp.floor import energy_floor
+from ocp.base.files import check_writable, write_whole
+from ocp.floor.search import energy_floor
 from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
 from studies.display.tables import print_table

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ocp import Motion, Plan, PointToPoint
-from ocp.task import LIMITS
+from ocp.task.point_to_point import LIMITS
 from studies.display.words import millimetres
 
 

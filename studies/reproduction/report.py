@@ -13,7 +13,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from ocp import Plan
-from ocp.files import write_whole
+from ocp.base.files import write_whole
 from studies.display.pictures import save_figure
 from studies.display.tables import Cell, Column, Table
 from studies.paper.case import Case

@@ -10,8 +10,8 @@ import numpy as np
 from rich.console import Console
 
 from ocp import Front, Gain, polish_front
-from ocp.checks import whole
-from ocp.files import write_whole
+from ocp.base.checks import whole
+from ocp.base.files import write_whole
 from studies.display.progress import count
 from studies.display.tables import Column, Table
 from studies.display.words import millimetres, print_lines

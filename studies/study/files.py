@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from ocp.files import check_writable, write_whole
+from ocp.base.files import check_writable, write_whole
 from studies.paper.tasks import title_of
 from studies.study.page import study_page
 from studies.study.work import Study

@@ -17,7 +17,7 @@ from ocp import (
     energy_floor,
     polish_front,
 )
-from ocp.checks import whole
+from ocp.base.checks import whole
 from studies.comparison.measures import Comparison, compare_fronts
 from studies.methods import METHODS, Kind, Method, methods_of
 from studies.paper.case import Case
