@@ -18,6 +18,7 @@ from ocp.plan.feasibility import least_peaks
 from ocp.plan.solver import first_steps, least_energy, start_coefficients
 from ocp.plan.verification import ENOUGH_STEPS, MOST_STEPS, STILL, verified
 from ocp.profiles.joint_profile import JointProfile
+from ocp.program.problem import Problem
 from ocp.program.solution import LEAST_ENERGY, Solution
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
@@ -117,13 +118,18 @@ class Sweep:
             self._program = TaskProgram(self.task, self.profile, self.steps)
         return self._program
 
+    def problem(self, residual_limit: float) -> Problem:
+        """What is asked at a residual limit [m]."""
+        limits = {**self.task.limits, RESIDUAL: residual_limit}
+        return Problem(self.program, limits, self.settings.bound, self.guesses)
+
     def solve(
         self,
         guess: Guess,
         residual_limit: float = np.inf,
         minimise: Mapping[str, float] = LEAST_ENERGY,
     ) -> Solution:
-        """Run the solver from one start, and again without its multipliers where that fails.
+        """Run the solver from one start.
 
         Parameters
         ----------
@@ -139,11 +145,8 @@ class Sweep:
         Solution
             The solution, whatever its status.
         """
-        limits = {**self.task.limits, RESIDUAL: residual_limit}
-        found = self.program.solve(guess, limits, self.settings.bound, minimise)
+        found = self.problem(residual_limit).solve(guess, minimise)
         self.iterations += found.iterations
-        if isinstance(guess, Solution) and not found.status.solved:
-            return self.solve(guess.coefficients, residual_limit, minimise)
         return found
 
     def ends(self) -> Ends:
@@ -164,12 +167,12 @@ class Sweep:
         SolverFailedError
             When no start ended at an optimum for another reason.
         """
-        bound, free = self.settings.bound, {**self.task.limits, RESIDUAL: np.inf}
         still = self._at_rest()  # first: it settles the number of steps
-        cheapest = least_energy(self.program, self.profile, free, bound, self.guesses)
+        free = self.problem(np.inf)
+        cheapest = least_energy(free)
         self.iterations += cheapest.iterations
         if still is None:
-            least = least_peaks(self.program, self.profile, free, bound, self.guesses)
+            least = least_peaks(free)
             if RESIDUAL not in least:
                 return Ends(
                     cheapest,
@@ -183,13 +186,10 @@ class Sweep:
         return Ends(*still, cheapest)
 
     def _at_rest(self) -> tuple[Solution, FrontPoint] | None:
-        bound, limits = self.settings.bound, {**self.task.limits, RESIDUAL: 0.0}
         try:
-            found = least_energy(self.program, self.profile, limits, bound, self.guesses)
-            found, motion, self.steps = verified(
-                self.program, found, limits, bound, enough_steps=self.steps
-            )
-            end, motion, _ = verified(self.program, found, limits, bound)
+            found = least_energy(self.problem(0.0))
+            found, motion, self.steps = verified(self.problem(0.0), found, enough_steps=self.steps)
+            end, motion, _ = verified(self.problem(0.0), found)
         except SolverFailedError:
             return None
         self.iterations += end.iterations
@@ -223,11 +223,10 @@ class Sweep:
         FrontPoint or FailedPoint
             The point, or why it cannot be trusted.
         """
-        limits = {**self.task.limits, RESIDUAL: np.inf if free else found.residual}
         kept = {**self.task.limits, RESIDUAL: most_residual}
         try:
             point, motion, _ = verified(
-                self.program, found, limits, self.settings.bound,
+                self.problem(np.inf if free else found.residual), found,
                 most_steps=MOST_STEPS if free else _MORE_STEPS * self.steps,
                 enough_steps=ENOUGH_STEPS if free else _MORE_STEPS * self.steps, kept=kept,
             )  # fmt: skip

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from ocp.base.errors import SolverFailedError
+from ocp.program.problem import Problem
 from ocp.program.solution import Solution
-from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
 from ocp.simulation.objective import Motion
 from ocp.simulation.resimulation import resimulated
@@ -29,10 +29,8 @@ _OVERRUN = 1e-3
 
 
 def verified(
-    program: TaskProgram,
+    problem: Problem,
     best: Solution,
-    limits: Mapping[str, float],
-    bound: float | None,
     *,
     most_steps: int = MOST_STEPS,
     enough_steps: int = ENOUGH_STEPS,
@@ -46,14 +44,10 @@ def verified(
 
     Parameters
     ----------
-    program : TaskProgram
-        The program that was solved.
+    problem : Problem
+        What was solved.
     best : Solution
         Its solution.
-    limits : mapping of str to float
-        Largest residual [m] and peaks [SI units].
-    bound : float or None
-        Largest absolute coefficient.
     most_steps : int
         Steps up to which they are doubled.
     enough_steps : int
@@ -71,34 +65,37 @@ def verified(
     SolverFailedError
         When a limit stays passed.
     """
-    motion, arrival = resimulated(program.task, program.profile, best.coefficients)
+    program, limits = problem.program, problem.limits
+    task, profile = program.task, program.profile
+    motion, arrival = resimulated(task, profile, best.coefficients)
     kept, used = limits if kept is None else kept, dict(limits)
     still = max(STILL, STILL_SHARE * program.of_cycloid)
     tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
     tried: list[tuple[Solution, Motion, int]] = []
     for _ in range(_ROUNDS):
-        tried.append((best, motion, program.steps))
+        steps = problem.program.steps
+        tried.append((best, motion, steps))
         overrun = {name: motion.peak(name) / limit for name, limit in kept.items() if limit > 0}
         used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
         rough = abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
-        unsettled = not best.settled and program.steps < enough_steps
+        unsettled = not best.settled and steps < enough_steps
         missed = abs(best.residual - motion.residual) > tolerated
         again = None
         if not rough and (missed or any(ratio > 1 for ratio in overrun.values())):
-            again = program.corrected(best, arrival, used, bound)
+            again = problem.within(used).corrected(best, arrival)
         elif not (rough or unsettled):
             break
         if again is None or not again.status.solved:
-            if 2 * program.steps > most_steps:
+            if 2 * steps > most_steps:
                 break
-            program = TaskProgram(program.task, program.profile, 2 * program.steps)
-            again, used = program.refined(best, limits, bound), dict(limits)
+            problem = problem.finer()
+            again, used = problem.refined(best), dict(limits)
             if not again.status.solved:
                 break
         best = again
-        motion, arrival = resimulated(program.task, program.profile, best.coefficients)
+        motion, arrival = resimulated(task, profile, best.coefficients)
     else:
-        tried.append((best, motion, program.steps))
+        tried.append((best, motion, problem.program.steps))
     best, motion, steps = _cheapest_kept(tried, kept, still)
     for name, limit in kept.items():
         if motion.peak(name) > max(limit * (1 + _OVERRUN), still):
