@@ -18,9 +18,12 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-SAMPLED = {**OPTIONS, "tol": 1e-5, "mu_strategy": "monotone", "mu_init": 1e-3}
-"""From coefficients alone. What remains of the sampled program's error is much less than its own
-distance to the truth; the adaptive barrier loses its way with ten terms or more."""
+SAMPLED = {**OPTIONS, "tol": 1e-5}
+"""From coefficients in a box. What remains of the sampled program's error is much less than its own
+distance to the truth."""
+UNBOXED = {**SAMPLED, "mu_strategy": "monotone", "mu_init": 1e-3}
+"""Without a box the adaptive barrier loses its way with ten terms or more; with one it takes a
+fifth less iterations."""
 PEAK = OPTIONS
 """The least peak, from coefficients alone."""
 _BARRIER = 1e-8

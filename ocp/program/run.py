@@ -13,7 +13,7 @@ from models import Plant
 from ocp.base.status import SolveStatus
 from ocp.profiles.joint_profile import JointProfile
 from ocp.program.condensed import condensed
-from ocp.program.ipopt import PEAK, RESOLVED, SAMPLED
+from ocp.program.ipopt import PEAK, RESOLVED, SAMPLED, UNBOXED
 from ocp.program.solution import ENERGY, Solution
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop
@@ -33,10 +33,16 @@ _KEPT = 1e-7
 
 @lru_cache(maxsize=32)
 def _compiled(
-    plant: Plant, profile: JointProfile, steps: int, quantities: tuple[str, ...], form: Form
+    plant: Plant,
+    profile: JointProfile,
+    steps: int,
+    quantities: tuple[str, ...],
+    form: Form,
+    boxed: bool,
 ) -> NonlinearProgram:
     motion = condensed(plant, profile, steps, quantities)
-    options = {"sampled": SAMPLED, "resolved": RESOLVED, "free": PEAK}[form.energy]
+    sampled = SAMPLED if boxed else UNBOXED
+    options = {"sampled": sampled, "resolved": RESOLVED, "free": PEAK}[form.energy]
     return NonlinearProgram(motion, form, options)
 
 
@@ -115,7 +121,7 @@ class Run:
         IPOPT's first steps are the longest, and far from the cycloid it loses its way.
         """
         start = self.start(guess, self.form)
-        if not (self.form.sampled and self.axes is self.program.even_axes):
+        if self.axes is not self.program.even_axes:
             return self.solution(self.form, self.stop(self.form, start))
         stop = self.stop(self.form, start, _FIRST_REACH)
         iterations = stop.iterations
@@ -172,7 +178,10 @@ class Run:
     def stop(self, form: Form, start: Point, reach: float = np.inf) -> Stop:
         """Run one form of the program, no farther than `reach` from the start."""
         program, task = self.program, self.program.task
-        compiled = _compiled(task.plant, program.profile, program.steps, tuple(task.limits), form)
+        compiled = _compiled(
+            task.plant, program.profile, program.steps, tuple(task.limits), form,
+            boxed=form.sampled and np.isfinite(self.bound),
+        )  # fmt: skip
         upper = np.full(compiled.unknowns, np.inf)
         upper[compiled.part("coefficients")] = self.bound
         lower = -upper
