@@ -35,6 +35,10 @@ _PATIENCE = 0.6
 """How long [s] points are still checked after Ctrl-C."""
 _MORE_STEPS = 2
 """How many times the sweep's steps a point may take whose figures disagree."""
+_LEAST_STEPS = 40
+"""Fewest steps: a point of a front may be off by more than a plan."""
+_AGREEMENT = 1e-4
+"""Share of the energy by which solver and independent integrator may differ along a front."""
 _SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""
 
@@ -107,7 +111,7 @@ class Sweep:
     def __post_init__(self) -> None:
         if self.profile.size == 0:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
-        self.steps = first_steps(self.task, self.profile, self.settings)
+        self.steps = first_steps(self.task, self.profile, self.settings, _LEAST_STEPS)
         self.guesses = start_coefficients(self.profile.size, self.settings)
         self._program: TaskProgram | None = None
 
@@ -188,7 +192,9 @@ class Sweep:
     def _at_rest(self) -> tuple[Solution, FrontPoint] | None:
         try:
             found = least_energy(self.problem(0.0))
-            found, motion, self.steps = verified(self.problem(0.0), found, enough_steps=self.steps)
+            found, motion, self.steps = verified(
+                self.problem(0.0), found, enough_steps=self.steps, agreement=_AGREEMENT
+            )
             end, motion, _ = verified(self.problem(0.0), found)
         except SolverFailedError:
             return None
@@ -228,7 +234,8 @@ class Sweep:
             point, motion, _ = verified(
                 self.problem(np.inf if free else found.residual), found,
                 most_steps=MOST_STEPS if free else _MORE_STEPS * self.steps,
-                enough_steps=ENOUGH_STEPS if free else _MORE_STEPS * self.steps, kept=kept,
+                enough_steps=ENOUGH_STEPS if free else _MORE_STEPS * self.steps,
+                agreement=_AGREEMENT, kept=kept,
             )  # fmt: skip
         except SolverFailedError as error:
             return FailedPoint(asked, str(error))

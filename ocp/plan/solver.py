@@ -21,7 +21,7 @@ from ocp.program.transcription import RESIDUAL
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 40, 80, 80, 8
+LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
 """Steps that a profile needs: more where more terms let the power change sign more often, and where
 limits hold only at the nodes."""
 _HIDDEN = 2e-3
@@ -100,7 +100,9 @@ def plan_move(
     )
 
 
-def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> int:
+def first_steps(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, least: int = LEAST_STEPS
+) -> int:
     """Steps of the solver's discretisation to begin with.
 
     Parameters
@@ -111,6 +113,8 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
         How the joint moves.
     settings : SolveSettings
         Its steps count where they are given.
+    least : int
+        Fewest steps otherwise.
 
     Returns
     -------
@@ -122,7 +126,7 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = max(LIMITED_STEPS if task.limits else LEAST_STEPS, STEPS_A_TERM * (profile.size - 2))
+    least = max(LIMITED_STEPS if task.limits else least, STEPS_A_TERM * (profile.size - 2))
     least = min(least, MOST_LEAST_STEPS)
     steps = settings.steps or default_steps(task, least=least)
     if steps > MOST_STEPS and settings.steps is None:

@@ -17,7 +17,9 @@ MOST_STEPS = 3200
 STILL, STILL_SHARE = 1e-8, 1e-7
 """Verified residual up to which 'at rest on arrival' counts as kept: in metres, or as a share of
 what the plain cycloid leaves, whichever is more."""
-_ENERGY_AGREEMENT = 1e-3
+AGREEMENT = 1e-5
+"""Share of the energy by which solver and independent integrator may differ, that the cheapest
+motion for the one is the cheapest for the other to 1e-6."""
 _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
 """Share of that which the residual at rest is brought below."""
@@ -34,6 +36,7 @@ def verified(
     *,
     most_steps: int = MOST_STEPS,
     enough_steps: int = ENOUGH_STEPS,
+    agreement: float = AGREEMENT,
     kept: Mapping[str, float] | None = None,
 ) -> tuple[Solution, Motion, int]:
     """Verify; mend the arrival, double the steps while energies disagree, tighten passed limits.
@@ -52,6 +55,8 @@ def verified(
         Steps up to which they are doubled.
     enough_steps : int
         Steps with which a minimum counts though the solver did not settle there.
+    agreement : float
+        Share of the energy by which the two may differ.
     kept : mapping of str to float, optional
         The limits that the verified figures must keep; all of them by default.
 
@@ -77,7 +82,7 @@ def verified(
         tried.append((best, motion, steps))
         overrun = {name: motion.peak(name) / limit for name, limit in kept.items() if limit > 0}
         used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
-        rough = abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
+        rough = abs(best.energy - motion.energy) > agreement * motion.energy
         unsettled = not best.settled and steps < enough_steps
         missed = abs(best.residual - motion.residual) > tolerated
         again = None
