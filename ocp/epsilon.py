@@ -10,14 +10,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.checks import whole
 from ocp.front import FailedPoint, Front, FrontPoint
 from ocp.profile import CycloidPolynomial, JointProfile
-from ocp.provenance import SolveSettings
+from ocp.provenance import SolveSettings, number_of_points
 from ocp.solution import Solution
 from ocp.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, better, no_report
 from ocp.task import PointToPoint
-from ocp.workers import Say, Workers, death_of_process
+from ocp.workers import Say, Workers, death_of_process, number_of_workers
 
 _DOUBT = 1e-4
 """Share of the energy by which sweeps must differ for random starts to join; below it lies the
@@ -92,7 +91,7 @@ def epsilon_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points, workers = whole("points", points, 2), whole("workers", workers, 1)
+    points, workers = number_of_points(points), number_of_workers(workers)
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = sweep.ends()
     found: list[FrontPoint | FailedPoint] = [ends.still_point]

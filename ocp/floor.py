@@ -16,7 +16,7 @@ from ocp.floor_grid import finer, first_grid
 from ocp.floor_motion import FreeSimulation, simulate
 from ocp.floor_program import FloorProgram, FreeSolution
 from ocp.profile import CycloidPolynomial, JointPath
-from ocp.provenance import Provenance, Verification
+from ocp.provenance import Provenance, Verification, number_of_starts
 from ocp.rollout import default_steps
 from ocp.solver import UNBOUNDED_SPREAD, plan_move
 from ocp.task import PointToPoint
@@ -82,7 +82,7 @@ def energy_floor(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    starts, seed = whole("starts", starts, 1), whole("seed", seed, 0)
+    starts, seed = number_of_starts(starts), whole("seed", seed, 0)
     tolerance = positive("tolerance", tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, bool(smooth))

@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ocp.checks import finite, whole
+from ocp.checks import finite
 from ocp.front import FailedPoint, Front, FrontPoint
 from ocp.profile import JointProfile
 from ocp.provenance import SolveSettings
 from ocp.sweep import RESIDUAL_LIMIT, Report, Sweep, no_report
 from ocp.task import PointToPoint
-from ocp.workers import Say, Workers, death_of_process
+from ocp.workers import Say, Workers, death_of_process, number_of_workers
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def polish_front(
         When the front has no point, or `workers` is below 1.
     """
     front.stillest()  # refuses an empty front
-    workers = min(whole("workers", workers, 1), len(front.points))
+    workers = min(number_of_workers(workers), len(front.points))
     bound = front.settings.get("bound")
     settings = SolveSettings(
         bound=None if bound is None else finite("bound", bound),

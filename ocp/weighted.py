@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ocp.checks import finite, whole
+from ocp.checks import finite
 from ocp.front import FailedPoint, Front, FrontPoint
 from ocp.profile import CycloidPolynomial, JointProfile
-from ocp.provenance import SolveSettings
+from ocp.provenance import SolveSettings, number_of_points
 from ocp.solution import ENERGY, Solution
 from ocp.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, no_report
 from ocp.task import PointToPoint
@@ -77,7 +77,7 @@ def weighted_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points = whole("points", points, 2)
+    points = number_of_points(points)
     chosen = None if weights is None else [_checked(pair) for pair in weights]
     if chosen == []:
         raise ValueError("no weights are given; give a pair of residual and energy, or none at all")

@@ -6,11 +6,14 @@ import csv
 import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from rich import box
 from rich.console import Console
 from rich.table import Table as ScreenTable
 from rich.text import Text
+
+from ocp.files import write_whole
 
 Cell = str | int | float | None
 _WIDEST = 10_000
@@ -71,6 +74,10 @@ class Table:
         writer.writerow([column.key or column.heading for column in self.columns])
         writer.writerows([["" if cell is None else cell for cell in row] for row in self.rows])
         return text.getvalue()
+
+    def save_csv(self, path: Path) -> None:
+        """Write the table as CSV, whole or not at all."""
+        write_whole(path, self.csv())
 
     def upright(self) -> list[list[str]]:
         """The table turned: one line for each quantity, its heading first; the names on top."""
