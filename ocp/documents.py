@@ -101,8 +101,8 @@ def read_document(path: str | Path, kind: str, version: int, oldest: int = 1) ->
         )
     if found < oldest:
         raise FileFormatError(
-            f"{path} has version {found} of the {name} format and this quietarm reads {oldest} to "
-            f"{version}; find the {name} again"
+            f"{path} has version {found} of the {name} format and this quietarm reads "
+            f"{version if oldest == version else f'{oldest} to {version}'}; find the {name} again"
         )
     return document
 

@@ -134,7 +134,7 @@ def print_reproduction(console: Console, result: Reproduction, verdicts: Sequenc
         style = "green" if claim.holds else "red"
         console.print(Text.assemble((claim.verdict, f"bold {style}"), f"  {claim.text}"))
         for line in claim.evidence:
-            console.print(Padding(Text(line), (0, 0, 0, 11)))
+            console.print(Padding(Text(line), (0, 0, 0, 11 if console.width >= 60 else 2)))
 
 
 def reproduction_files(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[File]:
