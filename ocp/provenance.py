@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 
 from ocp.checks import finite, positive, whole
-from ocp.documents import Document, numbers_of, versions
+from ocp.documents import Document, made, numbers_of, versions
 from ocp.objective import Motion
 from ocp.readonly import ReadOnlyDict
 
@@ -132,4 +132,4 @@ def provenance_of(document: Document) -> Provenance:
         if not isinstance(document[name], dict):
             raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
     finite("seconds", document["seconds"], "s")
-    return Provenance(**document)
+    return made(Provenance, document)

@@ -73,6 +73,8 @@ class Stream:
 def patient_streams() -> Iterator[Stream]:
     """Let the block write to both streams whatever becomes of them; give that of the output."""
     _open_what_is_closed()
+    if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
+        del os.environ["COLUMNS"]
     before = sys.stdout, sys.stderr
     out, err = Stream(sys.stdout), Stream(sys.stderr)
     sys.stdout, sys.stderr = out, err  # pyright: ignore[reportAttributeAccessIssue]

@@ -83,16 +83,24 @@ def shown(
             yield bar(bars)
 
 
+def pauses() -> Iterator[float]:
+    """How long to be silent between words [s]: longer and longer, up to a minute."""
+    pause = SILENT_SECONDS
+    while True:
+        yield pause
+        pause = min(2 * pause, _LONGEST_PAUSE)
+
+
 @contextmanager
 def _ticking(console: Console, words: Callable[[], str]) -> Iterator[None]:
     """Print the words and the time from time to time, whatever the work does meanwhile."""
     began, over = time.perf_counter(), threading.Event()
 
     def tick() -> None:
-        pause = SILENT_SECONDS
-        while not over.wait(pause):
+        for pause in pauses():
+            if over.wait(pause):
+                return
             print_lines(console, f"{words()}, {time.perf_counter() - began:.0f} s so far")
-            pause = min(2 * pause, _LONGEST_PAUSE)
 
     ticker = threading.Thread(target=tick, daemon=True)
     ticker.start()
