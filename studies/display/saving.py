@@ -14,6 +14,7 @@ from rich.console import Console
 
 from ocp import QuietarmError
 from ocp.interrupts import note_interrupts
+from studies.display.progress import working
 from studies.display.words import print_lines
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ def finish(
     *,
     trouble: Exception | None = None,
     together: Together | None = None,
+    quiet: bool = True,
 ) -> None:
     """Save every file that was asked for, show what was found, and say what was written.
 
@@ -76,6 +78,8 @@ def finish(
         What went wrong before, as an interruption; raised at the end.
     together : Together, optional
         More to save, named in one line.
+    quiet : bool
+        Show no progress of what takes long to draw.
 
     Raises
     ------
@@ -85,7 +89,7 @@ def finish(
         When Ctrl-C came meanwhile; the text says what was written.
     """
     saved = _Saved()
-    with note_interrupts() as came:
+    with note_interrupts() as came, working("writing", Console(stderr=True), quiet=quiet):
         saved.written += saved.save(files)
         if together is not None:
             names = saved.save(together.files)

@@ -44,6 +44,7 @@ def compare(
       quietarm compare nsga2.json vepso.json
       quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
     """  # noqa: D301  # \b is click's: do not rewrap
+    from ocp import QuietarmError
     from studies.comparison.check import check_figures
     from studies.comparison.measures import FILL, compare_fronts
     from studies.comparison.report import (
@@ -54,17 +55,21 @@ def compare(
     )
     from studies.display.saving import finish
 
-    loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
-    for front, name in zip(loaded, names, strict=True):
-        check_figures(front, name)
-    named = None if reference is None else loaded.pop()
-    comparison = compare_fronts(
-        loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
-        fill=0 if as_found else FILL,
-    )  # fmt: skip
+    errors, trouble = Console(stderr=True), None
+    with working("comparing", errors, quiet=quiet):
+        loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
+        for front, name in zip(loaded, names, strict=True):
+            check_figures(front, name)
+        named = None if reference is None else loaded.pop()
+        comparison = compare_fronts(
+            loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
+            fill=0 if as_found else FILL,
+        )  # fmt: skip
     if floor:
-        errors = Console(stderr=True)
-        with working("finding the floor", errors, quiet=quiet):
-            comparison = with_floor(comparison, errors)
+        try:
+            with working("finding the floor", errors, quiet=quiet):
+                comparison = with_floor(comparison, errors)
+        except KeyboardInterrupt:
+            trouble = QuietarmError("interrupted; the comparison is kept, without the floor")
     files = [] if output is None else comparison_files(output, comparison)
-    finish(files, partial(print_comparison, comparison=comparison))
+    finish(files, partial(print_comparison, comparison=comparison), trouble=trouble, quiet=quiet)

@@ -10,11 +10,13 @@ import click
 from rich.console import Console
 
 from ocp import energy_floor
+from ocp.interrupts import note_interrupts
 from studies.cli.arguments import task_of
 from studies.cli.options import OUTPUT, PICTURE, quiet_option, task_options
 from studies.display.progress import working
 from studies.display.saving import drawing, finish
 from studies.reports.floor import plan_beside, print_floor
+from studies.reports.sweep import interruption
 from studies.runs.files import refuse_same_file
 
 if TYPE_CHECKING:
@@ -58,7 +60,8 @@ def floor(
     task = task_of(rest)
     with working("refining the grid", Console(stderr=True), quiet=quiet):
         found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
-        plan = plan_beside(found)
+        with note_interrupts() as came:  # the floor is found, and the plan takes a moment
+            plan = plan_beside(found)
 
     def picture() -> Figure:
         from studies.reports.floor_figure import floor_figure
@@ -68,4 +71,5 @@ def floor(
     finish(
         [(output, found.save), (figure, drawing(picture))],
         partial(print_floor, floor=found, plan=plan),
+        trouble=interruption() if came else None,
     )

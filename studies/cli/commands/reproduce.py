@@ -57,4 +57,5 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
         finish(
             [] if output is None else reproduction_files(output, result, verdicts),
             lambda console: print_reproduction(console, result, verdicts),
+            quiet=quiet,
         )

@@ -94,7 +94,8 @@ def study(
     together = None
     if fronts is not None:
         together = Together("fronts", fronts, front_files(result, fronts))
-    finish([page_file(result, output)], show, trouble=trouble, together=together)
+    page = [page_file(result, output)]
+    finish(page, show, trouble=trouble, together=together, quiet=quiet)
 
 
 def _refuse_without_plant(context: click.Context, names: Iterable[str]) -> None:

@@ -6,9 +6,11 @@ import shlex
 import signal
 import subprocess
 import sys
+from importlib import import_module
 
 import pytest
 
+import studies.comparison.report
 from ocp import Front
 
 MOVE = "single-link --target 30deg --duration 0.8"
@@ -98,6 +100,34 @@ def test_the_end_of_a_batch_job_keeps_what_its_processes_found(at_a_terminal, fo
     assert err.splitlines()[-1].startswith("quietarm: interrupted: 0 of 2 seeds are done, 2 in")
     assert out.splitlines()[-2:] == ["wrote f-seed0.json", "wrote f-seed1.json"]
     assert all(Front.load(path).points for path in folder.iterdir())
+
+
+def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder, monkeypatch):
+    line = f"front {MOVE} --terms 2 --bound 0.3 --points 3 --quiet --method"
+    assert call(f"{line} epsilon --output a.json")[0] == 0
+    assert call(f"{line} weighted --output b.json")[0] == 0
+    monkeypatch.setattr(
+        studies.comparison.report, "energy_floor", lambda task: signal.raise_signal(signal.SIGINT)
+    )
+    code, out, err = call("compare a.json b.json --output compared")
+    assert (code, err) == (1, "quietarm: interrupted; the comparison is kept, without the floor\n")
+    assert out.splitlines()[-1] == "wrote compared/fronts.png"
+
+
+def test_ctrl_c_while_the_plan_beside_it_is_looked_for_keeps_the_floor(call, folder, monkeypatch):
+    command = import_module("studies.cli.commands.floor")
+    beside = command.plan_beside
+
+    def interrupted(floor):
+        signal.raise_signal(signal.SIGINT)
+        return beside(floor)
+
+    monkeypatch.setattr(command, "plan_beside", interrupted)
+    code, out, err = call(
+        f"floor {MOVE} --acceleration-limit 200 --starts 1 --tolerance 0.1 --output f.json"
+    )
+    assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
+    assert out.splitlines()[-1] == "wrote f.json"
 
 
 # Starts the command, and sends it a signal when it loads a module.
