@@ -51,10 +51,10 @@ from rockit.sampling_method import FunctionGrid
 
 from models import ArmOnFlexibleLink, JointMotion
 from ocp import CycloidPolynomial, PointToPoint, energy_floor
-from ocp.collocation import NODES
-from ocp.floor_grid import first_grid
-from ocp.floor_motion import FreeMotion, simulate
-from ocp.floor_program import _COLD, FloorProgram
+from ocp.floor.grid import first_grid
+from ocp.floor.motion import FreeMotion, simulate
+from ocp.floor.program import _COLD, FloorProgram
+from ocp.simulation.collocation import NODES
 
 try:
     import yapss

@@ -51,9 +51,11 @@ from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 
 from ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
-from ocp.collocation import NODES, mesh
-from ocp.program import OPTIONS, Solution, TaskProgram
-from ocp.resimulation import resimulate
+from ocp.program.ipopt import OPTIONS
+from ocp.program.solution import Solution
+from ocp.program.task_program import TaskProgram
+from ocp.simulation.collocation import NODES, mesh
+from ocp.simulation.resimulation import resimulate
 
 PROFILE = CycloidPolynomial(6)
 STEPS = (32, 50, 100, 200)

@@ -38,7 +38,8 @@ from rich.table import Table
 
 from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
-from ocp.program import Solution, TaskProgram
+from ocp.program.solution import Solution
+from ocp.program.task_program import TaskProgram
 
 TASK = PointToPoint(ArmOnFlexibleLink(), target=pi / 2, duration=0.8)
 BOX = 0.5

@@ -57,8 +57,8 @@ from metaheuristics import PopulationObjective
 from metaheuristics.objective.population import _compiled
 from models import ArmOnFlexibleLink, JointMotion
 from ocp import CycloidPolynomial, PointToPoint, rollout
-from ocp.collocation import mesh, modal_system
-from ocp.residual import residual_samples
+from ocp.simulation.collocation import mesh, modal_system
+from ocp.simulation.residual import residual_samples
 
 PLANT, PROFILE = ArmOnFlexibleLink(), CycloidPolynomial(6)
 TASK = PointToPoint(PLANT, target=pi / 2, duration=0.8)

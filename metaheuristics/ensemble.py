@@ -13,8 +13,8 @@ from metaheuristics.algorithms.presets import PRESETS
 from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.search import search
 from ocp import Front, PointToPoint, QuietarmError
-from ocp.checks import whole
-from ocp.workers import Say, Workers, number_of_workers, remedy
+from ocp.base.checks import whole
+from ocp.base.workers import Say, Workers, number_of_workers, remedy
 
 STILL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""

@@ -12,8 +12,8 @@ from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
 from metaheuristics.runs.progress import Report
 from metaheuristics.runs.settings import SearchSettings, SearchSpec
 from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
-from ocp.files import check_writable
-from ocp.interrupts import note_interrupts
+from ocp.base.files import check_writable
+from ocp.base.interrupts import note_interrupts
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm

@@ -1,27 +1,35 @@
-"""What is asked, and the gradient answer."""
+"""What is asked, and the gradient answer.
+
+The rooms, each of which may import those before it: `base`, `task`, `profiles`, `simulation`,
+`program` and `answers`, `plan`, `front` and `floor`. All of them may import `models`; what a user
+needs is here.
+"""
 
 # ruff: noqa: E402  # the check must come before anything that imports models
-from ocp.shadowing import refuse_shadow
+from ocp.base.shadowing import refuse_shadow
 
 refuse_shadow("models")
 
-from ocp.epsilon import epsilon_front
-from ocp.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
-from ocp.floor import energy_floor
-from ocp.floor_answer import Floor
-from ocp.front import FailedPoint, Front, FrontPoint, Generation, non_dominated, reference_corner
-from ocp.objective import Motion
-from ocp.plan import Plan, evaluate_coefficients
-from ocp.polish import Gain, Polish, polish_front
-from ocp.profile import MAX_TERMS, CycloidPolynomial, JointPath, JointProfile
-from ocp.provenance import SolveSettings, Verification
-from ocp.residual import residual_matrix
-from ocp.resimulation import Trajectory, resimulate, sample_trajectory
-from ocp.rollout import Rollout, rollout, symbolic_rollout
-from ocp.solver import plan_move
-from ocp.status import SolveStatus
-from ocp.task import PointToPoint
-from ocp.weighted import weighted_front
+from ocp.answers.provenance import SolveSettings, Verification
+from ocp.base.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
+from ocp.base.status import SolveStatus
+from ocp.floor.answer import Floor
+from ocp.floor.search import energy_floor
+from ocp.front.answer import Front, reference_corner
+from ocp.front.epsilon import epsilon_front
+from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
+from ocp.front.polish import Gain, Polish, polish_front
+from ocp.front.weighted import weighted_front
+from ocp.plan.answer import Plan, evaluate_coefficients
+from ocp.plan.solver import plan_move
+from ocp.profiles.joint_profile import JointPath, JointProfile
+from ocp.profiles.polynomial import MAX_TERMS, CycloidPolynomial
+from ocp.simulation.cvodes import Trajectory
+from ocp.simulation.objective import Motion
+from ocp.simulation.residual import residual_matrix
+from ocp.simulation.resimulation import resimulate, sample_trajectory
+from ocp.simulation.rollout import Rollout, rollout, symbolic_rollout
+from ocp.task.point_to_point import PointToPoint
 
 __all__ = [
     "MAX_TERMS",

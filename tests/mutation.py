@@ -1,8 +1,8 @@
 """Mutation testing: what share of small faults in the equations do the tests notice?
 
-    python tests/mutation.py                           a sample of 300 mutants, the same every time
-    python tests/mutation.py --sample 0                every mutant
-    python tests/mutation.py --only ocp/objective.py   of one module (may be repeated)
+    python tests/mutation.py                                      300 mutants, always the same
+    python tests/mutation.py --sample 0                           every mutant
+    python tests/mutation.py --only ocp/simulation/objective.py   of one module (may be repeated)
 
 A mutant is one module with one operator or number changed, by cosmic-ray's operators. Each runs in
 a process of its own, which sees the changed source in place of the file: nothing is written. The
@@ -39,15 +39,25 @@ from cosmic_ray.mutating import mutate_code
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # this checkout's packages, also where quietarm is installed
 TESTS = {
-    "models/plant.py": ["models/test_plants.py", "ocp/test_task.py"],
+    "models/plant.py": ["models/test_plants.py", "ocp/task/test_point_to_point.py"],
     "models/single_link.py": ["models/test_plants.py"],
     "models/arm_on_flexible_link.py": ["models/test_plants.py"],
-    "ocp/collocation.py": ["ocp/test_collocation.py", "ocp/test_rollout.py"],
-    "ocp/objective.py": ["ocp/test_objective.py", "ocp/test_rollout.py"],
-    "ocp/profile.py": ["ocp/test_profile.py"],
-    "ocp/residual.py": ["ocp/test_residual.py", "ocp/test_rollout.py"],
-    "ocp/rollout.py": ["ocp/test_rollout.py"],
-    "ocp/resimulation.py": ["ocp/test_resimulation.py"],
+    "ocp/simulation/collocation.py": [
+        "ocp/simulation/test_collocation.py",
+        "ocp/simulation/test_rollout.py",
+    ],
+    "ocp/simulation/objective.py": [
+        "ocp/simulation/test_objective.py",
+        "ocp/simulation/test_rollout.py",
+    ],
+    "ocp/profiles/joint_profile.py": ["ocp/profiles/test_polynomial.py"],
+    "ocp/profiles/polynomial.py": ["ocp/profiles/test_polynomial.py"],
+    "ocp/simulation/residual.py": [
+        "ocp/simulation/test_residual.py",
+        "ocp/simulation/test_rollout.py",
+    ],
+    "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py"],
+    "ocp/simulation/resimulation.py": ["ocp/simulation/test_resimulation.py"],
 }
 """The modules to change, and the tests that should notice."""
 
@@ -182,9 +192,9 @@ def main() -> None:
         print(f"survived: {mutant}", flush=True)
     drawn = Counter(mutant.module for mutant in sample)
     for module, number in sorted(drawn.items()):
-        print(f"{module:32} {number - left[module]:4} of {number:4} noticed")
+        print(f"{module:34} {number - left[module]:4} of {number:4} noticed")
     total = len(sample)
-    print(f"{'score':32} {total - left.total():4} of {total:4}: {1 - left.total() / total:.1%}")
+    print(f"{'score':34} {total - left.total():4} of {total:4}: {1 - left.total() / total:.1%}")
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ from metaheuristics.algorithms.states import (
     population_of,
     restore_generator,
 )
-from ocp.checks import whole
+from ocp.base.checks import whole
 
 CROSSOVER: dict[str, Any] = {"prob": 0.8, "prob_var": 0.5, "eta": 15}
 """Simulated binary crossover: the paper's rate for a pair; pymoo's defaults for a gene and eta."""

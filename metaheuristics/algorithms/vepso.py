@@ -38,7 +38,7 @@ from metaheuristics.algorithms.states import (
 )
 from metaheuristics.algorithms.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
 from metaheuristics.objective.problem import UNUSABLE
-from ocp.checks import positive, whole
+from ocp.base.checks import positive, whole
 
 STATE_ARRAYS = ("velocities", "best_X", "best_merit", "swarm_best")
 

@@ -19,10 +19,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from models import Expression, Plant
 from ocp import JointProfile, PointToPoint, symbolic_rollout
-from ocp.checks import whole
-from ocp.interrupts import keep_interrupts
-from ocp.residual import residual_rows
-from ocp.rollout import SymbolicRollout, default_steps
+from ocp.base.checks import whole
+from ocp.base.interrupts import keep_interrupts
+from ocp.simulation.residual import residual_rows
+from ocp.simulation.rollout import SymbolicRollout, default_steps
 
 LEAST_STEPS = 24
 """Steps that keep the energy of nine in ten random candidates of the paper's boxes within 1e-4, and

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ocp import FileFormatError
-from ocp.files import write_whole
+from ocp.base.files import write_whole
 
 FORMAT, VERSION = "quietarm-checkpoint", 1
 _HEADER, _STATE = "header", "state."

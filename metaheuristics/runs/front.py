@@ -11,7 +11,7 @@ from metaheuristics.objective.population import PopulationObjective
 from metaheuristics.runs.loop import Loop
 from metaheuristics.runs.settings import search_versions
 from ocp import Front, FrontPoint, non_dominated
-from ocp.rollout import default_steps
+from ocp.simulation.rollout import default_steps
 
 WITHIN = 1e-6
 """Share by which a peak of the finer rollout may exceed its limit: the search kept it exactly."""

@@ -11,7 +11,7 @@ from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from metaheuristics.runs.loop import Loop
 from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.runs.settings import SearchSpec, search_versions
-from ocp.documents import Document, reading
+from ocp.answers.documents import Document, reading
 
 CHECKPOINT_SECONDS = 2.0
 

@@ -8,8 +8,7 @@ from importlib import metadata
 from typing import Any
 
 from ocp import JointProfile, PointToPoint
-from ocp.checks import whole
-from ocp.documents import (
+from ocp.answers.documents import (
     Document,
     profile_from_document,
     profile_to_document,
@@ -17,7 +16,8 @@ from ocp.documents import (
     task_to_document,
     versions,
 )
-from ocp.provenance import coefficient_bound
+from ocp.answers.provenance import coefficient_bound
+from ocp.base.checks import whole
 
 MOST_INDIVIDUALS, MOST_GENERATIONS = 100_000, 1_000_000
 

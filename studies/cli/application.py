@@ -10,7 +10,7 @@ from importlib import import_module
 import click
 
 from ocp import FileFormatError, QuietarmError
-from ocp.interrupts import as_ctrl_c
+from ocp.base.interrupts import as_ctrl_c
 from studies.cli.streams import patient_streams
 from studies.early import ready
 

@@ -12,7 +12,7 @@ from click.core import ParameterSource
 
 from models import Plant
 from ocp import Plan, PointToPoint
-from ocp.plan import ticks_of_move
+from ocp.plan.answer import ticks_of_move
 from studies.cli.options import bare_angles
 from studies.display.saving import File, drawing
 from studies.runs.files import refuse_same_file

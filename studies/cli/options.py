@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from models import Plant, known_plants
-from ocp.files import check_writable
+from ocp.base.files import check_writable
 from studies.cli.quantities import (
     is_number,
     parse_angle,

@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 
 from ocp import Front
-from ocp.documents import profile_to_document
+from ocp.answers.documents import profile_to_document
 from studies.methods import method_of
 from studies.paper.tasks import task_difference
 

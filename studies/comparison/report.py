@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from ocp import Front, QuietarmError
-from ocp.files import write_whole
-from ocp.floor import energy_floor
+from ocp.base.files import write_whole
+from ocp.floor.search import energy_floor
 from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
 from studies.display.saving import File, drawing, inside

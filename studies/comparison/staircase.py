@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from metaheuristics import PopulationObjective
 from ocp import Front, JointProfile, PointToPoint
-from ocp.rollout import default_steps
+from ocp.simulation.rollout import default_steps
 
 Array = NDArray[np.float64]
 _KEPT = 1e-6

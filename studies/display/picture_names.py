@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocp.files import check_writable
+from ocp.base.files import check_writable
 
 SUFFIXES = (".png", ".pdf", ".svg")
 

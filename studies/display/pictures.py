@@ -7,7 +7,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from ocp.files import write_whole
+from ocp.base.files import write_whole
 from studies.display.picture_names import check_figure
 
 

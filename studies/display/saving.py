@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from ocp import QuietarmError
-from ocp.interrupts import note_interrupts
+from ocp.base.interrupts import note_interrupts
 from studies.display.progress import working
 from studies.display.words import print_lines
 

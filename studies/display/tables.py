@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table as ScreenTable
 from rich.text import Text
 
-from ocp.files import write_whole
+from ocp.base.files import write_whole
 from studies.display.words import print_lines
 
 Cell = str | int | float | None

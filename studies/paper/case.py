@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from metaheuristics import PAPER_BOX
 from ocp import PointToPoint
-from ocp.checks import positive
+from ocp.base.checks import positive
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isclose
 
 from ocp import PointToPoint
-from ocp.task import LIMITS
+from ocp.task.point_to_point import LIMITS
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
 

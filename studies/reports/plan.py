@@ -7,7 +7,7 @@ import math
 from rich.console import Console
 
 from ocp import Motion, Plan, PointToPoint
-from ocp.task import LIMITS
+from ocp.task.point_to_point import LIMITS
 from studies.display.tables import print_rows
 from studies.display.words import millimetres
 

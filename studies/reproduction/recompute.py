@@ -17,7 +17,7 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from ocp.interrupts import note_interrupts
+from ocp.base.interrupts import note_interrupts
 from studies.methods import Method
 from studies.paper.case import Case
 from studies.paper.printed import (

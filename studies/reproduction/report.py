@@ -14,7 +14,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from ocp import Plan
-from ocp.files import write_whole
+from ocp.base.files import write_whole
 from studies.display.saving import File, drawing, inside
 from studies.display.tables import Cell, Column, Table, print_table
 from studies.paper.case import Case

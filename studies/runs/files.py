@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from ocp.workers import number_of_workers
+from ocp.base.workers import number_of_workers
 
 
 def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:

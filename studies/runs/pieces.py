@@ -8,7 +8,7 @@ from typing import Any
 
 from metaheuristics.ensemble import search_many
 from ocp import CycloidPolynomial, Front, QuietarmError
-from ocp.interrupts import hear_interrupts
+from ocp.base.interrupts import hear_interrupts
 from studies.methods import Method
 from studies.paper.case import Case
 

@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 
 from ocp import Front, Gain, polish_front
-from ocp.checks import whole
+from ocp.base.checks import whole
 from studies.display.progress import count
 from studies.display.saving import drawing, finish
 from studies.display.tables import Column, Table

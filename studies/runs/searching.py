@@ -22,7 +22,7 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from ocp.files import check_writable
+from ocp.base.files import check_writable
 from studies.display.saving import STDOUT, drawing, finish
 from studies.display.search_progress import search_display
 from studies.display.words import counted

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from ocp.files import write_whole
+from ocp.base.files import write_whole
 from studies.display.saving import File, inside
 from studies.paper.tasks import title_of
 from studies.study.page import study_page

@@ -20,10 +20,10 @@ from ocp import (
     energy_floor,
     polish_front,
 )
-from ocp.checks import whole
-from ocp.interrupts import note_interrupts
-from ocp.provenance import number_of_points
-from ocp.workers import number_of_workers
+from ocp.answers.provenance import number_of_points
+from ocp.base.checks import whole
+from ocp.base.interrupts import note_interrupts
+from ocp.base.workers import number_of_workers
 from studies.comparison.measures import Comparison, compare_fronts
 from studies.methods import METHODS, Kind, Method, methods_of
 from studies.paper.case import Case

@@ -168,7 +168,7 @@ def test_ctrl_c_before_a_search_has_begun_keeps_the_others(monkeypatch, at, kept
 
 def test_ctrl_c_ends_processes_and_keeps_what_they_found(monkeypatch):
     # so that a busy machine does not cost a front
-    monkeypatch.setattr("ocp.workers._PATIENCE", 120.0)
+    monkeypatch.setattr("ocp.base.workers._PATIENCE", 120.0)
     report = interrupt_at({0, 1})
     fronts = search_many(TASK, "nsga2", 4, workers=2, report=report, **LONG)
     assert [(front.seed, front.complete) for front in fronts] == [(0, False), (1, False)]

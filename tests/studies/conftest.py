@@ -80,11 +80,11 @@ def call(capfd, monkeypatch):
 
 # The command, which after Ctrl-C waits for what its processes found however slow the machine is.
 PATIENT = """
-import ocp.workers
+import ocp.base.workers
 import studies.cli
 
-assert ocp.workers._PATIENCE > 0
-ocp.workers._PATIENCE = 60.0
+assert ocp.base.workers._PATIENCE > 0
+ocp.base.workers._PATIENCE = 60.0
 studies.cli.main()
 """
 

@@ -10,7 +10,7 @@ import click
 from rich.console import Console
 
 from ocp import energy_floor
-from ocp.interrupts import note_interrupts
+from ocp.base.interrupts import note_interrupts
 from studies.cli.arguments import task_of
 from studies.cli.options import OUTPUT, PICTURE, quiet_option, task_options
 from studies.display.progress import working

@@ -15,7 +15,7 @@ from ocp import (
     sample_trajectory,
 )
 
-FINE = 140  # ocp.rollout.LEAST_STEPS
+FINE = 140  # ocp.simulation.rollout.LEAST_STEPS
 
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)

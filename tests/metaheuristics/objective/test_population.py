@@ -15,7 +15,7 @@ from ocp import (
     rollout,
     sample_trajectory,
 )
-from ocp.residual import fastest_mode
+from ocp.simulation.residual import fastest_mode
 
 LIMITS = ("torque", "speed", "acceleration", "deflection")
 
@@ -30,7 +30,7 @@ def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, n
     motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
     assert values.energy == pytest.approx([m.energy for m in motions], rel=1e-12, abs=0)
     # Both watch the tip at times of their own, that miss a peak by 5e-5 of it at most
-    # (ocp.residual.RADIANS_A_SAMPLE).
+    # (ocp.simulation.residual.RADIANS_A_SAMPLE).
     assert values.residual == pytest.approx([m.residual for m in motions], rel=5e-5, abs=0)
 
 

@@ -75,7 +75,7 @@ def test_the_shared_function_mixes_no_tasks_up():
 def test_a_faster_mode_gets_more_steps():
     fast = SingleLinkManipulator(omega=30.0)
     assert PopulationObjective(PointToPoint(SINGLE_LINK, pi / 6, 0.8), PROFILE).steps == LEAST_STEPS
-    # two steps a radian of the fastest mode (ocp.rollout.default_steps)
+    # two steps a radian of the fastest mode (ocp.simulation.rollout.default_steps)
     assert PopulationObjective(PointToPoint(fast, pi / 6, 0.8), PROFILE).steps == 2 * 30 * 0.8
 
 

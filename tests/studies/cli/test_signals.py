@@ -164,7 +164,7 @@ def test_while_it_is_loaded_it_ends_in_a_line(folder, module, number):
 
 def test_a_library_that_is_loaded_leaves_signals_alone():
     code = (
-        "import signal, studies.cli, ocp.workers\n"
+        "import signal, studies.cli\n"
         "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler\n"
         "assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL\n"
     )

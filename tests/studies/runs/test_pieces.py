@@ -5,7 +5,7 @@ import signal
 import pytest
 
 from ocp import SolverFailedError
-from ocp.interrupts import note_interrupts
+from ocp.base.interrupts import note_interrupts
 from studies.methods import NSGA2, VEPSO
 from studies.paper.printed import ARM_HALF
 from studies.runs import pieces

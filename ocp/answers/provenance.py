@@ -1,0 +1,135 @@
+"""Where an answer comes from: what was asked, by what it was found, and how it was checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+
+from ocp.answers.documents import Document, made, numbers_of, versions
+from ocp.base.checks import finite, positive, whole
+from ocp.base.readonly import ReadOnlyDict
+from ocp.simulation.objective import Motion
+
+MOST_BOUND = 1e6
+"""Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+
+
+MOST_STARTS, MOST_POINTS, MOST_STEPS = 10_000, 10_000, 20_000
+
+
+@dataclass(frozen=True)
+class SolveSettings:
+    """What was asked of the solver beyond the task; see `ocp.plan_move` for the meanings.
+
+    Raises
+    ------
+    ValueError
+        When a setting is out of range.
+    """
+
+    residual_limit: float = 0.0
+    bound: float | None = None
+    starts: int = 4
+    seed: int = 0
+    steps: int | None = None
+
+    def __post_init__(self) -> None:
+        limit = finite("residual limit", self.residual_limit, "m")
+        if limit < 0:
+            raise ValueError(f"residual limit is {limit:g} m; give 0 (at rest) or more")
+        object.__setattr__(self, "residual_limit", limit)
+        if self.bound is not None:
+            object.__setattr__(self, "bound", coefficient_bound(self.bound))
+        object.__setattr__(self, "starts", number_of_starts(self.starts))
+        object.__setattr__(self, "seed", whole("seed", self.seed, 0))
+        if self.steps is not None:
+            steps = whole("steps", self.steps, 1, MOST_STEPS, "finer ones differ by rounding alone")
+            object.__setattr__(self, "steps", steps)
+
+
+def number_of_starts(value: object) -> int:
+    """A number of starts as an int; ValueError when it is out of range."""
+    return whole("starts", value, 1, MOST_STARTS, "each is a solve of a twentieth of a second")
+
+
+def number_of_points(value: object) -> int:
+    """How many points a front is to have as an int; ValueError when it is out of range."""
+    return whole("points", value, 2, MOST_POINTS, "50 show a front, and each takes some solves")
+
+
+def coefficient_bound(value: object) -> float:
+    """A bound on the coefficients as a float; ValueError when it is out of range."""
+    bound = positive("bound on the coefficients", value)
+    if bound > MOST_BOUND:
+        raise ValueError(
+            f"bound on the coefficients is {bound:g}; give at most {MOST_BOUND:g} (a few tenths "
+            "are usual)"
+        )
+    return bound
+
+
+@dataclass(frozen=True)
+class Verification:
+    """How far the fixed steps that the answer was found with are from the independent integrator.
+
+    Attributes
+    ----------
+    steps : int
+        Fixed steps.
+    fixed_step_energy, fixed_step_residual : float
+        F2 [J] and F1 [m] by the fixed steps.
+    energy_difference, residual_difference : float
+        Those less the independent integrator's [J, m].
+    """
+
+    steps: int
+    fixed_step_energy: float
+    fixed_step_residual: float
+    energy_difference: float
+    residual_difference: float
+
+    @classmethod
+    def between(cls, steps: int, energy: float, residual: float, motion: Motion) -> Verification:
+        """Compare fixed-step figures [J, m] with those of CVODES."""
+        return cls(steps, energy, residual, energy - motion.energy, residual - motion.residual)
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """What is needed to get an answer again.
+
+    Attributes
+    ----------
+    method : str
+        ``"ipopt"``, ``"given coefficients"`` or the name of a metaheuristic.
+    settings : dict
+        What was asked of the method, the seed included.
+    versions : dict of str to str
+        Versions of quietarm, casadi, numpy and Python.
+    seconds : float
+        How long it took; not compared.
+    """
+
+    method: str
+    settings: Mapping[str, str | int | float | None]
+    versions: Mapping[str, str] = field(default_factory=versions)
+    seconds: float = field(default=0.0, compare=False)
+
+    def __post_init__(self) -> None:
+        for name in ("settings", "versions"):
+            object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
+
+
+def verification_of(document: Document) -> Verification:
+    """The verification of a document; KeyError, TypeError or ValueError where it is not one."""
+    names = [entry.name for entry in fields(Verification) if entry.name != "steps"]
+    return Verification(whole("steps", document["steps"], 1), **numbers_of(document, names))
+
+
+def provenance_of(document: Document) -> Provenance:
+    """The provenance of a document; KeyError, TypeError or ValueError where it is not one."""
+    for name in ("settings", "versions"):
+        if not isinstance(document[name], dict):
+            raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
+    finite("seconds", document["seconds"], "s")
+    return made(Provenance, document)

@@ -1,0 +1,244 @@
+"""The floor: the least energy of a move over all joint motions, not only polynomials."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+
+import numpy as np
+
+from ocp.answers.provenance import Provenance, Verification, number_of_starts
+from ocp.base.checks import positive, whole
+from ocp.base.errors import SolverFailedError
+from ocp.floor.answer import Floor, Level
+from ocp.floor.grid import finer, first_grid
+from ocp.floor.motion import FreeSimulation, simulate
+from ocp.floor.program import FloorProgram, FreeSolution
+from ocp.plan.feasibility import unmet
+from ocp.plan.solver import UNBOUNDED_SPREAD, plan_move
+from ocp.profiles.joint_profile import JointPath
+from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.simulation.rollout import default_steps
+from ocp.task.point_to_point import PointToPoint
+
+FIRST_STEPS = 80
+MOST_FIRST_STEPS, MOST_STEPS = 1500, 6000
+"""Intervals of the first grid, and those beyond which it is refined no further."""
+_MOST_COLD = 600
+"""Where a warm solve fails, intervals up to which a cold one is worth its time."""
+_LEAST_LEVELS = 3
+"""As many as show whether the falls of the energy become smaller, and how fast."""
+_SAME = 1e-5
+_ROUNDS, _KEPT, _OVERRUN = 4, 1e-6, 1e-3
+
+
+def energy_floor(
+    task: PointToPoint,
+    *,
+    smooth: bool = False,
+    starts: int = 4,
+    seed: int = 0,
+    tolerance: float = 0.005,
+) -> Floor:
+    """Find the least energy with which any joint motion does a move and arrives at rest.
+
+    The acceleration of the joint is free on every interval of a grid (piecewise constant), or its
+    jerk for a smooth motion (acceleration continuous, and zero at both ends). Joint and modes are
+    at rest at both ends. The grid is refined until the energy changes by less than the tolerance.
+
+    Where the solver fails on a finer grid, the refinement ends there and the floor says so. Where
+    the energy rises on a finer grid, having gone to another minimum, the motion of the grid whose
+    energy is least by the independent integrator is returned.
+
+    Without an acceleration limit the least energy is approached by motions whose speed jumps: an
+    impulse at either end, and on the single-link manipulator others on the way. The grid is finer
+    where it finds them; the estimate of what is left says how far off the limit is. A smooth motion
+    approaches the same limit; on as many intervals its energy may be slightly higher or lower.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move and its limits.
+    smooth : bool
+        Whether the acceleration is continuous.
+    starts : int
+        How many starts: the plain cycloid, the plan of six terms, then random motions.
+    seed : int
+        Seed of the random starts.
+    tolerance : float
+        Relative change of the energy at which the refinement stops.
+
+    Returns
+    -------
+    Floor
+        The motion, with the figures of an independent integrator.
+
+    Raises
+    ------
+    ValueError
+        When an argument is out of range, or the move takes too many periods of the fastest mode.
+    InfeasibleTaskError
+        When no motion meets the limits; the text says what would be feasible.
+    SolverFailedError
+        When no start ended at an optimum for another reason.
+    """
+    starts, seed = number_of_starts(starts), whole("seed", seed, 0)
+    tolerance = positive("tolerance", tolerance)
+    began = time.perf_counter()
+    program = FloorProgram(task, bool(smooth))
+    fractions = first_grid(_first_steps(task))
+    tried = [
+        program.solve(program.along(path, fractions), task.limits)
+        for path in _paths(task, starts, seed)
+    ]
+    solved = [found for found in tried if found.status.solved]
+    if not solved:
+        solved = _rescued(program, tried)
+    improved = _refined_once(program, solved)
+    grids = [min(solved, key=_energy), min(improved, key=_energy)]
+    while not _settled(grids, tolerance) and 2 * grids[-1].free.steps <= MOST_STEPS:
+        following = _refined(program, grids[-1])
+        if not following.status.solved:
+            break
+        grids.append(following)
+    best, simulation = _least_verified(program, grids)
+    return Floor(
+        task=task,
+        free=best.free,
+        motion=simulation.motion,
+        levels=tuple(Level(found.free.steps, found.energy) for found in grids),
+        starts=tuple(found.energy for found in improved),
+        status=best.status,
+        verification=Verification.between(best.free.steps, best.energy, 0.0, simulation.motion),
+        provenance=Provenance(
+            f"ipopt, free {'jerk' if smooth else 'acceleration'}",
+            {"smooth": bool(smooth), "starts": starts, "seed": seed, "tolerance": tolerance},
+            seconds=time.perf_counter() - began,
+        ),
+    )
+
+
+def _first_steps(task: PointToPoint) -> int:
+    steps = default_steps(task, least=FIRST_STEPS)
+    if steps > MOST_FIRST_STEPS:
+        raise ValueError(
+            f"duration {task.duration:g} s takes {steps} intervals of the plant's fastest mode; "
+            f"a floor begins with up to {MOST_FIRST_STEPS}: give a shorter duration"
+        )
+    return steps
+
+
+def _paths(task: PointToPoint, starts: int, seed: int) -> Iterator[JointPath]:
+    """Motions to start from: plain cycloid, the plan of six terms, random ones."""
+    random = np.random.default_rng(seed)
+    profile = CycloidPolynomial()
+    for i in range(starts):
+        coefficients = random.uniform(-UNBOUNDED_SPREAD, UNBOUNDED_SPREAD, profile.size)
+        if i == 0:
+            coefficients = np.zeros(profile.size)
+        elif i == 1:
+            with suppress(SolverFailedError):  # limits that allow no such plan may allow a motion
+                coefficients = np.array(plan_move(task, profile, starts=1).coefficients)
+        yield profile.path(coefficients, *task.move)
+
+
+def _energy(found: FreeSolution) -> float:
+    return found.energy
+
+
+def _settled(grids: list[FreeSolution], tolerance: float) -> bool:
+    before, after = grids[-2].energy, grids[-1].energy
+    return len(grids) >= _LEAST_LEVELS and abs(before - after) <= tolerance * after
+
+
+def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:
+    """The solution on the next grid, warm, or cold where that fails and the grid is coarse."""
+    free, limits = finer(found.free), program.task.limits
+    warm = program.solve(free, limits, warm=True)
+    if warm.status.solved or free.steps > _MOST_COLD:
+        return warm
+    return program.solve(free, limits)
+
+
+def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[FreeSolution]:
+    """Every solution on its next grid; those that are the same are refined once."""
+    refined: dict[float, FreeSolution] = {}
+    for found in solved:
+        if not any(abs(found.energy - energy) <= _SAME * energy for energy in refined):
+            refined[found.energy] = _refined(program, found)
+    results = [
+        refined[min(refined, key=lambda energy, found=found: abs(energy - found.energy))]
+        for found in solved
+    ]
+    return [
+        after if after.status.solved else before
+        for before, after in zip(solved, results, strict=True)
+    ]
+
+
+def _least_verified(
+    program: FloorProgram, grids: list[FreeSolution]
+) -> tuple[FreeSolution, FreeSimulation]:
+    """The last grid's motion, or that of a coarser grid where it is verified to need less."""
+    least = _within_limits(program, grids[-1])
+    for found in grids[:-1]:
+        if found.energy < grids[-1].energy:
+            with suppress(SolverFailedError):  # a coarse grid may not keep the limits in between
+                least = min(least, _within_limits(program, found), key=_verified)
+    return least
+
+
+def _verified(found: tuple[FreeSolution, FreeSimulation]) -> float:
+    return found[1].motion.energy
+
+
+def _within_limits(
+    program: FloorProgram, best: FreeSolution
+) -> tuple[FreeSolution, FreeSimulation]:
+    """Verify; tighten limits that are passed between the solver's nodes."""
+    limits = program.task.limits
+    used, simulation = dict(limits), simulate(program.task, best.free)
+    for _ in range(_ROUNDS):
+        over = {name: simulation.motion.peak(name) / limit for name, limit in limits.items()}
+        if all(ratio <= 1 + _KEPT for ratio in over.values()):
+            break
+        used = {name: limit / max(over[name], 1.0) for name, limit in used.items()}
+        again = program.solve(best.free, used, warm=True)
+        if not again.status.solved:
+            break
+        best, simulation = again, simulate(program.task, again.free)
+    for name, limit in limits.items():
+        if simulation.motion.peak(name) > limit * (1 + _OVERRUN):
+            raise SolverFailedError(
+                f"the verified {name} is {simulation.motion.peak(name):.4g}, above its limit of "
+                f"{limit:g}: the grid is too coarse for this motion; give a smaller tolerance"
+            )
+    return best, simulation
+
+
+def _rescued(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSolution]:
+    """Solutions from motions of least peaks, where no other start was solved; or the error."""
+    limits = program.task.limits
+    least: dict[str, FreeSolution] = {}
+    for name in limits:
+        others = {key: value for key, value in limits.items() if key != name}
+        found = [program.solve(one.free, others, minimise=name) for one in tried[:2]]
+        solved = [one for one in found if one.status.solved]
+        if solved:
+            least[name] = min(solved, key=lambda one, name=name: one.peaks[name])
+    again = [
+        program.solve(found.free, limits)
+        for name, found in least.items()
+        if found.peaks[name] <= limits[name]
+    ]
+    solved = [one for one in again if one.status.solved]
+    if solved:
+        return solved
+    raise unmet(
+        "motion at all",
+        limits,
+        [one.status for one in [*tried, *again]],
+        {name: found.peaks[name] for name, found in least.items()},
+        "a longer duration",
+    )

@@ -1,0 +1,309 @@
+"""The front by epsilon-constraint: the least energy at one residual limit after another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.answers.provenance import SolveSettings, number_of_points
+from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
+from ocp.front.answer import Front
+from ocp.front.points import FailedPoint, FrontPoint
+from ocp.front.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, better, no_report
+from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.program.solution import Solution
+from ocp.task.point_to_point import PointToPoint
+
+_DOUBT = 1e-4
+"""Share of the energy by which sweeps must differ for random starts to join; below it lies the
+error of the fixed steps, and the better of the two is taken."""
+_SCOUTS = 12
+"""Most steps along the front, about, that tell how its points are to be spaced."""
+
+_STRIDE = 4
+"""Points from one to the next at which the sweep back compares, as long as both sweeps agree, and
+at which random starts join where they do not; what is found better is carried on to the others."""
+
+_Points = tuple[list[FrontPoint | FailedPoint], bool]
+"""Points, and whether these are all."""
+_Piece = tuple[list[float], NDArray[np.float64], NDArray[np.float64]]
+"""A stretch for a process: its limits, and coefficients above and below."""
+
+
+def epsilon_front(
+    task: PointToPoint,
+    profile: JointProfile | None = None,
+    *,
+    bound: float | None = None,
+    points: int = 50,
+    starts: int = 4,
+    seed: int = 0,
+    steps: int | None = None,
+    workers: int = 1,
+    report: Report = no_report,
+) -> Front:
+    """Find the front of residual and energy by the gradient, least energy at each residual limit.
+
+    Both ends are found first, from several starts. A few points along the front tell how to space
+    the limits so that the points lie evenly in both objectives. The limits are swept from the cheap
+    end, each solve starting from the solution beside it, and swept back from the still end; where
+    the two disagree, random starts join, and what is found better is carried on to its neighbours.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move and its limits.
+    profile : JointProfile, optional
+        How the joint moves; the cycloid of a polynomial of six terms by default.
+    bound : float, optional
+        Largest absolute coefficient; none by default.
+    points : int
+        Number of points, the ends included.
+    starts : int
+        Starts of the ends, and of points that the sweeps do not agree on.
+    seed : int
+        Seed of the random starts.
+    steps : int, optional
+        Steps of the solver's discretisation, as for `plan_move`.
+    workers : int
+        Processes that share the sweep; 1 stays in this one.
+    report : callable, optional
+        Called with the number of points done and of all.
+
+    Returns
+    -------
+    Front
+        Method ``"epsilon"``; figures by the independent integrator. Points that could not be found
+        are in its `failures`, those of a process that died among them. After Ctrl-C what was found
+        until then, with ``complete`` false.
+
+    Raises
+    ------
+    ValueError
+        When an argument is out of range.
+    InfeasibleTaskError
+        When no motion of this profile keeps the task's limits.
+    SolverFailedError
+        When an end of the front could not be found for another reason.
+    """
+    profile = CycloidPolynomial() if profile is None else profile
+    points, workers = number_of_points(points), number_of_workers(workers)
+    sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
+    ends = sweep.ends()
+    found: list[FrontPoint | FailedPoint] = [ends.still_point]
+    asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
+    found.append(sweep.checked(ends.cheapest, asked, free=True))
+    report(2, points)
+    heard = _Heard(report, points)
+    iterations, complete = 0, True
+    try:
+        limits, scouts = _spaced_limits(sweep, ends, points)
+        if workers == 1:
+            stretch = _Stretch(sweep, limits, partial(heard, 0))
+            stretch_points, complete = stretch.run(ends.cheapest, ends.still.coefficients)
+            found += stretch_points
+        else:
+            shared, iterations, complete = _in_processes(
+                sweep, ends, limits, scouts, workers, heard
+            )
+            found += shared
+    except KeyboardInterrupt:
+        complete = False
+    return sweep.front("epsilon", found, points, iterations=iterations, complete=complete)
+
+
+class _Heard:
+    """Adds up what the stretches are said to have done, and reports where that changes."""
+
+    def __init__(self, report: Report, points: int) -> None:
+        self.report, self.points, self.last = report, points, 2
+        self.done: dict[int, int] = {}
+
+    def __call__(self, stretch: int, done: int) -> None:
+        self.done[stretch] = done
+        now = 2 + sum(self.done.values())  # the ends are found
+        if now != self.last:
+            self.last = now
+            self.report(now, self.points)
+
+
+def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], list[Solution]]:
+    """Residual limits, falling, at which the points between the ends lie at even distances.
+
+    Scouts go along the front from its cheap end in steps of about equal length, both objectives
+    scaled to the ends, by the slope that the solver's multiplier gives.
+    """
+    if ends.are_one or points == 2:
+        return [], []
+    stillest, width, height = ends.still.residual, ends.width, ends.height
+    scouts, limit = [ends.cheapest], ends.cheapest.residual
+    stride = 2 * width / min(_SCOUTS, points)  # the scaled front is between sqrt(2) and 2 long
+    while True:
+        limit -= stride / np.hypot(1.0, scouts[-1].slope * width / height)
+        if limit <= stillest + stride / 4:
+            break
+        found = sweep.solve(scouts[-1], limit)
+        if found.status.solved:
+            scouts.append(found)
+    residuals = np.array([*(one.residual for one in scouts), stillest])
+    energies = np.array([*(one.energy for one in scouts), ends.still.energy])
+    along = np.hypot(np.diff(residuals) / width, np.diff(energies) / height).cumsum()
+    along = np.concatenate([[0.0], along])
+    spaced = np.interp(np.linspace(0.0, along[-1], points)[1:-1], along, residuals)
+    return spaced.tolist(), scouts
+
+
+def _differ(one: Solution, other: Solution) -> bool:
+    """Whether two solutions at one limit are told apart by more than the steps' own error."""
+    if not (one.status.solved and other.status.solved):
+        return True
+    return abs(one.energy - other.energy) > _DOUBT * one.energy
+
+
+class _Stretch:
+    """A stretch of the front: its limits, falling, and the best solution at each.
+
+    The report hears how many are done, after every solve; by KeyboardInterrupt it ends the sweep.
+    """
+
+    def __init__(
+        self, sweep: Sweep, limits: Sequence[float], report: Callable[[int], None]
+    ) -> None:
+        self.sweep, self.limits, self.report = sweep, list(limits), report
+        self.best: list[Solution | None] = [None] * len(self.limits)
+        self.done = 0
+
+    def run(self, above: Guess, below: Guess) -> _Points:
+        """Sweep down from the guess above and up from that below; what was found, checked."""
+        complete = True
+        try:
+            self._sweep(above, below)
+        except KeyboardInterrupt:
+            complete = False
+        points, all_checked = self._points(interrupted=not complete)
+        return points, complete and all_checked
+
+    def _sweep(self, above: Guess, below: Guess) -> None:
+        order, before_sweeps = range(len(self.limits)), self.sweep.iterations
+        for i in order:
+            found = self._try(i, above, done=(i + 1) // 2)
+            above = found if found.status.solved else above
+        doubtful = self._back(below)
+        # many terms have many minima that differ by a hair: at most double the sweeps' work
+        most = 2 * self.sweep.iterations - before_sweeps
+        for i, guess in product(sorted(doubtful)[::_STRIDE], self.sweep.guesses):
+            if self.sweep.iterations < most:
+                self._try(i, guess)
+        self._carry_on(doubtful, most)
+        self.done = len(self.limits)
+        self.report(self.done)
+
+    def _back(self, below: Guess) -> set[int]:
+        """Sweep back from the still end; the points at which it ended elsewhere.
+
+        Where it comes to the same motion as the sweep before it takes long strides, since both
+        would go on alike; where it finds a better one it goes back to what it left out.
+        """
+        count, doubtful = len(self.limits), set[int]()
+        i, last = count - 1, count
+        while i >= 0:
+            before = self.best[i]
+            found = self._try(i, below, done=count - (i + 1) // 2)
+            below = found if found.status.solved else below
+            improved = self.best[i] is not before
+            if improved or before is None or _differ(before, found):
+                doubtful.add(i)
+            if improved:
+                for k in range(i + 1, last):
+                    self._try(k, below)
+            last = i
+            i -= 1 if improved else _STRIDE
+        return doubtful
+
+    def _try(self, i: int, guess: Guess, done: int | None = None) -> Solution:
+        best = self.best[i]
+        found = self.sweep.solve(guess, self.limits[i], known=best)
+        if best is None or better(found, best):
+            self.best[i] = found
+        self.done = self.done if done is None else done
+        self.report(self.done)
+        return found
+
+    def _carry_on(self, changed: Iterable[int], most: int) -> None:
+        """Start the neighbours of what changed from there, and theirs where that helps."""
+        waiting = list(changed)
+        while waiting and self.sweep.iterations < most:
+            i = waiting.pop()
+            for neighbour in (i - 1, i + 1):
+                start = self.best[i]
+                if 0 <= neighbour < len(self.limits) and start is not None and start.status.solved:
+                    before = self.best[neighbour]
+                    self._try(neighbour, start)
+                    if self.best[neighbour] is not before:
+                        waiting.append(neighbour)
+
+    def _points(self, interrupted: bool) -> _Points:
+        tried = [
+            (best, {RESIDUAL_LIMIT: limit})
+            for limit, best in zip(self.limits, self.best, strict=True)
+            if best is not None  # interrupted before
+        ]
+        failed = [
+            FailedPoint(asked, best.status.text) for best, asked in tried if not best.status.solved
+        ]
+        solved = [(best, asked) for best, asked in tried if best.status.solved]
+        points, all_checked = self.sweep.all_checked(
+            solved, interrupted=interrupted, heed=lambda: self.report(self.done)
+        )
+        return [*points, *failed], all_checked
+
+
+def _in_processes(
+    sweep: Sweep,
+    ends: Ends,
+    limits: list[float],
+    scouts: list[Solution],
+    workers: int,
+    heard: Callable[[int, int], None],
+) -> tuple[list[FrontPoint | FailedPoint], int, bool]:
+    """Share the limits among processes, each starting from what is known beside its own.
+
+    Returns what was found, the iterations, and whether all was done.
+    """
+    known = [*scouts, ends.still]
+    residuals = np.array([one.residual for one in known])  # falling
+    settings = replace(sweep.settings, steps=sweep.steps)
+    stretches = dict[int, _Piece]()
+    for i, chunk in enumerate(np.array_split(limits, workers)):
+        if len(chunk):
+            above = known[int(np.flatnonzero(residuals >= chunk[0])[-1])]
+            below = known[int(np.flatnonzero(residuals <= chunk[-1])[0])]
+            stretches[i] = (chunk.tolist(), above.coefficients, below.coefficients)
+    work = partial(_one_stretch, sweep.task, sweep.profile, settings)
+    pool = Workers(work, stretches, heard)
+    pool.run(workers)
+    found: list[FrontPoint | FailedPoint] = []
+    iterations, complete = 0, not pool.interrupted
+    for i in sorted(pool.answers):
+        (points, whole_stretch), more = pool.answers[i]
+        found += points
+        iterations += more
+        complete = complete and whole_stretch
+    for i, how in sorted(pool.lost.items()):
+        reason = death_of_process(how)
+        found += [FailedPoint({RESIDUAL_LIMIT: limit}, reason) for limit in stretches[i][0]]
+    return found, iterations, complete
+
+
+def _one_stretch(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, piece: _Piece, say: Say
+) -> tuple[_Points, int]:
+    limits, above, below = piece
+    sweep = Sweep(task, profile, settings)
+    return _Stretch(sweep, limits, say).run(above, below), sweep.iterations

@@ -1,0 +1,77 @@
+"""What a front is made of: points, failures, generations; and which points stay."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ocp.base.readonly import ReadOnlyDict
+
+Setting = str | int | float | None
+
+
+@dataclass(frozen=True)
+class FrontPoint:
+    """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J]."""
+
+    coefficients: tuple[float, ...]
+    residual: float
+    energy: float
+
+
+@dataclass(frozen=True)
+class FailedPoint:
+    """A point that a sweep asked for and did not get.
+
+    Attributes
+    ----------
+    asked : mapping of str to float
+        What was asked for: a residual limit [m], or the weights of the objectives.
+    reason : str
+        Why there is none.
+    """
+
+    asked: Mapping[str, float]
+    reason: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "asked", ReadOnlyDict(self.asked))
+
+
+@dataclass(frozen=True)
+class Generation:
+    """The state of a search after one generation.
+
+    Attributes
+    ----------
+    evaluations : int
+        Candidates evaluated so far.
+    hypervolume : float
+        Share of the reference box (`Front.reference`) that the points found dominate.
+    """
+
+    evaluations: int
+    hypervolume: float
+
+
+def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
+    """The points that no other beats in both objectives, stillest first.
+
+    Parameters
+    ----------
+    points : iterable of FrontPoint
+        Any points; those that are not finite are left out, of equal ones the first is kept.
+
+    Returns
+    -------
+    tuple of FrontPoint
+        Sorted by residual; energies fall.
+    """
+    finite = [p for p in points if np.isfinite(p.residual) and np.isfinite(p.energy)]
+    kept: list[FrontPoint] = []
+    for point in sorted(finite, key=lambda p: (p.residual, p.energy)):
+        if not kept or point.energy < kept[-1].energy:
+            kept.append(point)
+    return tuple(kept)

@@ -1,0 +1,187 @@
+"""The front by weighted sums of both objectives, and what no weight reaches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ocp.answers.provenance import SolveSettings, number_of_points
+from ocp.base.checks import finite
+from ocp.front.answer import Front
+from ocp.front.points import FailedPoint, FrontPoint
+from ocp.front.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, no_report
+from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.program.solution import ENERGY, Solution
+from ocp.program.transcription import RESIDUAL
+from ocp.task.point_to_point import PointToPoint
+
+_FLAT = 1e-5
+"""A minimum nearer to its chord than this share of the chord's length is an end of it."""
+_DIAGONAL = 2**0.5
+
+
+def weighted_front(
+    task: PointToPoint,
+    profile: JointProfile | None = None,
+    *,
+    bound: float | None = None,
+    points: int = 50,
+    weights: Sequence[tuple[float, float]] | None = None,
+    starts: int = 4,
+    seed: int = 0,
+    steps: int | None = None,
+    report: Report = no_report,
+) -> Front:
+    """Find points of the front by the gradient, as minima of weighted sums of both objectives.
+
+    Both objectives are scaled to the ends of the front, which are found first. Weights are those of
+    the chord between neighbouring points (the non-inferior set estimation of Cohon, Church and
+    Sheer, 1979), the longest first: where such a solve ends no further below than its chord, no
+    weight has a point between its ends, because the front bends the wrong way there.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move and its limits.
+    profile : JointProfile, optional
+        How the joint moves; the cycloid of a polynomial of six terms by default.
+    bound : float, optional
+        Largest absolute coefficient; none by default.
+    points : int
+        Most points, the ends included.
+    weights : sequence of (float, float), optional
+        Weights of the scaled residual and energy to be used instead.
+    starts : int
+        Starts of the ends.
+    seed : int
+        Seed of the random starts.
+    steps : int, optional
+        Steps of the solver's discretisation, as for `plan_move`.
+    report : callable, optional
+        Called with the number of points done and of all.
+
+    Returns
+    -------
+    Front
+        Method ``"weighted"``; figures by the independent integrator. Its `gaps` are the ranges of
+        the residual that no weight reaches, where the weights were not given. After Ctrl-C what was
+        found until then, with ``complete`` false.
+
+    Raises
+    ------
+    ValueError
+        When an argument is out of range, or a weight negative, or both of a pair zero.
+    InfeasibleTaskError
+        When no motion of this profile keeps the task's limits.
+    SolverFailedError
+        When an end of the front could not be found for another reason.
+    """
+    profile = CycloidPolynomial() if profile is None else profile
+    points = number_of_points(points)
+    chosen = None if weights is None else [_checked(pair) for pair in weights]
+    if chosen == []:
+        raise ValueError("no weights are given; give a pair of residual and energy, or none at all")
+    sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
+    sums = _Sums(sweep, sweep.ends())
+    complete = True
+    try:
+        if chosen is None:
+            sums.by_chords(points, report)
+        else:
+            sums.by_weights(chosen, report)
+    except KeyboardInterrupt:
+        complete = False
+    found, all_checked = sums.checked(interrupted=not complete)
+    complete = complete and all_checked
+    return sweep.front("weighted", found, points, gaps=sums.gaps, complete=complete)
+
+
+def _checked(pair: tuple[float, float]) -> tuple[float, float]:
+    of_residual, of_energy = (finite("weight", weight) for weight in pair)
+    if min(of_residual, of_energy) < 0:
+        raise ValueError(f"weights are {of_residual:g} and {of_energy:g}; give none below 0")
+    if of_residual == of_energy == 0:
+        raise ValueError("both weights are 0, which asks for nothing; give one above 0")
+    return of_residual, of_energy
+
+
+class _Sums:
+    """The minima of weighted sums found so far."""
+
+    def __init__(self, sweep: Sweep, ends: Ends) -> None:
+        self.sweep, self.ends = sweep, ends
+        self.found: list[Solution] = []
+        self.failures: list[FailedPoint] = []
+        self.gaps: list[tuple[float, float]] = []
+
+    def solve(self, of_residual: float, of_energy: float, guesses: Sequence[Guess]) -> Solution:
+        """The best minimum of one weighted sum, weights of the scaled objectives."""
+        minimise = {RESIDUAL: of_residual / self.ends.width, ENERGY: of_energy / self.ends.height}
+        tried = [self.sweep.solve(guess, minimise=minimise) for guess in guesses]
+
+        def value(one: Solution) -> float:
+            if not one.status.solved:
+                return np.inf
+            return minimise[RESIDUAL] * one.residual + minimise[ENERGY] * one.energy
+
+        return min(tried, key=value)
+
+    def by_chords(self, points: int, report: Report) -> None:
+        """Weights from the chords between neighbours, the longest first."""
+        if self.ends.are_one:
+            return
+        chords: list[tuple[Solution, Solution]] = [(self.ends.still, self.ends.cheapest)]
+        while chords and 2 + len(self.found) < points:
+            lengths = [np.hypot(*self._sides(*chord)) for chord in chords]
+            still, cheap = chords.pop(int(np.argmax(lengths)))
+            wide, high = self._sides(still, cheap)
+            found = self.solve(high, wide, [cheap, self._guess(still)])
+            if not found.status.solved:
+                self._failed(high, wide, found)
+                continue
+            to_right, down = self._sides(still, found)
+            below = (wide * down - high * to_right) / np.hypot(wide, high)
+            if below > _FLAT * np.hypot(wide, high) and 0 < to_right < wide:
+                self.found.append(found)
+                chords += [(still, found), (found, cheap)]
+            elif np.hypot(wide, high) > 2 * _DIAGONAL / (points - 1):
+                self.gaps.append((still.residual, cheap.residual))
+            report(2 + len(self.found), points)
+        self.gaps.sort()
+
+    def by_weights(self, weights: Sequence[tuple[float, float]], report: Report) -> None:
+        """Given weights, from the most for the energy to the most for the residual."""
+        if self.ends.are_one:
+            return
+        beside: Guess = self.ends.cheapest
+        still = self.ends.still.coefficients
+        for i, pair in enumerate(sorted(weights, key=lambda pair: pair[0] / sum(pair)), start=1):
+            if min(pair) > 0:  # with one weight 0 it is an end of the front
+                found = self.solve(*pair, [beside, still])
+                if found.status.solved:
+                    self.found.append(found)
+                    beside = found
+                else:
+                    self._failed(*pair, found)
+            report(i, len(weights))
+
+    def checked(self, interrupted: bool) -> tuple[list[FrontPoint | FailedPoint], bool]:
+        """Every point by the independent integrator, and what failed; whether these are all."""
+        asked = [(one, {RESIDUAL_LIMIT: one.residual}) for one in (self.ends.cheapest, *self.found)]
+        points, whole_front = self.sweep.all_checked(asked, interrupted=interrupted)
+        return [self.ends.still_point, *points, *self.failures], whole_front
+
+    def _sides(self, still: Solution, cheap: Solution) -> tuple[float, float]:
+        return (
+            (cheap.residual - still.residual) / self.ends.width,
+            (still.energy - cheap.energy) / self.ends.height,
+        )
+
+    def _guess(self, one: Solution) -> Guess:
+        return one.coefficients if one is self.ends.still else one  # which is of another program
+
+    def _failed(self, of_residual: float, of_energy: float, found: Solution) -> None:
+        asked = {"residual_weight": of_residual, "energy_weight": of_energy}
+        self.failures.append(FailedPoint(asked, found.status.text))

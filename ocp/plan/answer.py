@@ -1,0 +1,234 @@
+"""Plan: the answer a person keeps."""
+
+from __future__ import annotations
+
+import io
+import math
+import time
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ocp.answers.documents import (
+    Document,
+    numbers_of,
+    profile_from_document,
+    profile_to_document,
+    task_from_document,
+    task_to_document,
+)
+from ocp.answers.provenance import Provenance, Verification, provenance_of, verification_of
+from ocp.answers.saved import Saved
+from ocp.base.checks import positive
+from ocp.base.files import write_whole
+from ocp.base.status import SolveStatus
+from ocp.profiles.joint_profile import JointPath, JointProfile
+from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.simulation.cvodes import Trajectory
+from ocp.simulation.objective import Motion
+from ocp.simulation.resimulation import resimulate, sample_trajectory
+from ocp.simulation.rollout import rollout
+from ocp.task.point_to_point import PointToPoint
+
+_LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
+
+
+@dataclass(frozen=True)
+class Plan(Saved):
+    """One motion of one task: its coefficients and what it costs.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    coefficients : tuple of float
+        The profile's coefficients, a_1 to a_N of eq (6).
+    motion : Motion
+        Residual, energy and diagnostics, by the independent integrator.
+    status : SolveStatus
+        How the solve ended.
+    verification : Verification
+        Distance between the two integrators.
+    provenance : Provenance
+        Method, settings, versions, time.
+    """
+
+    kind: ClassVar[str] = "plan"
+
+    task: PointToPoint
+    profile: JointProfile
+    coefficients: tuple[float, ...]
+    motion: Motion
+    status: SolveStatus
+    verification: Verification
+    provenance: Provenance
+
+    @property
+    def residual(self) -> float:
+        """F1: largest absolute tip displacement after arrival [m]."""
+        return self.motion.residual
+
+    @property
+    def energy(self) -> float:
+        """F2: driving energy [J]."""
+        return self.motion.energy
+
+    @property
+    def path(self) -> JointPath:
+        """The joint's motion as a callable of time and derivative order."""
+        return self.profile.path(self.coefficients, *self.task.move)
+
+    def trajectory(self, times: ArrayLike) -> Trajectory:
+        """Sample the motion with CVODES; see `ocp.sample_trajectory`."""
+        return sample_trajectory(self.task, self.profile, self.coefficients, times)
+
+    def to_document(self) -> Document:
+        """The plan in JSON's types, SI units and radians."""
+        diagnostics = asdict(self.motion)
+        return {
+            **task_to_document(self.task),
+            "profile": profile_to_document(self.profile),
+            "coefficients": list(self.coefficients),
+            "residual": diagnostics.pop("residual"),
+            "energy": diagnostics.pop("energy"),
+            "diagnostics": diagnostics,
+            "status": self.status.value,
+            "verification": asdict(self.verification),
+            "provenance": vars(self.provenance),
+        }
+
+    @classmethod
+    def from_document(cls, document: Document) -> Plan:
+        """The plan of a document; KeyError, TypeError or ValueError where it is not one."""
+        profile = profile_from_document(document["profile"])
+        figures = {
+            "residual": document["residual"],
+            "energy": document["energy"],
+            **document["diagnostics"],
+        }
+        return cls(
+            task=task_from_document(document),
+            profile=profile,
+            coefficients=profile.checked(document["coefficients"]),
+            motion=Motion(**numbers_of(figures, [entry.name for entry in fields(Motion)])),
+            status=SolveStatus(document["status"]),
+            verification=verification_of(document["verification"]),
+            provenance=provenance_of(document["provenance"]),
+        )
+
+    def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
+        """Write the move as a table to drive a joint with.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; its header names the quantities with their units.
+        sample_rate : float
+            Rows per second [Hz]. The last row is the first tick at or after arrival, where the
+            joint rests at its target.
+
+        Raises
+        ------
+        ValueError
+            When the rate is out of range or the file cannot be written.
+        """
+        ticks = ticks_of_move(self.task.duration, sample_rate)
+        sampled = self.trajectory(np.arange(ticks + 1) / sample_rate)
+        tips = sampled.tips.shape[1]
+        tip_names = ["tip_m"] if tips == 1 else [f"tip_{i + 1}_m" for i in range(tips)]
+        header = ["t_s", "theta_rad", "dtheta_rad_s", "ddtheta_rad_s2", *tip_names]
+        header += ["torque_Nm", "power_W"]
+        table = np.column_stack(
+            [sampled.time, sampled.joint, sampled.tips, sampled.torque, sampled.power]
+        )
+        text = io.StringIO()
+        np.savetxt(text, table, delimiter=",", header=",".join(header), comments="", fmt="%.10g")
+        write_whole(path, text.getvalue())
+
+
+def evaluate_coefficients(
+    task: PointToPoint,
+    coefficients: ArrayLike,
+    *,
+    method: str = "given coefficients",
+    settings: Mapping[str, str | int | float | None] | None = None,
+) -> Plan:
+    """The figures of given coefficients of the cycloid of a polynomial.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    coefficients : array_like, shape (terms,)
+        a_1 to a_N of eq (6); none for the plain cycloid.
+    method : str
+        Where the coefficients come from, for the plan's provenance.
+    settings : mapping, optional
+        Settings of that method.
+
+    Returns
+    -------
+    Plan
+        A plan whose status says that nothing was optimised.
+
+    Raises
+    ------
+    ValueError
+        When there are too many coefficients or one is not finite.
+    SolverFailedError
+        When CVODES cannot follow the motion.
+    """
+    began = time.perf_counter()
+    profile = CycloidPolynomial(int(np.atleast_1d(np.asarray(coefficients, dtype=float)).size))
+    checked = profile.checked(coefficients)
+    motion = resimulate(task, profile, checked)
+    fixed = rollout(task, profile, checked)
+    return Plan(
+        task=task,
+        profile=profile,
+        coefficients=checked,
+        motion=motion,
+        status=SolveStatus.NOT_OPTIMISED,
+        verification=Verification.between(
+            fixed.steps, fixed.motion.energy, fixed.motion.residual, motion
+        ),
+        provenance=Provenance(method, settings or {}, seconds=time.perf_counter() - began),
+    )
+
+
+def ticks_of_move(duration: float, sample_rate: float) -> int:
+    """Ticks from the start to the first at or after arrival.
+
+    Parameters
+    ----------
+    duration : float
+        Travelling time [s].
+    sample_rate : float
+        Ticks per second [Hz].
+
+    Returns
+    -------
+    int
+        The last tick's number, 1 or more.
+
+    Raises
+    ------
+    ValueError
+        When the rate is not positive and finite, or asks for more rows than a table should have.
+    """
+    ticks = duration * positive("sample rate", sample_rate, "Hz")
+    if ticks < _LEAST_TICKS:
+        raise ValueError(
+            f"sample rate is {sample_rate:g} Hz, a tick long after the arrival; give a higher rate"
+        )
+    if ticks > _MOST_SAMPLES:
+        raise ValueError(
+            f"sample rate {sample_rate:g} Hz asks for {ticks:.0f} rows; give a lower rate"
+        )
+    return max(1, math.ceil(ticks - 1e-9))

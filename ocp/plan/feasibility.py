@@ -1,0 +1,145 @@
+"""When a task cannot be met: find out which limit is in the way, and what would do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.base.errors import InfeasibleTaskError, SolverFailedError
+from ocp.base.status import SolveStatus
+from ocp.profiles.joint_profile import JointProfile
+from ocp.program.solution import Solution
+from ocp.program.task_program import TaskProgram
+from ocp.program.transcription import RESIDUAL
+from ocp.task.point_to_point import LIMITS
+
+_UNITS = {RESIDUAL: "m", **{name.removesuffix("_limit"): unit for name, unit in LIMITS.items()}}
+_ROOM = 1.001
+"""A found least value is quoted with this room, so that asking for it is feasible."""
+
+
+def least_peaks(
+    program: TaskProgram,
+    profile: JointProfile,
+    limits: Mapping[str, float],
+    bound: float | None,
+    guesses: Sequence[NDArray[np.float64]],
+) -> dict[str, Solution]:
+    """Make each limited quantity in turn as small as it can be while the other limits are kept.
+
+    Parameters
+    ----------
+    program : TaskProgram
+        The task's program that was not solved.
+    profile : JointProfile
+        How the joint moves.
+    limits : mapping of str to float
+        Residual [m] and peaks [SI units] that were asked for.
+    bound : float or None
+        Largest absolute coefficient.
+    guesses : sequence of ndarray
+        Vectors of coefficients to start from.
+
+    Returns
+    -------
+    dict of str to Solution
+        The best solution found for each quantity; a quantity without any is left out.
+    """
+    best: dict[str, Solution] = {}
+    for name in limits:
+        others = {key: value for key, value in limits.items() if key != name}
+        found = [program.solve(guess, others, bound, minimise={name: 1.0}) for guess in guesses]
+        solved = [solution for solution in found if solution.status.solved]
+        if solved:
+            best[name] = min(solved, key=lambda solution: solution.peaks[name])
+    return best
+
+
+def explain(
+    profile: JointProfile,
+    limits: Mapping[str, float],
+    bound: float | None,
+    solutions: Sequence[Solution],
+    least: Mapping[str, Solution],
+) -> SolverFailedError:
+    """The error for a task that no start solved, to be raised by the caller.
+
+    Parameters
+    ----------
+    profile : JointProfile
+        How the joint moves.
+    limits : mapping of str to float
+        Residual [m] and peaks [SI units] that were asked for.
+    bound : float or None
+        Largest absolute coefficient.
+    solutions : sequence of Solution
+        The runs that failed.
+    least : mapping of str to Solution
+        What `least_peaks` found.
+
+    Returns
+    -------
+    SolverFailedError
+        An InfeasibleTaskError where the runs ended at infeasible motions.
+    """
+    terms = f"{profile.size} term{'s' if profile.size > 1 else ''}"
+    return unmet(
+        f"motion of {terms}",
+        limits,
+        [solution.status for solution in solutions],
+        {name: found.peaks[name] for name, found in least.items()},
+        "more terms or a longer duration",
+        "" if bound is None else f", coefficients within +-{bound:g}",
+    )
+
+
+def unmet(
+    motion: str,
+    limits: Mapping[str, float],
+    statuses: Sequence[SolveStatus],
+    least: Mapping[str, float],
+    remedy: str,
+    box: str = "",
+) -> SolverFailedError:
+    """The error for limits that no start met, in words.
+
+    Parameters
+    ----------
+    motion : str
+        What was looked for.
+    limits : mapping of str to float
+        Residual [m] and peaks [SI units] that were asked for.
+    statuses : sequence of SolveStatus
+        How the runs ended.
+    least : mapping of str to float
+        The least that was found possible of each quantity, the others kept.
+    remedy : str
+        What else may do.
+    box : str
+        What else was asked.
+
+    Returns
+    -------
+    SolverFailedError
+        An InfeasibleTaskError where a run ended at an infeasible motion.
+    """
+    if SolveStatus.INFEASIBLE not in statuses:
+        return SolverFailedError(f"none of {len(statuses)} starts was solved: {statuses[0].text}")
+    asked = ", ".join(
+        f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items() if limit < np.inf
+    )
+    remedies = [
+        f"{name} limit {peak * _ROOM:.4g} {_UNITS[name]}"
+        for name, peak in least.items()
+        if peak > limits[name]
+    ]
+    feasible = (
+        f"feasible with the rest kept: {' or '.join(remedies)}"
+        if remedies
+        else "taking any one of these limits away does not help, so widen several"
+    )
+    return InfeasibleTaskError(
+        f"found no {motion} with {asked}{box}; {feasible}; {remedy} may also do"
+    )

@@ -1,0 +1,200 @@
+"""IPOPT: the plan of least energy."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ocp.answers.provenance import Provenance, SolveSettings, Verification
+from ocp.plan.answer import Plan
+from ocp.plan.feasibility import explain, least_peaks
+from ocp.plan.verification import MOST_STEPS, verified
+from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.program.solution import Solution, same_minimum
+from ocp.program.task_program import TaskProgram
+from ocp.program.transcription import RESIDUAL
+from ocp.simulation.rollout import default_steps
+from ocp.task.point_to_point import PointToPoint
+
+LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 32, 80, 80, 8
+"""Steps that a profile needs: more where more terms let the power change sign more often, and where
+limits hold only at the nodes."""
+_HIDDEN = 2e-3
+"""Share of the energy by which sampled minima can lie above the resolved ones beside them."""
+UNBOUNDED_SPREAD = 0.2
+"""Random starts lie within this of the plain cycloid where the coefficients have no bound."""
+
+
+def plan_move(
+    task: PointToPoint,
+    profile: JointProfile | None = None,
+    *,
+    residual_limit: float = 0.0,
+    bound: float | None = None,
+    starts: int = 4,
+    seed: int = 0,
+    steps: int | None = None,
+    guess: ArrayLike | None = None,
+) -> Plan:
+    """Find the motion of least energy whose residual vibration is within a limit.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move and its limits.
+    profile : JointProfile, optional
+        How the joint moves; by default the cycloid of a polynomial of six terms.
+    residual_limit : float
+        Largest F1 [m]; 0 asks for rest on arrival.
+    bound : float, optional
+        Largest absolute coefficient; none by default.
+    starts : int
+        How many starts: the guess or the plain cycloid first, then random ones.
+    seed : int
+        Seed of the random starts.
+    steps : int, optional
+        Steps of the solver's discretisation, chosen from the task by default; they are doubled
+        while the verification disagrees.
+    guess : array_like, shape (profile.size,), optional
+        Coefficients to start from first, such as a metaheuristic's, to be improved.
+
+    Returns
+    -------
+    Plan
+        The coefficients, with the figures of an independent integrator.
+
+    Raises
+    ------
+    ValueError
+        When an argument is out of range.
+    InfeasibleTaskError
+        When no motion of this profile meets the task; the text says what would be feasible.
+    SolverFailedError
+        When no start ended at an optimum for another reason.
+    """
+    profile = CycloidPolynomial() if profile is None else profile
+    settings = SolveSettings(residual_limit, bound, starts, seed, steps)
+    if profile.size == 0:
+        raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+    began = time.perf_counter()
+    program = TaskProgram(task, profile, first_steps(task, profile, settings))
+    guesses, asked = start_coefficients(profile.size, settings), asdict(settings)
+    if guess is not None:
+        guesses[0] = np.array(profile.checked(guess))
+        asked["guess"] = ", ".join(repr(value) for value in profile.checked(guess))
+    limits = {RESIDUAL: residual_limit, **task.limits}
+    best = least_energy(program, profile, limits, bound, guesses)
+    best, motion, steps_used = verified(program, best, limits, bound)
+    return Plan(
+        task=task,
+        profile=profile,
+        coefficients=profile.checked(best.coefficients),
+        motion=motion,
+        status=best.status,
+        verification=Verification.between(steps_used, best.energy, best.residual, motion),
+        provenance=Provenance("ipopt", asked, seconds=time.perf_counter() - began),
+    )
+
+
+def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> int:
+    """Steps of the solver's discretisation to begin with.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    settings : SolveSettings
+        Its steps count where they are given.
+
+    Returns
+    -------
+    int
+        Number of steps.
+
+    Raises
+    ------
+    ValueError
+        When the move takes too many periods of the plant's fastest mode.
+    """
+    least = max(LIMITED_STEPS if task.limits else LEAST_STEPS, STEPS_A_TERM * (profile.size - 2))
+    least = min(least, MOST_LEAST_STEPS)
+    steps = settings.steps or default_steps(task, least=least)
+    if steps > MOST_STEPS and settings.steps is None:
+        raise ValueError(
+            f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
+            f"mode; the solver resolves up to {MOST_STEPS // 2}: give a shorter duration"
+        )
+    return steps
+
+
+def start_coefficients(size: int, settings: SolveSettings) -> list[NDArray[np.float64]]:
+    """Vectors of coefficients to start from: zeros, then random ones from the seed."""
+    random = np.random.default_rng(settings.seed)
+    spread = UNBOUNDED_SPREAD if settings.bound is None else settings.bound
+    others = [random.uniform(-spread, spread, size) for _ in range(settings.starts - 1)]
+    return [np.zeros(size), *others]
+
+
+def least_energy(
+    program: TaskProgram,
+    profile: JointProfile,
+    limits: Mapping[str, float],
+    bound: float | None,
+    guesses: Sequence[NDArray[np.float64]],
+) -> Solution:
+    """The best of the solutions from several starts.
+
+    Parameters
+    ----------
+    program : TaskProgram
+        The task's program.
+    profile : JointProfile
+        How the joint moves.
+    limits : mapping of str to float
+        Largest residual [m] (infinite where it is free) and peaks [SI units].
+    bound : float or None
+        Largest absolute coefficient.
+    guesses : sequence of ndarray
+        Vectors of coefficients to start from.
+
+    Returns
+    -------
+    Solution
+        The solution of least energy.
+
+    Raises
+    ------
+    InfeasibleTaskError
+        When no motion of this profile meets the limits.
+    SolverFailedError
+        When no start ended at an optimum for another reason.
+    """
+    solutions = [program.solve(guess, limits, bound, reaches=()) for guess in guesses]
+    solved = [solution for solution in solutions if solution.status.solved]
+    if not solved:
+        least = least_peaks(program, profile, limits, bound, guesses[:2])
+        rescues = [found.coefficients for name, found in least.items()
+                   if found.peaks[name] <= limits[name]]  # fmt: skip
+        solutions += [program.solve(guess, limits, bound, reaches=()) for guess in rescues]
+        solved = [solution for solution in solutions if solution.status.solved]
+        if not solved:
+            raise explain(profile, limits, bound, solutions, least)
+    before = sum(solution.iterations for solution in solutions)
+    least, finished = min(map(_energy, solved)), list[Solution]()
+    for found in sorted(solved, key=_energy):
+        near = found.energy <= least * (1 + _HIDDEN)
+        if near and not any(same_minimum(found, other) for other in finished):
+            finished.append(program.finished(replace(found, iterations=0), limits, bound))
+    best = min(finished, key=_energy)
+    return replace(best, iterations=before + sum(found.iterations for found in finished))
+
+
+def _energy(found: Solution) -> float:
+    return found.energy

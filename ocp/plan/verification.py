@@ -1,0 +1,122 @@
+"""Hold the solver's answer against the independent integrator, and mend it where they differ."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ocp.base.errors import SolverFailedError
+from ocp.program.solution import Solution
+from ocp.program.task_program import TaskProgram
+from ocp.program.transcription import RESIDUAL
+from ocp.simulation.objective import Motion
+from ocp.simulation.resimulation import resimulated
+
+MOST_STEPS = 3200
+STILL, STILL_SHARE = 1e-8, 1e-7
+"""Verified residual up to which 'at rest on arrival' counts as kept: in metres, or as a share of
+what the plain cycloid leaves, whichever is more."""
+_ENERGY_AGREEMENT = 1e-3
+_RESIDUAL_AGREEMENT = 5e-3
+_AT_REST = 0.3
+"""Share of that which the residual at rest is brought below."""
+ENOUGH_STEPS = 150
+"""Steps with which a minimum counts though the solver did not settle there."""
+_ROUNDS = 12
+_OVERRUN = 1e-3
+"""Share of a limit by which a verified peak may pass it when tightening found nothing better."""
+
+
+def verified(
+    program: TaskProgram,
+    best: Solution,
+    limits: Mapping[str, float],
+    bound: float | None,
+    *,
+    most_steps: int = MOST_STEPS,
+    enough_steps: int = ENOUGH_STEPS,
+    kept: Mapping[str, float] | None = None,
+) -> tuple[Solution, Motion, int]:
+    """Verify; mend the arrival, double the steps while energies disagree, tighten passed limits.
+
+    The few steps of the solver miss the state on arrival by a little, and it holds limits at its
+    nodes and the residual at its samples. What the independent integrator finds of that is given
+    back to the solver, which goes on from where it stopped.
+
+    Parameters
+    ----------
+    program : TaskProgram
+        The program that was solved.
+    best : Solution
+        Its solution.
+    limits : mapping of str to float
+        Largest residual [m] and peaks [SI units].
+    bound : float or None
+        Largest absolute coefficient.
+    most_steps : int
+        Steps up to which they are doubled.
+    enough_steps : int
+        Steps with which a minimum counts though the solver did not settle there.
+    kept : mapping of str to float, optional
+        The limits that the verified figures must keep; all of them by default.
+
+    Returns
+    -------
+    Solution, Motion, int
+        The solution, its figures by CVODES, and the number of steps it was found with.
+
+    Raises
+    ------
+    SolverFailedError
+        When a limit stays passed.
+    """
+    motion, arrival = resimulated(program.task, program.profile, best.coefficients)
+    kept, used = limits if kept is None else kept, dict(limits)
+    still = max(STILL, STILL_SHARE * program.of_cycloid)
+    tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
+    tried: list[tuple[Solution, Motion, int]] = []
+    for _ in range(_ROUNDS):
+        tried.append((best, motion, program.steps))
+        overrun = {name: motion.peak(name) / limit for name, limit in kept.items() if limit > 0}
+        used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
+        rough = abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
+        unsettled = not best.settled and program.steps < enough_steps
+        missed = abs(best.residual - motion.residual) > tolerated
+        again = None
+        if not rough and (missed or any(ratio > 1 for ratio in overrun.values())):
+            again = program.corrected(best, arrival, used, bound)
+        elif not (rough or unsettled):
+            break
+        if again is None or not again.status.solved:
+            if 2 * program.steps > most_steps:
+                break
+            program = TaskProgram(program.task, program.profile, 2 * program.steps)
+            again, used = program.solve(best.coefficients, limits, bound), dict(limits)
+            if not again.status.solved:
+                break
+        best = again
+        motion, arrival = resimulated(program.task, program.profile, best.coefficients)
+    else:
+        tried.append((best, motion, program.steps))
+    best, motion, steps = _cheapest_kept(tried, kept, still)
+    for name, limit in kept.items():
+        if motion.peak(name) > max(limit * (1 + _OVERRUN), still):
+            raise SolverFailedError(
+                f"the verified {name} is {motion.peak(name):.4g}, above its limit of {limit:g}: "
+                "the solver's steps are too coarse for this motion; bound the coefficients or use "
+                "fewer terms"
+            )
+    return best, motion, steps
+
+
+def _cheapest_kept(
+    tried: list[tuple[Solution, Motion, int]], kept: Mapping[str, float], still: float
+) -> tuple[Solution, Motion, int]:
+    """The cheapest of the verified motions that keep every limit; else the last."""
+    keeping = [
+        one
+        for one in tried
+        if all(one[1].peak(name) <= max(limit, still) for name, limit in kept.items())
+    ]
+    return min(keeping, key=lambda one: one[1].energy) if keeping else tried[-1]

@@ -1,0 +1,4 @@
+"""How a joint may move: what every profile is, and the profiles, one class a file.
+
+May import `task` and `base`.
+"""

@@ -1,0 +1,125 @@
+"""The cycloid whose input is a polynomial, eqs (1)-(7) of the paper."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+
+from models import Expression, JointMotion
+from ocp.profiles.joint_profile import JointProfile
+
+MAX_TERMS = 32
+"""Most terms of the polynomial. Its powers of T on [-1, 1] are told apart by double precision with
+a condition number that grows like (1 + sqrt 2)^N: 4e11 at 32 terms, which leaves four digits of a
+coefficient. The solver works along other axes, in which that does not matter."""
+
+
+@dataclass(frozen=True)
+class CycloidPolynomial(JointProfile):
+    """A cycloid whose input is a polynomial, eqs (1)-(7), with eq (3) mended.
+
+    Parameters
+    ----------
+    terms : int
+        N of eq (6), 0 (the plain cycloid) to `MAX_TERMS`.
+
+    Raises
+    ------
+    ValueError
+        When `terms` is not a whole number in that range.
+    """
+
+    name: ClassVar[str] = "cycloid-polynomial"
+    terms: int = 6
+
+    def __post_init__(self) -> None:
+        terms: object = self.terms
+        if isinstance(terms, bool) or not isinstance(terms, int | np.integer):
+            raise ValueError(f"terms is {self.terms!r}; give a whole number from 0 to {MAX_TERMS}")
+        if not 0 <= self.terms <= MAX_TERMS:
+            raise ValueError(
+                f"terms is {self.terms}; give 0 (the plain cycloid) to {MAX_TERMS}: beyond that "
+                "double precision no longer tells the powers of T apart"
+            )
+        object.__setattr__(self, "terms", int(self.terms))
+
+    @property
+    def size(self) -> int:
+        """How many coefficients the profile has: the number of terms."""
+        return self.terms
+
+    def derivatives(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> tuple[Expression, Expression, Expression, Expression]:
+        """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended, theta''' from it."""
+        inputs = self._input(coefficients, fraction, duration)
+        _, dU, ddU, dddU = inputs
+        sine, cosine = ca.sin(math.pi * inputs[0]), ca.cos(math.pi * inputs[0])
+        pi, speed_shape = math.pi, sine * sine
+        jerk = (
+            2 * pi * pi * (cosine * cosine - speed_shape) * dU * dU * dU
+            + 6 * pi * sine * cosine * dU * ddU
+            + speed_shape * dddU
+        )
+        return (*self.outer(inputs[:3], start, target, duration), 2 * (target - start) * jerk)
+
+    def inner(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> Sequence[Expression]:
+        """U of eq (6), U', U'': linear in the coefficients."""
+        del start, target
+        return self._input(coefficients, fraction, duration)[:3]
+
+    def outer(
+        self,
+        inner: Sequence[Expression],
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> JointMotion:
+        """The cycloid of U: eqs (1), (2) and (3), the latter mended."""
+        del duration
+        U, dU, ddU = inner
+        sine, cosine = ca.sin(math.pi * U), ca.cos(math.pi * U)
+        span, pi = target - start, math.pi
+        return JointMotion(
+            start + span * (U - sine * cosine / pi),
+            2 * span * (sine * sine) * dU,
+            2 * span * sine * (2 * pi * cosine * dU * dU + sine * ddU),
+        )
+
+    @staticmethod
+    def _input(
+        coefficients: Sequence[Expression], fraction: Expression, duration: Expression
+    ) -> tuple[Expression, Expression, Expression, Expression]:
+        """U of eq (6) and its first three time derivatives."""
+        T = 2 * fraction - 1  # eq (7)
+        p = dp = ddp = dddp = 0 * T
+        for a in reversed(coefficients):  # Horner's rule, differentiated as it goes
+            dddp = dddp * T + 3 * ddp
+            ddp = ddp * T + 2 * dp
+            dp = dp * T + p
+            p = p * T + a
+        bump = 1 - T * T
+        rate = 2 / duration  # dT/dt
+        return (
+            fraction + bump * p,
+            1 / duration + rate * (bump * dp - 2 * T * p),
+            rate**2 * (bump * ddp - 4 * T * dp - 2 * p),
+            rate**3 * (bump * dddp - 6 * T * ddp - 6 * dp),
+        )

@@ -1,0 +1,311 @@
+"""From a task to a nonlinear program in the profile's coefficients.
+
+Unknowns are the coefficients, the least peak where one is asked for, the state on arrival where a
+residual is limited (its many rows then have few entries), and what the energy is made of. This
+comes in two forms of the same program:
+
+- sampled: the power at two samples of every step is the difference of two unknowns that are not
+  negative, and their sum is |power| there. The solver decides sample by sample, as in a linear
+  program, and comes to the minimum from far away in 15 to 30 iterations; but between the samples a
+  little energy can hide;
+- resolved: one unknown is the energy with its sign changes resolved. Its second derivatives are
+  exact where a solution is near, and unbounded where zeros of the power meet: a few iterations lead
+  from the sampled minimum to the true one.
+
+Limits are bounds on the quantities' values at the nodes.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from contextlib import redirect_stderr
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.base.interrupts import keep_interrupts
+from ocp.program.condensed import Condensed, Inputs, March, Sensitivities
+from ocp.program.symbols import split
+from ocp.simulation.collocation import NODES
+from ocp.simulation.objective import two_samples
+
+RESIDUAL = "residual"
+Options = Mapping[str, str | int | float]
+
+
+class Form(NamedTuple):
+    """Which program it is.
+
+    Attributes
+    ----------
+    sampled : bool
+        Whether |power| is taken at samples, or the energy with its sign changes resolved.
+    residual_rows : int
+        Rows of the residual matrix; 0 asks for rest on arrival.
+    least : str or None
+        The quantity whose peak is an unknown that is minimised.
+    """
+
+    sampled: bool
+    residual_rows: int
+    least: str | None
+
+
+@dataclass(frozen=True)
+class Point:
+    """Where the solver starts or stops: the unknowns, and the multipliers where they are known.
+
+    Attributes
+    ----------
+    unknowns : ndarray
+        Scaled unknowns.
+    bound_multipliers, multipliers : ndarray, empty where unknown
+        Of the bounds on the unknowns (positive at an upper one), and of the constraints.
+    """
+
+    unknowns: NDArray[np.float64]
+    bound_multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+
+
+class Stop(NamedTuple):
+    """How a run of IPOPT ended: where, its own status, iterations, and how far a bound is passed.
+
+    `passed` is the largest amount by which a constraint is not kept, scaled.
+    """
+
+    point: Point
+    return_status: str
+    iterations: int
+    passed: float
+
+
+class NonlinearProgram:
+    """One form of the program for a plant, a profile, a number of steps and limited quantities.
+
+    Move, scales, weights, residual matrix and a correction of the state on arrival are its
+    parameters; limits are bounds. It holds live
+    casadi objects: keep it out of answers.
+    """
+
+    @keep_interrupts()  # building, too, loses a Ctrl-C
+    def __init__(self, motion: Condensed, form: Form, options: Options, warm_options: Options):
+        self.motion, self.form = motion, form
+        self._samples, self._sampling = 2 * motion.steps, two_samples()
+        self.sizes = {
+            "coefficients": motion.size,
+            "peak": 0 if form.least is None else 1,
+            "arrival": motion.states if form.residual_rows else 0,
+            "power": 2 * self._samples if form.sampled else 1,
+        }
+        """How many unknowns of each kind, in their order."""
+        x = ca.MX.sym("x", self.unknowns)
+        parts = dict(zip(self.sizes, split(x, list(self.sizes.values())), strict=True))
+        sizes = [3, motion.scales, 2, motion.states, form.residual_rows * motion.states]
+        sizes.append(motion.basis_size)
+        p = ca.MX.sym("p", sum(sizes))
+        move, scale, weights, offset, residual, basis = split(p, sizes)
+        residual = ca.reshape(residual, form.residual_rows, motion.states)
+        inputs = Inputs(parts["coefficients"], move, scale, basis)
+        objective = weights[0] * self._energy(parts["power"]) + weights[1] * ca.sum1(parts["peak"])
+        linearised = march, first = motion.linearised(inputs)
+        g = self._constraints(march, parts, offset, residual)
+        jacobian = self._jacobian(march, first, residual)
+        options_of_both = {
+            "jac_g": ca.Function("nlp_jac_g", [x, p], [g, jacobian], ["x", "p"], ["g", "jac_g_x"]),
+            "hess_lag": self._hessian(x, p, inputs, linearised, g.numel()),
+            "calc_lam_p": False,
+            "no_nlp_grad": True,
+            "print_time": False,
+        }
+        problem = {"x": x, "p": p, "f": objective, "g": g}
+        self._cold, self._warm = (
+            ca.nlpsol(name, "ipopt", problem, {**options_of_both, "ipopt": dict(chosen)})
+            for name, chosen in (("cold", options), ("warm", {**options, **warm_options}))
+        )
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns."""
+        return sum(self.sizes.values())
+
+    def part(self, name: str) -> slice:
+        """Where unknowns of one kind stand among all."""
+        names = list(self.sizes)
+        first = sum(self.sizes[other] for other in names[: names.index(name)])
+        return slice(first, first + self.sizes[name])
+
+    def solve(
+        self,
+        start: Point,
+        bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
+        limits: Mapping[str, float],
+        parameters: NDArray[np.float64],
+    ) -> Stop:
+        """Run IPOPT.
+
+        Parameters
+        ----------
+        start : Point
+            Where to start.
+        bounds : tuple of ndarray
+            Lower and upper bounds of the unknowns.
+        limits : mapping of str to float
+            Largest absolute values, scaled; a quantity without an entry is free.
+        parameters : ndarray
+            Move, scales, weights of energy and peak, correction of the state on arrival, residual
+            matrix by columns, `Condensed.basis`.
+
+        Returns
+        -------
+        Stop
+            Where and how it ended.
+        """
+        lower, upper = self._constraint_bounds(limits)
+        solver, known = self._cold, {}
+        if start.multipliers.size:
+            solver = self._warm
+            known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
+        with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
+            result = solver(
+                x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper,
+                p=parameters, **known,
+            )  # fmt: skip
+        point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
+        g, stats = result["g"].full().ravel(), solver.stats()
+        passed = float(np.max([lower - g, g - upper]))
+        return Stop(point, str(stats["return_status"]), int(stats["iter_count"]), passed)
+
+    # -- the constraints, in this order: energy, arrival, limited quantities, residual --
+
+    def _energy(self, power: ca.MX) -> ca.MX:
+        if not self.form.sampled:
+            return power
+        above, below = ca.vertsplit(power, self._samples)
+        return ca.dot(np.repeat(self.motion.lengths, 2) / 2, above + below)
+
+    def _constraints(
+        self, march: March, parts: Mapping[str, ca.MX], offset: ca.MX, residual: ca.MX
+    ) -> ca.MX:
+        motion, power, arrival = self.motion, march.outputs[0, :], march.arrival + offset
+        if self.form.sampled:
+            above, below = ca.vertsplit(parts["power"], self._samples)
+            sampled = self._sampling @ ca.reshape(power, NODES, motion.steps)
+            rows = [ca.vec(sampled) - above + below]
+        else:
+            rows = [motion.energy.value(power) - parts["power"]]
+        rows.append(arrival - parts["arrival"] if self.form.residual_rows else arrival)
+        for group in self._limited:
+            value = motion.of_group(ca.vec(march.outputs).T, group.name).T
+            rows += self._within(group.name, value, parts["peak"])
+        if self.form.residual_rows:
+            rows += self._within(RESIDUAL, residual @ parts["arrival"], parts["peak"])
+        return ca.vertcat(*rows)
+
+    def _within(self, name: str, value: ca.MX, peak: ca.MX) -> list[ca.MX]:
+        return [value - peak, value + peak] if name == self.form.least else [value]
+
+    @property
+    def _limited(self) -> Sequence:
+        return self.motion.groups[2:]  # after state and power
+
+    def _constraint_bounds(
+        self, limits: Mapping[str, float]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        motion, form = self.motion, self.form
+        zeros = (self._samples if form.sampled else 1) + motion.states
+        lower, upper = [np.zeros(zeros)], [np.zeros(zeros)]
+        counts = {group.name: group.rows * motion.nodes for group in self._limited}
+        if form.residual_rows:
+            counts[RESIDUAL] = form.residual_rows
+        for name, count in counts.items():
+            limit, free = np.full(count, limits.get(name, np.inf)), np.full(count, np.inf)
+            if name == form.least:
+                lower += [-free, np.zeros(count)]
+                upper += [np.zeros(count), free]
+            else:
+                lower.append(-limit)
+                upper.append(limit)
+        return np.concatenate(lower), np.concatenate(upper)
+
+    # -- derivatives --
+
+    def _row(self, count: int, **blocks: ca.MX | ca.DM) -> ca.MX:
+        """Rows of the Jacobian from its blocks by kind of unknown; what is not given is zero."""
+        return ca.horzcat(
+            *(ca.MX(blocks.get(name, ca.DM(count, size))) for name, size in self.sizes.items())
+        )
+
+    def _jacobian(self, march: March, first: Sensitivities, residual: ca.MX) -> ca.MX:
+        motion, form = self.motion, self.form
+        power_first = motion.of_group(first.outputs, "power")
+        if form.sampled:
+            count = self._samples
+            by_node = ca.reshape(power_first.T, NODES, motion.steps * motion.size)
+            of_samples = ca.reshape(self._sampling @ by_node, count, motion.size)
+            signs = ca.horzcat(-ca.DM.eye(count), ca.DM.eye(count))
+            rows = [self._row(count, coefficients=of_samples, power=signs)]
+        else:
+            gradient = power_first @ motion.energy.first(march.outputs[0, :])[0]
+            rows = [self._row(1, coefficients=gradient.T, power=ca.DM(-1))]
+        arrived = -ca.DM.eye(motion.states) if form.residual_rows else ca.DM(motion.states, 0)
+        rows.append(self._row(motion.states, coefficients=first.arrival.T, arrival=arrived))
+
+        def limited(name: str, count: int, **blocks: ca.MX) -> None:
+            if name == form.least:
+                ones = ca.DM.ones(count, 1)
+                rows.extend(self._row(count, **blocks, peak=sign * ones) for sign in (-1, 1))
+            else:
+                rows.append(self._row(count, **blocks))
+
+        for group in self._limited:
+            of_values = motion.of_group(first.outputs, group.name).T
+            limited(group.name, of_values.shape[0], coefficients=of_values)
+        if form.residual_rows:
+            limited(RESIDUAL, form.residual_rows, arrival=residual)
+        return ca.vertcat(*rows)
+
+    def _hessian(
+        self,
+        x: ca.MX,
+        p: ca.MX,
+        inputs: Inputs,
+        linearised: tuple[March, Sensitivities],
+        constraints: int,
+    ) -> ca.Function:
+        motion, form = self.motion, self.form
+        of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
+        sizes = [self._samples if form.sampled else 1, motion.states]
+        for group in self._limited:
+            sizes += [group.rows * motion.nodes] * (2 if group.name == form.least else 1)
+        of_energy, of_arrival, *of_values, _ = split(
+            multipliers, [*sizes, constraints - sum(sizes)]
+        )
+        march, first = linearised
+        by_energy = ca.MX(motion.size, motion.size)
+        if form.sampled:
+            of_samples = ca.reshape(of_energy, 2, motion.steps)
+            of_power = ca.vec(self._sampling.T @ of_samples).T
+        else:
+            gradient, bends = motion.energy.first(march.outputs[0, :])
+            of_power = of_energy * gradient.T
+            by_energy = of_energy * motion.of_bends(motion.of_group(first.outputs, "power"), bends)
+        of_outputs = [ca.MX(of_power)]
+        for group in self._limited:
+            weight = of_values.pop(0)
+            if group.name == form.least:
+                weight += of_values.pop(0)
+            of_outputs.append(ca.reshape(weight, group.rows, motion.nodes))
+        curvature = motion.curvature(inputs, linearised, of_arrival, ca.vertcat(*of_outputs))
+        rest = self.unknowns - motion.size
+        return ca.Function(
+            "nlp_hess_l",
+            [x, p, of_objective, multipliers],
+            [ca.triu(ca.diagcat(curvature + by_energy, ca.MX(rest, rest)))],
+            ["x", "p", "lam_f", "lam_g"],
+            ["triu_hess_gamma_x_x"],
+        )

@@ -1,0 +1,233 @@
+"""CVODES as every verification uses it: a plant's equations, samples by name, and the rest after.
+
+Nothing here knows how the joint moves; `resimulation` drives it along a profile, `ocp.floor.motion`
+along a motion of free acceleration.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stderr
+from dataclasses import dataclass
+from functools import lru_cache
+from threading import RLock
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models import Expression, JointMotion, Plant
+from ocp.base.errors import SolverFailedError
+from ocp.base.interrupts import keep_interrupts
+from ocp.simulation.residual import fastest_mode
+from ocp.task.point_to_point import PointToPoint
+
+CVODES = {
+    "linear_multistep_method": "adams",  # order up to 12: a fifth of the steps of BDF's 5
+    "reltol": 1e-11,
+    "abstol": 1e-13,
+    "max_num_steps": 200_000,
+}
+"""Options of every run."""
+_RADIANS_A_SAMPLE = 0.003
+"""Phase of the fastest mode between samples of the residual: misses 1.2e-6 of a peak at most."""
+_ONE_AT_A_TIME = RLock()  # a cached integrator has one memory, and stderr is everybody's
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A motion sampled in time; rows are samples, arrays are read-only.
+
+    Attributes
+    ----------
+    time : ndarray, shape (samples,)
+        Times [s]; arrival is at the task's duration.
+    joint : ndarray, shape (samples, 3)
+        Angle, speed and acceleration of the joint [rad, rad/s, rad/s^2].
+    modes : ndarray, shape (samples, modes)
+        Modal amplitudes W [m].
+    tips : ndarray, shape (samples, tips)
+        Tip displacements [m].
+    torque : ndarray, shape (samples,)
+        Joint torque [N m]; after arrival, what holds the joint against the vibration.
+    power : ndarray, shape (samples,)
+        torque * speed [W].
+    """
+
+    time: NDArray[np.float64]
+    joint: NDArray[np.float64]
+    modes: NDArray[np.float64]
+    tips: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    power: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            array.setflags(write=False)
+
+    @classmethod
+    def from_outputs(
+        cls, plant: Plant, time: NDArray[np.float64], outputs: NDArray[np.float64]
+    ) -> Trajectory:
+        """Name the rows of `outputs_of`.
+
+        Parameters
+        ----------
+        plant : Plant
+            What moves.
+        time : ndarray, shape (samples,)
+            Times [s].
+        outputs : ndarray, shape (3 + modes + tips + 1, samples)
+            Values of `outputs_of` at these times.
+
+        Returns
+        -------
+        Trajectory
+            The samples.
+        """
+        rows, m = outputs.T.copy(), 3 + plant.modes
+        return cls(
+            time=time.copy(),
+            joint=rows[:, :3],
+            modes=rows[:, 3:m],
+            tips=rows[:, m:-1],
+            torque=rows[:, -1],
+            power=rows[:, -1] * rows[:, 1],
+        )
+
+
+def outputs_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression:
+    """What a trajectory holds, from the joint and the modes.
+
+    Parameters
+    ----------
+    plant : Plant
+        What moves.
+    joint : JointMotion
+        The joint, each entry a scalar or of shape (1, samples).
+    states : Expression, shape (2 * modes, samples)
+        W (m) and then W' (m/s).
+
+    Returns
+    -------
+    Expression, shape (3 + modes + tips + 1, samples)
+        Rows angle, speed, acceleration, W, tips, torque.
+    """
+    W, dW, ddW = _modes(plant, joint, states)
+    rows = (*joint, *W, *plant.tip_displacements(W), plant.torque(joint, W, dW, ddW))
+    return ca.vertcat(*(ca.DM.zeros(1, states.shape[1]) + row for row in rows))
+
+
+def rates_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression:
+    """Time derivative of the states; arguments and shape as in `outputs_of`."""
+    _, dW, ddW = _modes(plant, joint, states)
+    return ca.vertcat(*dW, *ddW)
+
+
+def _modes(
+    plant: Plant, joint: JointMotion, states: Expression
+) -> tuple[Sequence[Expression], Sequence[Expression], Sequence[Expression]]:
+    rows = ca.vertsplit(states)
+    W, dW = rows[: plant.modes], rows[plant.modes :]
+    return W, dW, plant.modal_accelerations(joint, W, dW)
+
+
+@contextmanager
+def cvodes_for(motion: str) -> Iterator[None]:
+    """Let CVODES be called in this block, by one thread; name the motion that it cannot follow.
+
+    Parameters
+    ----------
+    motion : str
+        The end of the message: what is wrong with the motion.
+
+    Raises
+    ------
+    SolverFailedError
+        When CVODES fails in the block.
+    """
+    try:
+        with _ONE_AT_A_TIME, redirect_stderr(io.StringIO()):  # the error below says it for people
+            yield
+    except RuntimeError as error:
+        raise SolverFailedError(f"CVODES could not follow this motion{motion}") from error
+
+
+def after_arrival(plant: Plant, target: float, times: NDArray[np.float64]) -> ca.Function:
+    """CVODES from the state at arrival.
+
+    Parameters
+    ----------
+    plant : Plant
+        What moves.
+    target : float
+        Where the joint rests [rad].
+    times : ndarray, shape (samples,)
+        Increasing times since arrival [s], beyond 0.
+
+    Returns
+    -------
+    Function
+        The integrator: from `x0`, W (m) and then W' (m/s), to `xf`, a column a time.
+    """
+    state = ca.SX.sym("x", 2 * plant.modes)
+    rates = rates_of(plant, JointMotion(target, 0.0, 0.0), state)
+    return ca.integrator("rest", "cvodes", {"x": state, "ode": rates}, 0.0, times.tolist(), CVODES)
+
+
+@dataclass(frozen=True, eq=False)
+class _Rest:
+    """Constant matrices from the state at arrival to the states in the residual window.
+
+    A sample comes a long time and then a short one after arrival, so that s samples take about
+    2 sqrt(s) matrices: with many modes one for every sample would fill the memory.
+    """
+
+    short: NDArray[np.float64]  # (short times, 2 * modes, 2 * modes)
+    long: NDArray[np.float64]  # (long times, 2 * modes, 2 * modes)
+    tips: NDArray[np.float64]  # (tips * short times, 2 * modes)
+
+
+def _rest(task: PointToPoint) -> _Rest:
+    samples = math.ceil(task.residual_window * fastest_mode(task) / _RADIANS_A_SAMPLE)
+    with cvodes_for("'s residual vibration"):
+        return _from_unit_states(task.plant, task.target, task.residual_window, max(1, samples))
+
+
+@lru_cache(maxsize=16)
+@keep_interrupts()  # casadi loses a Ctrl-C, and what it left unfinished would be kept here
+def _from_unit_states(plant: Plant, target: float, window: float, samples: int) -> _Rest:
+    size, short = 2 * plant.modes, math.ceil(math.sqrt(samples))
+    long = math.ceil(samples / short)
+    at = np.append(np.arange(1, short + 1), short * np.arange(2, long + 1))
+    run = after_arrival(plant, target, window * at / (short * long))
+    later = run(x0=ca.DM.eye(size))["xf"].full().reshape(size, size, -1)
+    matrices = np.concatenate([np.eye(size)[None], later.transpose(2, 0, 1)])
+    into = matrices[: short + 1]
+    W = [ca.DM(into[:, mode].reshape(1, -1)) for mode in range(plant.modes)]
+    tips = ca.horzcat(*plant.tip_displacements(W)).full().reshape(-1, size)
+    return _Rest(into, matrices[[0, *range(short, short + long - 1)]], tips)
+
+
+def residual_of(task: PointToPoint, arrival: NDArray[np.float64]) -> float:
+    """Largest absolute tip displacement [m] of `rest_of`."""
+    rest = _rest(task)
+    return float(np.abs(rest.tips @ (rest.long @ arrival).T).max())
+
+
+@keep_interrupts()
+def rest_of(task: PointToPoint, arrival: ArrayLike) -> Trajectory:
+    """What happens in the residual window, from W (m) and then W' (m/s) at arrival, by CVODES."""
+    rest = _rest(task)
+    states = (rest.short @ (rest.long @ np.asarray(arrival)).T).transpose(1, 2, 0)
+    # The last short time is the first of the next long one, except in the end.
+    joined = np.hstack([states[:, :, :-1].reshape(len(states), -1), states[:, -1:, -1]])
+    times = task.duration + np.linspace(0.0, task.residual_window, joined.shape[1])
+    return Trajectory.from_outputs(task.plant, times, outputs_at_rest(task, ca.DM(joined)))
+
+
+def outputs_at_rest(task: PointToPoint, states: ca.DM) -> NDArray[np.float64]:
+    """`outputs_of` the joint at rest at the target."""
+    return outputs_of(task.plant, JointMotion(task.target, 0.0, 0.0), states).full()

@@ -1,0 +1,239 @@
+"""F1, F2 and the diagnostics of a motion: each quantity is defined here, once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from models import Expression
+from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
+from ocp.task.point_to_point import PointToPoint
+
+_TO_QUADRATIC: list[list[float]] = np.linalg.inv(
+    np.array(GAUSS_NODES)[:, None] ** np.arange(3)
+).tolist()
+_TINY = 1e-300
+_LEAST_SHARE = 1e-5
+"""The exact gradient trusts slopes down to this share of the least slope that curvature does."""
+
+
+def resolved_energy(
+    power: Sequence[Expression], h: Expression, cubic: Expression = 0.0, quartic: Expression = 0.0
+) -> Expression:
+    """Integral of |power| with its sign changes resolved: F2 of eqs (11) and (16).
+
+    The power on a step is the quadratic through its three Gauss nodes; its integral is split at
+    the quadratic's zeros. Splitting where the power keeps its sign changes nothing, so that zeros
+    that are complex or outside the step need no case of their own. Terms of third and fourth degree
+    that vanish at the nodes move work across a zero and add none to the step; the zeros stay those
+    of the quadratic, since the work hardly changes near a zero.
+
+    Parameters
+    ----------
+    power : sequence of Expression
+        Power at the Gauss nodes of every step [W]: three entries of shape (candidates, steps).
+    h : Expression
+        Length of every step [s], of the shape of an entry of `power`.
+    cubic, quartic : Expression, optional
+        Terms of the power beyond the quadratic [W], as by `beyond_quadratic`.
+
+    Returns
+    -------
+    Expression
+        Energy [J], shape (candidates, 1).
+    """
+    c = _quadratic(power)
+    return ca.sum2(h * _parted_energy(c, cubic, quartic, _breaks(c)))
+
+
+def two_samples() -> NDArray[np.float64]:
+    """What the quadratic through a step's nodes gives at the two Gauss nodes, shape (2, NODES).
+
+    Each of the two samples counts half in the mean over the step.
+    """
+    x = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
+    return x[:, None] ** np.arange(NODES) @ np.array(_TO_QUADRATIC)
+
+
+def _quadratic(power: Sequence[Expression]) -> list[Expression]:
+    """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
+    return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]
+
+
+def _breaks(c: Sequence[Expression]) -> list[Expression]:
+    """The zeros of a quadratic on a step, in order; twice its least value's place without zeros."""
+    discriminant = c[1] * c[1] - 4 * c[0] * c[2]
+    half = -(c[1] + ca.copysign(ca.sqrt(ca.fmax(discriminant, 0)), c[1])) / 2  # no cancellation
+    first, second = (
+        ca.fmin(ca.fmax(zero, 0), 1) for zero in (half / (c[2] + _TINY), c[0] / (half + _TINY))
+    )
+    second = first + (discriminant > 0) * (second - first)
+    return [ca.fmin(first, second), ca.fmax(first, second)]
+
+
+def _parted_energy(
+    c: Sequence[Expression], cubic: Expression, quartic: Expression, breaks: Sequence[Expression]
+) -> Expression:
+    """Mean of |power| on a step whose work is counted separately between two breaks."""
+    work = []
+    for x in breaks:
+        u, bump = x - 0.5, x * (1 - x)
+        beyond = bump * (cubic * (bump - 0.2) / 4 - quartic * (u * u * u) / 5)
+        work.append(x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3))) + beyond)
+    whole = c[0] + c[1] / 2 + c[2] / 3
+    return ca.fabs(work[0]) + ca.fabs(work[1] - work[0]) + ca.fabs(whole - work[1])
+
+
+@lru_cache(maxsize=1)
+def energy_derivatives() -> ca.Function:
+    """One step's share of `resolved_energy` with its derivatives.
+
+    The gradient is exact: that with the breaks held fixed, and the little that the terms beyond the
+    quadratic add where the breaks move. Of second derivatives it gives what the moving zeros cause,
+    2 g g' / |slope| for each with g the gradient of the power there, never negative; the rest is
+    linear in the power. Where zeros meet, that curvature is without bound, though only there: the
+    slope counts as `least_slope` at least.
+
+    Returns
+    -------
+    Function
+        (power at the nodes [3], cubic, quartic, least_slope) -> (mean |power|, its gradient by the
+        power, cubic and quartic [5], second derivatives by the power [3, 3]).
+    """
+    power, cubic, quartic = ca.SX.sym("p", NODES), ca.SX.sym("cubic"), ca.SX.sym("quartic")
+    least_slope, breaks = ca.SX.sym("least"), ca.SX.sym("x", 2)
+    c = _quadratic(ca.vertsplit(power))
+    energy = _parted_energy(c, cubic, quartic, ca.vertsplit(breaks))
+    gradient = ca.gradient(energy, ca.vertcat(power, cubic, quartic))
+    by_break = ca.gradient(energy, breaks)
+    is_zero = c[1] * c[1] > 4 * c[0] * c[2]  # else both breaks stand where the power is least
+    bends = ca.SX.zeros(NODES, NODES)
+    for i in range(2):
+        x = breaks[i]
+        at_zero = ca.gradient(c[0] + x * (c[1] + x * c[2]), power)
+        slope = c[1] + 2 * x * c[2]
+        inside = ca.logic_and(is_zero, ca.logic_and(x > 0, x < 1))
+        moved = -by_break[i] * ca.sign(slope) / ca.fmax(ca.fabs(slope), _LEAST_SHARE * least_slope)
+        gradient[:NODES] += ca.if_else(inside, moved, 0) * at_zero
+        bend = 2 / ca.fmax(ca.fabs(slope), least_slope)
+        bends += ca.if_else(inside, bend, 0) * (at_zero @ at_zero.T)
+    places = ca.vertcat(*_breaks(c))
+    outputs = [ca.densify(ca.substitute(e, breaks, places)) for e in (energy, gradient, bends)]
+    return ca.Function("energy", [power, cubic, quartic, least_slope], outputs, {"cse": True})
+
+
+@lru_cache(maxsize=32)
+def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
+    """What the neighbouring steps tell of the power on a step, for `resolved_energy`.
+
+    The quartic through five nodes in a row, the step's own three in the middle, is the quadratic
+    through these plus (x - node 1)(x - node 2)(x - node 3) (cubic + quartic (x - 1/2)).
+
+    Parameters
+    ----------
+    steps : int
+        Number of steps of `mesh`.
+
+    Returns
+    -------
+    tuple of DM, each of shape (NODES * steps, steps), sparse
+        Weights of `horzcat(*power)` in `cubic` and in `quartic`.
+    """
+    if steps == 1:
+        return ca.DM(NODES, 1), ca.DM(NODES, 1)  # no neighbour
+    begin, length = (entry.full() for entry in mesh(ca.DM(np.arange(steps)), steps))
+    nodes = (begin + length * np.array(GAUSS_NODES)).ravel()
+    step = np.arange(steps)[:, None]
+    five = np.clip(NODES * step - 1, 0, len(nodes) - 5) + np.arange(5)
+    x = (nodes[five] - begin) / length
+    to_quartic = np.linalg.inv(x[:, :, None] ** np.arange(5))
+    # lists: casadi takes twenty times as long over arrays here
+    at = (five % NODES * steps + five // NODES).ravel().tolist(), np.repeat(step, 5).tolist()
+    cubic, quartic = to_quartic[:, 3] + 2 * to_quartic[:, 4], to_quartic[:, 4]
+    return (
+        ca.DM.triplet(*at, cubic.ravel().tolist(), len(nodes), steps),
+        ca.DM.triplet(*at, quartic.ravel().tolist(), len(nodes), steps),
+    )
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a motion costs and asks of the joint, whichever integrator it comes from.
+
+    Attributes
+    ----------
+    residual : float
+        F1: largest absolute tip displacement in the residual window after arrival [m].
+    energy : float
+        F2: integral of |torque * speed| over the move [J].
+    net_work : float
+        Integral of torque * speed over the move [J]: what a lossless drive would need.
+    peak_torque, peak_speed, peak_acceleration : float
+        Largest absolute values during the move [N m, rad/s, rad/s^2].
+    peak_deflection : float
+        Largest absolute tip displacement during the move [m].
+    overshoot : float
+        How far the joint passes the target on its way [rad], 0 where it does not.
+    """
+
+    residual: float
+    energy: float
+    net_work: float
+    peak_torque: float
+    peak_speed: float
+    peak_acceleration: float
+    peak_deflection: float
+    overshoot: float
+
+    def peak(self, name: str) -> float:
+        """The residual, or the peak torque, speed, acceleration or deflection, by name."""
+        return float(getattr(self, name if name == "residual" else f"peak_{name}"))
+
+    @classmethod
+    def from_samples(
+        cls,
+        task: PointToPoint,
+        joint: NDArray[np.float64],
+        tips: NDArray[np.float64],
+        torque: NDArray[np.float64],
+        *,
+        residual: float,
+        energy: float,
+        net_work: float,
+    ) -> Motion:
+        """Take the peaks from samples during the move.
+
+        Parameters
+        ----------
+        task : PointToPoint
+            The move.
+        joint : ndarray, shape (samples, 3)
+            Angle, speed, acceleration of the joint [rad, rad/s, rad/s^2].
+        tips : ndarray, shape (samples, tips)
+            Tip displacements [m].
+        torque : ndarray, shape (samples,)
+            Joint torque [N m].
+        residual, energy, net_work : float
+            As in the attributes.
+
+        Returns
+        -------
+        Motion
+            The figures.
+        """
+        past_target = (joint[:, 0] - task.target) * np.sign(task.span)
+        return cls(
+            residual=residual,
+            energy=energy,
+            net_work=net_work,
+            peak_torque=float(np.abs(torque).max()),
+            peak_speed=float(np.abs(joint[:, 1]).max()),
+            peak_acceleration=float(np.abs(joint[:, 2]).max()),
+            peak_deflection=float(np.abs(tips).max()),
+            overshoot=max(0.0, float(past_target.max())),
+        )

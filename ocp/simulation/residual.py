@@ -1,0 +1,153 @@
+"""After arrival: the tip's motion is a constant matrix times the state at arrival."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from models import JointMotion, Plant
+from ocp.base.interrupts import keep_interrupts
+from ocp.simulation.collocation import NODES, modal_system, step
+from ocp.task.point_to_point import PointToPoint
+
+MOST_SAMPLES = 200_000
+RADIANS_A_SAMPLE = 0.02
+"""Phase of the fastest mode between samples: a peak between two is missed by 5e-5 of it at most."""
+
+
+def fastest_mode(task: PointToPoint) -> float:
+    """Largest angular frequency of the plant at rest, over start and target [rad/s]."""
+    return max(_fastest(task.plant, task.start), _fastest(task.plant, task.target))
+
+
+@lru_cache(maxsize=256)
+@keep_interrupts()  # casadi loses a Ctrl-C
+def _fastest(plant: Plant, angle: float) -> float:
+    system = modal_system(plant, JointMotion(angle, 0.0, 0.0))
+    modes = plant.modes
+    state_matrix = np.zeros((2 * modes, 2 * modes))
+    state_matrix[:modes, modes:] = np.eye(modes)
+    state_matrix[modes:, :modes] = -_numbers(system.K)
+    state_matrix[modes:, modes:] = -_numbers(system.D)
+    return float(np.abs(np.linalg.eigvals(state_matrix)).max())
+
+
+def residual_samples(task: PointToPoint) -> int:
+    """Times in the residual window that resolve the plant's fastest mode at the target."""
+    fastest = _fastest(task.plant, task.target)
+    samples = task.residual_window * fastest / RADIANS_A_SAMPLE
+    if samples > MOST_SAMPLES:
+        raise ValueError(
+            f"residual window {task.residual_window:g} s is {samples * RADIANS_A_SAMPLE:.3g} "
+            "radians of the plant's fastest mode; give a shorter one"
+        )
+    return max(2, math.ceil(samples) + 1)  # both ends of the window at least
+
+
+def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[np.float64]:
+    """Matrix that turns the state at arrival into the tip's motion afterwards.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move; its target and residual window count.
+    samples : int, optional
+        Number of times in the window; `residual_samples` of the task by default.
+
+    Returns
+    -------
+    ndarray, shape (samples * tips, 2 * modes), read-only
+        L, with tip displacements [m] = L @ [W, W'] at times over the window. F1 of eq (11) is
+        the largest absolute entry of the product.
+    """
+    samples = samples or residual_samples(task)
+    return _residual_matrix(task.plant, task.target, task.residual_window, samples)
+
+
+@lru_cache(maxsize=256)
+@keep_interrupts()  # casadi loses a Ctrl-C
+def _residual_matrix(
+    plant: Plant, target: float, window: float, samples: int
+) -> NDArray[np.float64]:
+    modes = plant.modes
+    one = step(plant, [JointMotion(target, 0.0, 0.0)] * NODES, window / (samples - 1))
+    transition = _numbers(one.transition()[1]).T
+    tip_of_state = np.zeros((plant.tips, 2 * modes))
+    for mode in range(modes):
+        unit = [float(other == mode) for other in range(modes)]
+        tip_of_state[:, mode] = [float(tip) for tip in plant.tip_displacements(unit)]
+    rows = [tip_of_state]
+    for _ in range(samples - 1):
+        rows.append(rows[-1] @ transition)
+    matrix = np.vstack(rows)
+    matrix.setflags(write=False)
+    return matrix
+
+
+def residual_rows(task: PointToPoint) -> NDArray[np.float64]:
+    """The rows of `residual_matrix` that hold the largest displacement of some state; read-only."""
+    samples = residual_samples(task)
+    return _residual_rows(task.plant, task.target, task.residual_window, samples)
+
+
+@lru_cache(maxsize=256)
+def _residual_rows(plant: Plant, target: float, window: float, samples: int) -> NDArray[np.float64]:
+    rows = extreme_rows(_residual_matrix(plant, target, window, samples), plant.tips)
+    rows.setflags(write=False)
+    return rows
+
+
+def extreme_rows(matrix: NDArray[np.float64], tips: int) -> NDArray[np.float64]:
+    """The rows of a residual matrix that hold the largest displacement of some state.
+
+    The tip turns in a plane when one mode moves it: of its rows and their negatives those on the
+    convex hull suffice, about half a period of them.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (samples * tips, 2 * modes)
+        As by `residual_matrix`.
+    tips : int
+        Number of tips, whose rows alternate.
+
+    Returns
+    -------
+    ndarray, shape (rows, 2 * modes)
+        max |rows @ z| = max |matrix @ z| for every z.
+    """
+    kept: list[NDArray[np.float64]] = []
+    for tip in range(tips):
+        rows = matrix[tip::tips]
+        _, spread, axes = np.linalg.svd(rows, full_matrices=False)
+        if spread[2:].max(initial=0.0) <= 1e-12 * spread[0]:
+            rows = rows[_hull(rows @ axes[:2].T)]
+        kept.append(rows)
+    return np.vstack(kept)
+
+
+def _hull(points: NDArray[np.float64]) -> list[int]:
+    """Indices of points in the plane that lie, or whose negatives lie, on their common hull."""
+    both = np.vstack([points, -points])
+    order = np.lexsort(both.T[::-1])
+    corners: set[int] = set()
+    for direction in (order, order[::-1]):  # Andrew's monotone chain: lower hull, then upper
+        chain: list[int] = []
+        for i in direction.tolist():
+            while len(chain) > 1 and _left_turn(both[chain[-2]], both[chain[-1]], both[i]) <= 0:
+                chain.pop()
+            chain.append(i)
+        corners.update(index % len(points) for index in chain)
+    return sorted(corners)
+
+
+def _left_turn(a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]) -> float:
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+
+
+def _numbers(entries: list[list[float]]) -> NDArray[np.float64]:
+    """Nested casadi or Python numbers as an array."""
+    return np.array([[float(ca.DM(entry)) for entry in row] for row in entries])

@@ -1,0 +1,237 @@
+"""The one simulation of a plant along a joint profile, as casadi expressions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike
+
+from models import Expression, JointMotion, Plant
+from ocp.base.checks import whole
+from ocp.base.interrupts import keep_interrupts
+from ocp.profiles.joint_profile import JointProfile
+from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NodeState, Step, mesh, step
+from ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
+from ocp.simulation.residual import fastest_mode, residual_matrix
+from ocp.task.point_to_point import PointToPoint
+
+MOST_STEPS = 20_000
+LEAST_STEPS = 140
+"""Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
+
+
+@dataclass(frozen=True)
+class SymbolicRollout:
+    """A simulation as expressions: one row a candidate, one column a step.
+
+    Attributes
+    ----------
+    joints : list of JointMotion
+        The joint at each Gauss node.
+    states : list of NodeState
+        The modes at each Gauss node.
+    torque : list of Expression
+        Joint torque at each Gauss node [N m].
+    arrival : Expression
+        W (m) and then W' (m/s) at arrival, one row a candidate.
+    h : Expression
+        Length of every step [s].
+    """
+
+    joints: list[JointMotion]
+    states: list[NodeState]
+    torque: list[Expression]
+    arrival: Expression
+    h: Expression
+
+    @property
+    def power(self) -> list[Expression]:
+        """Mechanical power of the joint at each Gauss node [W]."""
+        return [
+            torque * joint.speed for torque, joint in zip(self.torque, self.joints, strict=True)
+        ]
+
+    @property
+    def energy(self) -> Expression:
+        """F2 of eq (11) [J], one row a candidate."""
+        power = self.power
+        at_nodes = ca.horzcat(*power)
+        cubic, quartic = (at_nodes @ weights for weights in beyond_quadratic(power[0].shape[1]))
+        return resolved_energy(power, self.h, cubic, quartic)
+
+
+def symbolic_rollout(
+    plant: Plant,
+    profile: JointProfile,
+    coefficients: Sequence[Expression],
+    move: Sequence[Expression],
+    steps: int,
+    candidates: int = 1,
+) -> SymbolicRollout:
+    """Simulate the modes from rest along the profile, with a fixed number of steps.
+
+    Parameters
+    ----------
+    plant : Plant
+        What moves.
+    profile : JointProfile
+        How the joint moves.
+    coefficients : sequence of Expression
+        The profile's coefficients; each of shape (candidates, steps), or a scalar.
+    move : sequence of Expression
+        start [rad], target [rad], duration [s]; scalars.
+    steps : int
+        Number of steps.
+    candidates : int
+        Number of rows.
+
+    Returns
+    -------
+    SymbolicRollout
+        Every joint, mode and torque at the Gauss nodes, and the state at arrival.
+    """
+    start, target, duration = move
+    begin, length = mesh(ca.repmat(ca.DM(np.arange(steps)).T, candidates, 1), steps)
+    h = duration * length
+    joints = [
+        profile.motion(coefficients, begin + node * length, start, target, duration)
+        for node in GAUSS_NODES
+    ]
+    steps_at_once = step(plant, joints, h)
+    W, dW, arrival = _march(steps_at_once, candidates, steps)
+    ddW = steps_at_once.accelerations(W, dW)
+    states = steps_at_once.nodes(W, dW, ddW)
+    torque = [
+        plant.torque(joint, node.W, node.dW, node.ddW)
+        for joint, node in zip(joints, states, strict=True)
+    ]
+    return SymbolicRollout(joints, states, torque, arrival, h)
+
+
+def _march(
+    batch: Step, candidates: int, steps: int
+) -> tuple[list[Expression], list[Expression], Expression]:
+    """States before every step (candidates, steps), by mode, and the state at arrival.
+
+    Only this recursion is sequential: everything else is computed for all steps at once.
+    """
+    modes, size = batch.modes, 2 * batch.modes
+    constant, columns = batch.transition()
+    offsets = [ca.horzsplit(row, 1) for row in constant]
+    gains = [[ca.horzsplit(entry, 1) for entry in column] for column in columns]
+    state: list[Expression] = [ca.DM.zeros(candidates, 1)] * size
+    before: list[list[Expression]] = [[] for _ in range(size)]
+    for k in range(steps):
+        for row in range(size):
+            before[row].append(state[row])
+        state = [
+            offsets[row][k] + sum(gains[column][row][k] * state[column] for column in range(size))
+            for row in range(size)
+        ]
+    rows = [ca.horzcat(*entry) for entry in before]
+    return rows[:modes], rows[modes:], ca.horzcat(*state)
+
+
+def default_steps(task: PointToPoint, least: int = LEAST_STEPS) -> int:
+    """Steps that resolve the profile (`least`) and the plant's fastest mode (2 a radian)."""
+    radians = fastest_mode(task) * task.duration
+    if 2 * radians > MOST_STEPS:
+        raise ValueError(
+            f"duration {task.duration:g} s is {radians:.3g} radians of the plant's fastest mode; "
+            f"quietarm resolves up to {MOST_STEPS // 2}: give a shorter duration"
+        )
+    return max(least, math.ceil(2 * radians))
+
+
+@lru_cache(maxsize=32)
+def _compiled(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
+    """(coefficients, move) -> samples at the nodes in order of time, arrival, energy, net work."""
+    coefficients, move = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
+    rollout = symbolic_rollout(
+        plant, profile, ca.vertsplit(coefficients), ca.vertsplit(move), steps
+    )
+
+    def in_time(at_nodes: Sequence[Expression]) -> Expression:
+        return ca.vec(ca.vertcat(*at_nodes))
+
+    tips = [plant.tip_displacements(state.W) for state in rollout.states]
+    net_work = ca.sum2(
+        rollout.h * sum(weight * p for weight, p in zip(GAUSS_WEIGHTS, rollout.power, strict=True))
+    )
+    outputs = [
+        ca.horzcat(*(in_time([joint[i] for joint in rollout.joints]) for i in range(3))),
+        ca.horzcat(*(in_time([tip[i] for tip in tips]) for i in range(plant.tips))),
+        in_time(rollout.torque),
+        rollout.arrival,
+        rollout.energy,
+        net_work,
+    ]
+    return ca.Function("rollout", [coefficients, move], outputs)
+
+
+@dataclass(frozen=True)
+class Rollout:
+    """What one simulation with fixed steps gives.
+
+    Attributes
+    ----------
+    motion : Motion
+        Residual, energy and diagnostics; the peaks are over the nodes.
+    arrival : tuple of float
+        W (m) and then W' (m/s) at arrival.
+    steps : int
+        Number of steps.
+    """
+
+    motion: Motion
+    arrival: tuple[float, ...]
+    steps: int
+
+
+@keep_interrupts()  # casadi loses a Ctrl-C
+def rollout(
+    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, steps: int | None = None
+) -> Rollout:
+    """Simulate a task along one profile with fixed steps.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    coefficients : array_like, shape (profile.size,)
+        The profile's coefficients.
+    steps : int, optional
+        Number of steps; `default_steps` of the task by default.
+
+    Returns
+    -------
+    Rollout
+        Residual, energy, diagnostics and the state at arrival.
+
+    Raises
+    ------
+    ValueError
+        When the coefficients do not fit the profile.
+    """
+    steps = default_steps(task) if steps is None else whole("steps", steps, 1)
+    function = _compiled(task.plant, profile, steps)
+    values = function(ca.DM(profile.checked(coefficients)), ca.DM(task.move))
+    joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
+    residual = float(np.abs(residual_matrix(task) @ arrival.ravel()).max())
+    motion = Motion.from_samples(
+        task,
+        joint,
+        tips,
+        torque.ravel(),
+        residual=residual,
+        energy=energy.item(),
+        net_work=net_work.item(),
+    )
+    return Rollout(motion, tuple(arrival.ravel().tolist()), steps)

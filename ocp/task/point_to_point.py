@@ -1,0 +1,105 @@
+"""What is asked: a move from one joint angle to another in a given time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from models import Plant
+from ocp.base.checks import finite, positive
+
+LIMITS: Mapping[str, str] = {
+    "torque_limit": "N m",
+    "speed_limit": "rad/s",
+    "acceleration_limit": "rad/s^2",
+    "deflection_limit": "m",
+}
+"""The limits that a task may set, with their units."""
+MOST_ANGLE, LEAST_DURATION, MOST_DURATION = 1e6, 1e-6, 1e6
+"""Beyond these [rad, s, s] no joint moves, and double precision does not follow."""
+
+
+@dataclass(frozen=True)
+class PointToPoint:
+    """A point-to-point move of a plant's joint.
+
+    Parameters
+    ----------
+    plant : Plant
+        What moves.
+    target : float
+        Joint angle at the end, theta_E [rad].
+    duration : float
+        Travelling time, T_E [s].
+    start : float, optional
+        Joint angle at the beginning, theta_S [rad].
+    torque_limit, speed_limit, acceleration_limit : float, optional
+        Largest absolute joint torque [N m], speed [rad/s], acceleration [rad/s^2] on the way.
+    deflection_limit : float, optional
+        Largest absolute tip displacement on the way [m].
+    residual_window : float, optional
+        How long after arrival the residual vibration is watched [s]; eq (11) has 1 s.
+
+    Raises
+    ------
+    ValueError
+        When a value is out of range, or the plant breaks its contract.
+    """
+
+    plant: Plant
+    target: float
+    duration: float
+    start: float = 0.0
+    torque_limit: float | None = None
+    speed_limit: float | None = None
+    acceleration_limit: float | None = None
+    deflection_limit: float | None = None
+    residual_window: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.plant, Plant):
+            raise ValueError(f"plant is {self.plant!r}; give a Plant, as SingleLinkManipulator()")
+        self.plant.validate()
+        for name in ("start", "target"):
+            angle = finite(name, getattr(self, name), "rad")
+            if abs(angle) > MOST_ANGLE:
+                raise ValueError(
+                    f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
+                )
+            self._keep(name, angle)
+        for name in ("duration", "residual_window"):
+            self._keep(name, positive(name.replace("_", " "), getattr(self, name), "s"))
+        for name, unit in LIMITS.items():
+            if getattr(self, name) is not None:
+                self._keep(name, positive(name.replace("_", " "), getattr(self, name), unit))
+        if not LEAST_DURATION <= self.duration <= MOST_DURATION:
+            raise ValueError(
+                f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
+            )
+        if self.target == self.start:
+            raise ValueError(
+                f"target equals start ({self.target:g} rad): there is no move; change one of them"
+            )
+
+    def _keep(self, name: str, value: float) -> None:
+        object.__setattr__(self, name, value)
+
+    @property
+    def span(self) -> float:
+        """Target - start [rad]."""
+        return self.target - self.start
+
+    @property
+    def move(self) -> tuple[float, float, float]:
+        """(start, target, duration): the parameters of every compiled function."""
+        return (self.start, self.target, self.duration)
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """The limits that are set, by name of the quantity: torque, speed, ..."""
+        set_limits = {name: getattr(self, name) for name in LIMITS}
+        return {
+            name.removesuffix("_limit"): value
+            for name, value in set_limits.items()
+            if value is not None
+        }

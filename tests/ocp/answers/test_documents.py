@@ -1,0 +1,260 @@
+"""Files that are not plans: each ends in one line that names the file and what is wrong."""
+
+import json
+import math
+import re
+from dataclasses import replace
+
+import pytest
+
+from ocp import (
+    MAX_TERMS,
+    FileFormatError,
+    Plan,
+    PointToPoint,
+    QuietarmError,
+    evaluate_coefficients,
+    plan_move,
+)
+from ocp.answers.documents import (
+    read_document,
+    task_from_document,
+    task_to_document,
+    write_document,
+)
+
+
+@pytest.fixture(scope="module")
+def whole(tasks):
+    """The document of a plan with a limit."""
+    task = replace(tasks["single link"], torque_limit=0.5)
+    plan = evaluate_coefficients(task, [0.01, -0.1])
+    return json.dumps({"format": "quietarm-plan", "version": 1, **plan.to_document()})
+
+
+@pytest.fixture
+def refused(tmp_path):
+    """The message of loading a file of this content: one line that names the file."""
+
+    def load(content):
+        path = tmp_path / "some.json"
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        with pytest.raises(FileFormatError) as error:
+            Plan.load(path)
+        message = str(error.value)
+        assert "\n" not in message
+        assert message.startswith(f"{path} ")
+        return message.removeprefix(f"{path} ")
+
+    return load
+
+
+def _changed(whole, *keys, value):
+    """The document with one entry changed."""
+    document = json.loads(whole)
+    inner = document
+    for key in keys[:-1]:
+        inner = inner[key]
+    inner[keys[-1]] = value
+    return json.dumps(document)
+
+
+def test_the_whole_document_loads(whole, tmp_path):
+    # Else the tests below would find nothing.
+    (tmp_path / "whole.json").write_text(whole)
+    plan = Plan.load(tmp_path / "whole.json")
+    assert plan.coefficients == (0.01, -0.1)
+    assert plan.task.limits == {"torque": 0.5}
+
+
+def test_a_file_error_is_quietarms_own_and_a_value_error():
+    assert issubclass(FileFormatError, QuietarmError)
+    assert issubclass(FileFormatError, ValueError)
+
+
+# -- not JSON --
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.99])
+def test_a_truncated_file_is_not_whole(whole, refused, share):
+    assert "not whole, valid JSON" in refused(whole[: int(share * len(whole))])
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        pytest.param("a table: t_s, theta_rad\n", id="text"),
+        pytest.param(b"\x89PNG\r\n\x1a\n\x00\xff", id="binary"),
+        pytest.param("[" * 100_000, id="deep"),
+        pytest.param('{"format": "quietarm-plan", "version": 1,}', id="comma"),
+    ],
+)
+def test_what_is_not_json_is_not_a_plan(refused, content):
+    assert "is not a plan" in refused(content)
+
+
+@pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity"])
+@pytest.mark.parametrize("key", ["energy", "duration", "coefficients"])
+def test_what_json_does_not_count_as_a_number_is_refused(whole, refused, key, number):
+    value = [0.5, 0.5] if key == "coefficients" else 0.5
+    content = _changed(whole, key, value=value).replace(f'"{key}": [0.5', f'"{key}": [{number}')
+    content = content.replace(f'"{key}": 0.5', f'"{key}": {number}')
+    assert number in content
+    refused(content)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(FileFormatError, match=r"none\.json cannot be read: no such file"):
+        Plan.load(tmp_path / "none.json")
+
+
+def test_a_folder_is_not_a_plan(tmp_path):
+    with pytest.raises(FileFormatError, match="cannot be read: is a directory"):
+        Plan.load(tmp_path)
+
+
+# -- not a plan --
+
+
+@pytest.mark.parametrize("content", ["[]", "1", "null", "{}", '"quietarm-plan"', "[1, 2]"])
+def test_json_without_a_format_is_not_a_plan(refused, content):
+    assert "no quietarm format" in refused(content)
+
+
+@pytest.mark.parametrize("name", ["quietarm-front", "other", 1, True])
+def test_another_format_is_named(whole, refused, name):
+    assert repr(name) in refused(_changed(whole, "format", value=name))
+
+
+@pytest.mark.parametrize("version", [2, 10, 10**30])
+def test_a_newer_version_is_named_with_the_remedy(whole, refused, version):
+    message = refused(_changed(whole, "version", value=version))
+    assert f"version {version}" in message
+    assert "newer quietarm" in message
+
+
+@pytest.mark.parametrize("version", [0, -1, 1.5, "1", None, True, [1]])
+def test_a_version_that_is_none_is_named(whole, refused, version):
+    assert f"version is {version!r}" in refused(_changed(whole, "version", value=version))
+
+
+# -- not whole, or with a wrong entry --
+
+
+KEPT = [
+    ("plant",), ("plant_parameters",), ("start",), ("target",), ("duration",), ("residual_window",),
+    ("limits",), ("profile",), ("profile", "name"), ("coefficients",), ("residual",), ("energy",),
+    ("diagnostics",), ("diagnostics", "net_work"), ("diagnostics", "peak_torque"),
+    ("diagnostics", "peak_speed"), ("diagnostics", "peak_acceleration"),
+    ("diagnostics", "peak_deflection"), ("diagnostics", "overshoot"), ("status",),
+    ("verification",), ("verification", "steps"), ("verification", "fixed_step_energy"),
+    ("verification", "energy_difference"), ("provenance",), ("provenance", "method"),
+    ("provenance", "settings"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("keys", KEPT, ids="/".join)
+def test_a_missing_entry_is_named(whole, refused, keys):
+    document = json.loads(whole)
+    inner = document
+    for key in keys[:-1]:
+        inner = inner[key]
+    del inner[keys[-1]]
+    assert keys[-1] in refused(json.dumps(document))
+
+
+@pytest.mark.parametrize("keys", [k for k in KEPT if k[-1] != "method"], ids="/".join)
+def test_an_entry_of_another_kind_is_refused(whole, refused, keys):
+    refused(_changed(whole, *keys, value=[[]]))
+
+
+NUMBERS = [
+    ("duration",), ("plant_parameters", "omega"), ("energy",), ("diagnostics", "net_work"),
+    ("verification", "energy_difference"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("keys", [*NUMBERS, ("verification", "steps")], ids="/".join)
+@pytest.mark.parametrize("value", ["0.5", "half", True, None], ids=repr)
+def test_what_is_not_a_number_is_refused(whole, refused, keys, value):
+    refused(_changed(whole, *keys, value=value))
+
+
+@pytest.mark.parametrize("keys", [*NUMBERS, ("coefficients",)], ids="/".join)
+@pytest.mark.parametrize("number", ["1e999", "1" + "0" * 400], ids=["1e999", "10**400"])
+def test_a_number_beyond_double_precision_is_refused(whole, refused, keys, number):
+    value = [0.125, "HERE"] if keys == ("coefficients",) else "HERE"
+    refused(_changed(whole, *keys, value=value).replace('"HERE"', number))
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "says"),
+    [
+        (("plant",), "rocket", "'rocket' is not known.*single-link"),
+        (("profile", "name"), "spline", "profile 'spline' is not known"),
+        (("profile", "terms"), MAX_TERMS + 1, f"terms is {MAX_TERMS + 1}"),
+        (("profile", "terms"), -1, "terms is -1"),
+        (("profile", "terms"), 3, "got 2 coefficients for a profile of 3"),
+        (("coefficients",), [0.1], "got 1 coefficients"),
+        (("coefficients",), [0.1, None], "coefficient 2"),
+        (("duration",), 0, "duration is 0"),
+        (("duration",), -0.8, "duration is -0.8"),
+        (("target",), 0.0, "target equals start"),
+        (("residual_window",), 0.0, "residual window is 0"),
+        (("limits", "torque"), -1.0, "torque limit is -1"),
+        (("limits",), {"noise": 1.0}, "limit 'noise"),
+        (("status",), "splendid", "'splendid'"),
+        (("plant_parameters", "omega"), "fast", "omega is .*fast"),
+        (("plant_parameters",), {"mass": 1.0}, "mass"),
+        (("provenance",), {"speed": 0}, "'(method|settings)' is missing"),
+        (("verification", "steps"), 1.5, "steps is 1.5"),
+        (("energy",), "much", "energy is 'much'"),
+    ],
+)
+def test_a_wrong_entry_is_named_with_its_value(whole, refused, keys, value, says):
+    assert re.search(says, refused(_changed(whole, *keys, value=value)))
+
+
+def test_a_users_plant_must_be_imported_first(whole, refused):
+    assert "import the file that defines it" in refused(_changed(whole, "plant", value="mine"))
+
+
+# -- any document --
+
+
+def test_a_document_reads_as_it_was_written(tmp_path):
+    path = tmp_path / "some.json"
+    content = {"numbers": [0.1, 1e-300, -0.0], "text": "Grüße", "nothing": None}
+    write_document(path, "quietarm-some", 3, content)
+    expected = {"format": "quietarm-some", "version": 3, **content}
+    for version in (3, 4):  # an older version is read too
+        assert read_document(path, "quietarm-some", version) == expected
+    with pytest.raises(FileFormatError, match="version 3 of the some format"):
+        read_document(path, "quietarm-some", 2)
+
+
+def test_a_document_that_json_cannot_hold_leaves_no_file(tmp_path):
+    with pytest.raises(ValueError, match="JSON"):
+        write_document(tmp_path / "some.json", "quietarm-some", 1, {"number": math.nan})
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+def test_a_task_is_the_same_from_its_document(tasks, name):
+    task = replace(tasks[name], start=-0.3, speed_limit=9.0, deflection_limit=0.2)
+    document = json.loads(json.dumps(task_to_document(task)))
+    assert task_from_document(document) == task
+
+
+def test_changed_parameters_of_a_plant_are_kept(tasks):
+    plant = replace(tasks["arm"].plant, omega=8.0, phi=1.0)
+    document = json.loads(json.dumps(task_to_document(PointToPoint(plant, 1.0, 0.8))))
+    assert task_from_document(document).plant == plant
+
+
+def test_a_loaded_task_plans_the_same_move(tasks, solved, tmp_path):
+    plan = solved(tasks["arm"], 4)
+    plan.save(tmp_path / "plan.json")
+    loaded = Plan.load(tmp_path / "plan.json")
+    again = plan_move(loaded.task, loaded.profile, **loaded.provenance.settings)
+    assert again == plan

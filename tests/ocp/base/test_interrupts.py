@@ -1,0 +1,155 @@
+"""Ctrl-C during casadi's own loops is not lost."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from models import ArmOnFlexibleLink
+from ocp import CycloidPolynomial, PointToPoint, rollout
+from ocp.base.interrupts import defer_interrupts, keep_interrupts, note_interrupts
+from ocp.simulation import collocation, residual
+
+ROOT = Path(__file__).parents[3]
+
+
+def _swallow_ctrl_c():
+    """What casadi does: Ctrl-C comes, and is lost."""
+    with contextlib.suppress(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(1.0)  # Python runs the handler at the next opportunity, at once
+
+
+def test_a_swallowed_ctrl_c_comes_after_the_block():
+    reached = []
+
+    def work():
+        with keep_interrupts():
+            _swallow_ctrl_c()
+            reached.append("the end of the block")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert reached
+
+
+def test_an_error_that_a_swallowed_ctrl_c_causes_is_not_what_one_sees():
+    # casadi returns nothing where a value should be, and an AttributeError follows
+    def work():
+        with keep_interrupts():
+            _swallow_ctrl_c()
+            raise AttributeError("'NoneType' object has no attribute 'T'")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    with pytest.raises(AttributeError), keep_interrupts():
+        raise AttributeError
+
+
+def test_ctrl_c_while_a_rollout_is_built_is_not_lost(monkeypatch):
+    built = collocation.modal_system
+
+    def interrupted(*arguments):
+        _swallow_ctrl_c()
+        return built(*arguments)
+
+    monkeypatch.setattr(collocation, "modal_system", interrupted)
+    monkeypatch.setattr(residual, "modal_system", interrupted)
+    task = PointToPoint(ArmOnFlexibleLink(), 1.2345, 0.8)  # a target of no other test
+    with pytest.raises(KeyboardInterrupt):
+        rollout(task, CycloidPolynomial(3), [0.1, 0.0, 0.0])
+
+
+def test_the_users_handler_is_back_after_the_block():
+    before = signal.getsignal(signal.SIGINT)
+    with contextlib.suppress(KeyboardInterrupt), keep_interrupts():
+        assert signal.getsignal(signal.SIGINT) is not before
+        _swallow_ctrl_c()
+    assert signal.getsignal(signal.SIGINT) is before
+    with contextlib.suppress(RuntimeError), keep_interrupts():
+        raise RuntimeError
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_without_ctrl_c_nothing_happens():
+    with keep_interrupts():
+        value = 1
+    assert value == 1
+
+
+@pytest.mark.parametrize("times", [0, 1, 3])
+def test_noted_interrupts_are_told_and_end_nothing(times):
+    before = signal.getsignal(signal.SIGINT)
+    with note_interrupts() as interrupts:
+        for _ in range(times):
+            signal.raise_signal(signal.SIGINT)
+        with keep_interrupts():  # inside, it leaves them to the outer block
+            value = 1
+    assert value == 1
+    assert interrupts == [signal.SIGINT] * times
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_deferred_interrupts_come_after_the_block():
+    reached = []
+
+    def work():
+        with defer_interrupts():
+            signal.raise_signal(signal.SIGINT)
+            reached.append("the end of the block")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert reached
+
+
+def test_errors_of_the_block_pass():
+    with pytest.raises(ZeroDivisionError), keep_interrupts():
+        _ = 1 / 0
+
+
+def test_other_threads_leave_signals_alone():
+    seen = []
+
+    def work():
+        with keep_interrupts():
+            seen.append(signal.getsignal(signal.SIGINT))
+
+    before = signal.getsignal(signal.SIGINT)
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert seen == [before]
+
+
+def test_ctrl_c_ends_a_solve():
+    # A thousand starts: they do not end before the signal. Where the machine is so slow that
+    # the first has not begun by then, Ctrl-C ends the call all the same.
+    script = (
+        "import math, ocp, models\n"
+        "task = ocp.PointToPoint(models.SingleLinkManipulator(), math.pi / 6, 0.8)\n"
+        "try:\n"
+        "    print('begun', flush=True)\n"
+        "    ocp.plan_move(task, ocp.CycloidPolynomial(12), starts=1000)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('stopped', flush=True)\n"
+    )
+    run = subprocess.Popen(
+        [sys.executable, "-c", script], cwd=ROOT, stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert run.stdout.readline() == "begun\n"
+        time.sleep(0.7)
+        run.send_signal(signal.SIGINT)
+        out, _ = run.communicate(timeout=600)
+    finally:
+        run.kill()
+        run.stdout.close()
+    assert out == "stopped\n"
+    assert run.returncode == 0

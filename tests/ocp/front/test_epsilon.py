@@ -1,0 +1,318 @@
+"""The front by epsilon-constraint: its ends, its spacing, and that no point could be cheaper."""
+
+import math
+import multiprocessing
+import os
+import signal
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import (
+    CycloidPolynomial,
+    FailedPoint,
+    Front,
+    InfeasibleTaskError,
+    PointToPoint,
+    epsilon_front,
+    plan_move,
+    reference_corner,
+    resimulate,
+    weighted_front,
+)
+from ocp.answers.provenance import SolveSettings
+from ocp.base.status import SolveStatus
+from ocp.front.epsilon import _Stretch
+from ocp.front.sweep import Sweep
+from ocp.plan.solver import first_steps
+from ocp.plan.verification import STILL
+from ocp.program.transcription import NonlinearProgram
+
+POINTS = 12
+CASES = {
+    "arm": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
+    "single link": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request):
+    task, bound = CASES[request.param]
+    return task, bound, epsilon_front(task, bound=bound, points=POINTS)
+
+
+def test_the_ends_are_the_plans_of_least_energy(case):
+    # plan_move starts on its own, four times at either end
+    task, bound, front = case
+    still = plan_move(task, bound=bound)
+    free = plan_move(task, bound=bound, residual_limit=1.0)
+    assert front.stillest().residual < STILL
+    assert front.stillest().energy == pytest.approx(still.energy, rel=1e-6)
+    assert front.cheapest().energy == pytest.approx(free.energy, rel=1e-6)
+    assert front.cheapest().residual == pytest.approx(free.residual, rel=1e-3)
+
+
+def test_no_point_is_dearer_than_a_plan_at_its_residual(case):
+    task, bound, front = case
+    for point in front.points[2:-1:3]:
+        plan = plan_move(task, bound=bound, residual_limit=point.residual)
+        assert point.energy <= plan.energy * (1 + 1e-4)  # README, 'How exact'
+        assert point.energy == pytest.approx(plan.energy, rel=2e-3)
+
+
+def test_points_are_even_in_both_objectives(case):
+    _, _, front = case
+    assert len(front.points) == POINTS
+    steps = np.hypot(
+        np.diff(front.residuals) / np.ptp(front.residuals),
+        np.diff(front.energies) / np.ptp(front.energies),
+    )
+    assert steps.max() < 1.5 * steps.mean()
+    assert steps.min() > 0.5 * steps.mean()
+
+
+def test_every_point_has_the_figures_of_the_independent_integrator(case):
+    task, bound, front = case
+    for point in front.points:
+        motion = resimulate(task, front.profile, point.coefficients)
+        assert (point.residual, point.energy) == (motion.residual, motion.energy)
+        assert np.abs(point.coefficients).max() <= bound
+
+
+def test_a_front_says_where_it_comes_from(case, tmp_path):
+    task, bound, front = case
+    assert (front.method, front.complete, front.failures) == ("epsilon", True, ())
+    asked, steps = dict(front.settings), front.settings["steps"]
+    assert asked == {"bound": bound, "points": POINTS, "starts": 4, "steps": steps}
+    # The first steps, doubled while the independent integrator disagrees.
+    assert steps in [first_steps(task, front.profile, SolveSettings()) * 2**k for k in range(4)]
+    assert front.reference == reference_corner(task)
+    assert front.evaluations > POINTS  # iterations: several a point
+    front.save(tmp_path / "front.json")
+    assert Front.load(tmp_path / "front.json") == front
+
+
+def test_its_evaluations_are_all_iterations_of_the_solver(monkeypatch):
+    # counted where the solver is run: the ends' four starts each, scouts, sweeps, verification
+    counted, solve = [], NonlinearProgram.solve
+
+    def counting(self, *arguments):
+        stopped = solve(self, *arguments)
+        counted.append(stopped[2])
+        return stopped
+
+    monkeypatch.setattr(NonlinearProgram, "solve", counting)
+    front = epsilon_front(CASES["arm"][0], CycloidPolynomial(3), bound=0.5, points=4)
+    assert front.evaluations == sum(counted)
+
+
+def test_processes_find_the_same_front():
+    task, bound = CASES["arm"]
+    alone, shared = (
+        epsilon_front(task, CycloidPolynomial(3), bound=bound, points=6, workers=workers)
+        for workers in (1, 2)
+    )
+    np.testing.assert_allclose(shared.energies, alone.energies, rtol=1e-5)
+    np.testing.assert_allclose(shared.residuals, alone.residuals, rtol=1e-5, atol=STILL)
+
+
+def test_ctrl_c_ends_processes_soon_and_keeps_what_they_found():
+    task, bound = CASES["arm"]
+    sent = []
+
+    def interrupt(done, total):
+        if done >= 8 and not sent:
+            sent.append(done)
+            signal.raise_signal(signal.SIGINT)
+
+    front = epsilon_front(
+        task, CycloidPolynomial(3), bound=bound, points=5000, workers=2, report=interrupt
+    )
+    assert len(front.points) < 2500  # of 5000: it did not go on to the end
+    assert multiprocessing.active_children() == []
+    assert not front.complete
+    assert len(front.points) > 2  # more than the ends
+    for point in front.points[1:-1:5]:
+        motion = resimulate(task, front.profile, point.coefficients)
+        assert (point.residual, point.energy) == (motion.residual, motion.energy)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
+def test_a_process_that_dies_costs_its_own_stretch_only():
+    task, bound = CASES["arm"]
+    killed = []
+
+    def report(done, total):
+        children = multiprocessing.active_children()
+        if children and not killed:
+            child = min(children, key=lambda one: int(one.name.rpartition("-")[2]))
+            killed.append(child.pid)
+            os.kill(child.pid, signal.SIGKILL)
+
+    front = epsilon_front(
+        task, CycloidPolynomial(3), bound=bound, points=20, workers=2, report=report
+    )
+    assert len(killed) == 1
+    assert len(front.failures) == 9  # of 18 between the ends
+    for failure in front.failures:
+        # the first stretch begins at the cheap end
+        assert failure.asked["residual_limit"] > front.points[-2].residual
+        assert failure.reason == (
+            "its process died (killed by SIGKILL); where memory ran short, give fewer workers"
+        )
+    assert len(front.points) == 11
+
+
+def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
+    task, bound = CASES["arm"]
+    monkeypatch.setattr(Sweep, "checked", lambda self, found, asked, **_: FailedPoint(asked, "why"))
+    for method in (epsilon_front, weighted_front):
+        front = method(task, CycloidPolynomial(3), bound=bound, points=2)
+        assert (len(front.points), len(front.failures)) == (1, 1)
+        assert front.failures[0].asked["residual_limit"] > front.points[0].residual
+        front.save(tmp_path / "front.json")
+        assert Front.load(tmp_path / "front.json") == front
+
+
+def test_ctrl_c_while_points_are_checked_keeps_what_there_is_time_for(monkeypatch):
+    task, bound = CASES["arm"]
+    checked, began = Sweep.checked, []
+
+    def slow(self, found, asked):
+        if not began:
+            began.append(asked)
+            signal.raise_signal(signal.SIGINT)
+        time.sleep(0.25)
+        return checked(self, found, asked)
+
+    def first(self):
+        ends = whole(self)
+        monkeypatch.setattr(Sweep, "checked", slow)
+        return ends
+
+    whole = Sweep.ends
+    monkeypatch.setattr(Sweep, "ends", first)
+    front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=10)
+    assert not front.complete
+    assert 2 < len(front.points) < 8
+
+
+def test_limits_of_the_task_are_kept_along_the_front():
+    plant = ArmOnFlexibleLink()
+    free = epsilon_front(PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=4)
+    peak = min(
+        resimulate(free.task, free.profile, point.coefficients).peak_torque for point in free.points
+    )
+    task = PointToPoint(plant, math.pi / 2, 0.8, torque_limit=0.95 * peak)
+    front = epsilon_front(task, bound=0.5, points=4)
+    for point in front.points:
+        motion = resimulate(task, front.profile, point.coefficients)
+        assert motion.peak_torque <= task.torque_limit * 1.001
+    assert front.cheapest().energy > free.cheapest().energy
+
+
+def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
+    # One term has nothing left to arrive at rest with: two conditions, one coefficient.
+    task, profile = CASES["arm"][0], CycloidPolynomial(1)
+    front = epsilon_front(task, profile, points=5)
+    scan = [resimulate(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)]
+    stillest = front.stillest()
+    assert 0.9 * min(scan) < stillest.residual < 1.001 * min(scan)
+    assert len(front.points) > 2
+
+
+def test_an_impossible_task_is_refused():
+    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, torque_limit=1e-3)
+    with pytest.raises(InfeasibleTaskError, match=r"torque <= 0\.001 N m; feasible"):
+        epsilon_front(task, CycloidPolynomial(2), points=3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"points": 1}, "points is 1; give a whole number from 2 up"),
+        ({"workers": 0}, "workers is 0; give a whole number from 1 up"),
+        ({"bound": -1.0}, "bound on the coefficients is -1"),
+        ({"profile": CycloidPolynomial(0)}, "0 terms has nothing to choose"),
+    ],
+)
+def test_bad_input_is_refused(arguments, text):
+    with pytest.raises(ValueError, match=text):
+        epsilon_front(CASES["arm"][0], **arguments)
+
+
+def test_a_move_of_too_many_periods_is_refused():
+    task = PointToPoint(ArmOnFlexibleLink(), 1.0, 1000.0)
+    with pytest.raises(ValueError, match=r"duration is 1000 s, .* radians .* give a shorter"):
+        epsilon_front(task, points=3)
+
+
+def test_a_solve_that_fails_does_not_end_the_sweep(monkeypatch):
+    task, bound = CASES["arm"]
+    profile, whole = CycloidPolynomial(3), Sweep.solve
+    solved = []
+
+    def failing(self, guess, residual_limit=np.inf, **rest):
+        found = whole(self, guess, residual_limit, **rest)
+        if 4e-3 < residual_limit < 6e-3:
+            object.__setattr__(found, "status", SolveStatus.NUMERICAL_TROUBLE)
+        solved.append(residual_limit)
+        return found
+
+    monkeypatch.setattr(Sweep, "solve", failing)
+    front = epsilon_front(task, profile, bound=bound, points=8)
+    assert front.failed == len(front.failures) > 0
+    assert len(front.points) + front.failed == 8
+    for failure in front.failures:
+        assert 4e-3 < failure.asked["residual_limit"] < 6e-3
+        assert failure.reason == SolveStatus.NUMERICAL_TROUBLE.text
+    assert min(solved) < 4e-3 < 6e-3 < max(solved)
+
+
+def test_ctrl_c_keeps_what_was_found(monkeypatch):
+    task, bound = CASES["arm"]
+    calls = []
+
+    def interrupt(done, total):
+        calls.append((done, total))
+        if done == 4:
+            raise KeyboardInterrupt
+
+    front = epsilon_front(task, CycloidPolynomial(3), bound=bound, points=8, report=interrupt)
+    assert not front.complete
+    assert 3 <= len(front.points) < 8
+    assert calls[-1] == (4, 8)
+
+
+def test_what_one_sweep_misses_the_other_mends(monkeypatch):
+    # A sweep down that ends high at one limit: the sweep up finds better, and restarts agree.
+    task, bound = CASES["arm"]
+    profile = CycloidPolynomial(3)
+    expected = epsilon_front(task, profile, bound=bound, points=6)
+    attempt, spoilt = _Stretch._try, []
+
+    def spoil(self, i, guess, **rest):
+        found = attempt(self, i, guess, **rest)
+        if i == 2 and not spoilt:
+            spoilt.append(found)
+            object.__setattr__(found, "energy", found.energy * 1.05)
+        return found
+
+    monkeypatch.setattr(_Stretch, "_try", spoil)
+    front = epsilon_front(task, profile, bound=bound, points=6)
+    assert len(spoilt) == 1
+    np.testing.assert_allclose(front.energies, expected.energies, rtol=1e-6)
+
+
+def test_the_same_settings_give_the_same_front():
+    task, bound = CASES["arm"]
+    one, two = (epsilon_front(task, CycloidPolynomial(3), bound=bound, points=4) for _ in "12")
+    assert one == two
+
+
+def test_settings_of_a_sweep_reach_its_solves():
+    sweep = Sweep(CASES["arm"][0], CycloidPolynomial(3), SolveSettings(starts=3, steps=50))
+    assert (sweep.program.steps, len(sweep.guesses)) == (50, 3)

@@ -1,0 +1,187 @@
+"""Polishing: no point gets worse, each keeps its residual, and they land on the front."""
+
+import math
+import multiprocessing
+import os
+import signal
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models import ArmOnFlexibleLink
+from ocp import (
+    CycloidPolynomial,
+    Front,
+    FrontPoint,
+    PointToPoint,
+    epsilon_front,
+    non_dominated,
+    polish_front,
+    resimulate,
+)
+from ocp.answers.provenance import SolveSettings
+from ocp.base.status import SolveStatus
+from ocp.front.sweep import Sweep
+from ocp.plan.solver import first_steps
+
+TASK, BOUND, PROFILE = (
+    PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8),
+    0.5,
+    CycloidPolynomial(4),
+)
+
+
+@pytest.fixture(scope="module")
+def rough():
+    """A front of random coefficients, as a search that has hardly begun."""
+    random, points = np.random.default_rng(0), []
+    for coefficients in random.uniform(-BOUND, BOUND, (60, PROFILE.size)):
+        motion = resimulate(TASK, PROFILE, coefficients)
+        points.append(FrontPoint(tuple(coefficients.tolist()), motion.residual, motion.energy))
+    return Front(
+        task=TASK, profile=PROFILE, points=non_dominated(points), method="random",
+        settings={"bound": BOUND, "population": 60}, seed=0, reference=(0.015, 0.25),
+        evaluations=60, seconds=1.0,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def many(rough):
+    """The same, with points enough for a minute."""
+    first = rough.points[0]
+    points = [replace(first, energy=first.energy * (1 - i / 1e4), residual=first.residual * (1 + i))
+              for i in range(1000)]  # fmt: skip
+    return replace(rough, points=non_dominated(points))
+
+
+@pytest.fixture(scope="module")
+def polish(rough):
+    return polish_front(rough)
+
+
+def test_every_point_keeps_its_residual_and_costs_no_more(rough, polish):
+    assert len(polish.gains) == len(rough.points)
+    for point, gain in zip(rough.points, polish.gains, strict=True):
+        assert (gain.residual, gain.before) == (point.residual, point.energy)
+        assert gain.after <= gain.before
+        assert gain.share == pytest.approx(1 - gain.after / gain.before)
+    assert max(gain.share for gain in polish.gains) > 0.1  # these were random
+    assert max(polish.front.residuals) <= max(rough.residuals) * (1 + 1e-3)
+
+
+def test_the_points_land_on_the_front(polish):
+    whole = epsilon_front(TASK, PROFILE, bound=BOUND, points=20)
+    cheapest = [
+        min(p.energy for p in whole.points if p.residual <= point.residual)
+        for point in polish.front.points
+    ]
+    # the sweep's next point of smaller residual is dearer by up to a step of its front
+    step = -np.diff(whole.energies).min()
+    assert np.all(polish.front.energies < np.array(cheapest) * 1.002)
+    assert np.all(polish.front.energies > np.array(cheapest) - 1.01 * step)
+
+
+def test_the_figures_are_those_of_the_independent_integrator(polish):
+    for point in polish.front.points:
+        motion = resimulate(TASK, PROFILE, point.coefficients)
+        assert point.energy == pytest.approx(motion.energy, rel=1e-12)
+        assert np.abs(point.coefficients).max() <= BOUND
+
+
+def test_the_polished_front_says_where_it_comes_from(rough, polish):
+    front = polish.front
+    assert (front.method, front.seed, front.reference) == ("random, polished", 0, rough.reference)
+    steps = first_steps(TASK, PROFILE, SolveSettings())
+    assert front.settings == {"bound": BOUND, "population": 60, "steps": steps}
+    assert front.evaluations > rough.evaluations
+    assert front.seconds > rough.seconds
+
+
+def test_a_point_that_cannot_be_improved_stays(rough, monkeypatch):
+    whole = Sweep.solve
+
+    def failing(self, guess, residual_limit=np.inf, **rest):
+        found = whole(self, guess, residual_limit, **rest)
+        object.__setattr__(found, "status", SolveStatus.NUMERICAL_TROUBLE)
+        return found
+
+    monkeypatch.setattr(Sweep, "solve", failing)
+    polish = polish_front(rough)
+    assert polish.front.points == rough.points
+    assert len(polish.front.failures) == len(rough.points)
+    assert {gain.share for gain in polish.gains} == {0.0}
+
+
+def test_ctrl_c_keeps_what_was_improved(rough):
+    def interrupt(done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    polish = polish_front(rough, report=interrupt)
+    assert not polish.front.complete
+    assert len(polish.gains) == len(rough.points)
+    assert polish.gains[0].share > 0
+    assert [gain.tried for gain in polish.gains] == [i < 2 for i in range(len(rough.points))]
+    assert {gain.share for gain in polish.gains[2:]} == {0.0}
+
+
+def test_an_empty_front_is_refused(rough):
+    with pytest.raises(ValueError, match="front has no point"):
+        polish_front(replace(rough, points=()))
+
+
+# Processes
+
+
+def test_processes_find_the_same(rough, polish):
+    heard = []
+    shared = polish_front(rough, workers=2, report=lambda done, total: heard.append((done, total)))
+    assert shared == polish
+    assert {total for _, total in heard} == {len(rough.points)}
+    assert heard == sorted(heard)
+
+
+def test_ctrl_c_ends_processes_soon_and_keeps_what_was_improved(many):
+    sent = []
+
+    def interrupt(done, total):
+        if done >= 4 and not sent:
+            sent.append(done)
+            signal.raise_signal(signal.SIGINT)
+
+    polish = polish_front(many, workers=2, report=interrupt)
+    assert multiprocessing.active_children() == []
+    assert not polish.front.complete
+    tried = [gain.tried for gain in polish.gains]
+    assert 4 <= sum(tried) < len(tried)
+    assert all(gain.share == 0 for gain in polish.gains if not gain.tried)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
+def test_a_process_that_dies_costs_its_own_points_only(rough, polish):
+    killed = []
+
+    def report(done, total):
+        if not killed:
+            child = min(
+                multiprocessing.active_children(), key=lambda one: int(one.name.rpartition("-")[2])
+            )
+            killed.append(child.pid)
+            os.kill(child.pid, signal.SIGKILL)
+
+    found = polish_front(rough, workers=2, report=report)
+    assert len(killed) == 1
+    assert {failure.reason for failure in found.front.failures} == {
+        "its process died (killed by SIGKILL); where memory ran short, give fewer workers"
+    }
+    lost = [failure.asked["residual_limit"] for failure in found.front.failures]
+    assert lost == [point.residual for point in rough.points[::2]]
+    assert found.gains[1::2] == polish.gains[1::2]
+    assert {gain.share for gain in found.gains[::2]} == {0.0}
+
+
+def test_no_workers_are_refused(rough):
+    with pytest.raises(ValueError, match="workers is 0; give a whole number from 1 up"):
+        polish_front(rough, workers=0)

@@ -1,0 +1,138 @@
+"""The front by weighted sums: its points are on the front, its gaps where the front bends away."""
+
+import math
+
+import numpy as np
+import pytest
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import (
+    CycloidPolynomial,
+    PointToPoint,
+    SolveSettings,
+    epsilon_front,
+    resimulate,
+    weighted_front,
+)
+from ocp.base.status import SolveStatus
+from ocp.front.sweep import Sweep
+
+CASES = {
+    "arm": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
+    "single link": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
+}
+POINTS = 10
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request):
+    task, bound = CASES[request.param]
+    return task, bound, weighted_front(task, bound=bound, points=POINTS)
+
+
+def _scaled(front, others):
+    """Residual and energy of other points, scaled to the ends of a front."""
+    return np.column_stack([
+        (others.residuals - front.residuals[0]) / np.ptp(front.residuals),
+        (others.energies - front.energies[-1]) / np.ptp(front.energies),
+    ])  # fmt: skip
+
+
+def test_its_points_are_those_of_the_residual_limit(case):
+    # KKT: a minimum of a weighted sum is the least energy at its own residual
+    task, bound, front = case
+    assert len(front.points) == POINTS
+    for point in front.points[1:-1:3]:
+        sweep = Sweep(task, front.profile, SolveSettings(bound=bound))
+        at_limit = sweep.solve(np.array(point.coefficients), point.residual)
+        energy = resimulate(task, front.profile, at_limit.coefficients).energy
+        assert point.energy == pytest.approx(energy, rel=1e-4)
+
+
+def test_no_point_is_above_the_chord_of_its_neighbours(case):
+    _, _, front = case
+    r, e = _scaled(front, front).T
+    chord = e[:-2] + (e[2:] - e[:-2]) * (r[1:-1] - r[:-2]) / (r[2:] - r[:-2])
+    assert np.all(e[1:-1] <= chord + 1e-6)
+
+
+def test_gaps_are_where_the_front_is_above_its_chord():
+    # In a gap, the points by residual limit lie above the straight line between its ends.
+    task, bound = CASES["single link"]
+    weighted = weighted_front(task, bound=bound, points=POINTS)
+    (begin, end), *others = weighted.gaps
+    assert not others
+    whole = epsilon_front(task, bound=bound, points=20)
+    inside = (whole.residuals > begin + 1e-3) & (whole.residuals < end - 1e-3)
+    assert inside.sum() > 5
+    chord = np.interp(whole.residuals, weighted.residuals, weighted.energies)
+    assert np.all(whole.energies[inside] > chord[inside])
+
+
+def test_a_front_without_gaps_has_none():
+    task, bound = CASES["arm"]
+    front = weighted_front(task, bound=bound, points=POINTS)
+    assert front.gaps == ()
+    r, e = _scaled(front, front).T
+    assert np.hypot(np.diff(r), np.diff(e)).max() < 4 / POINTS
+
+
+def test_given_weights_are_used():
+    task, bound = CASES["arm"]
+    front = weighted_front(task, bound=bound, weights=[(1, 1), (1, 3), (0, 1), (2, 0)])
+    r, e = _scaled(front, front).T
+    assert len(front.points) == 4  # the ends, and one for each pair without a 0
+    middle = slice(1, -1)
+    for of_residual, of_energy in ((1, 1), (1, 3)):
+        values = of_residual * r + of_energy * e
+        assert values[middle].min() == pytest.approx(values.min(), abs=1e-6)
+
+
+def test_the_figures_are_those_of_the_independent_integrator(case):
+    task, bound, front = case
+    for point in front.points:
+        motion = resimulate(task, front.profile, point.coefficients)
+        assert (point.residual, point.energy) == (motion.residual, motion.energy)
+        assert np.abs(point.coefficients).max() <= bound
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"points": 1}, "points is 1"),
+        ({"weights": [(1.0, -2.0)]}, r"weights are 1 and -2; give none below 0"),
+        ({"weights": [(0.5, 0.5), (0, 0.0)]}, "both weights are 0"),
+        ({"weights": [(math.nan, 1.0)]}, "weight is nan"),
+        ({"weights": []}, "no weights are given"),
+    ],
+)
+def test_bad_input_is_refused(arguments, text):
+    with pytest.raises(ValueError, match=text):
+        weighted_front(CASES["arm"][0], **arguments)
+
+
+def test_a_solve_that_fails_is_kept_with_its_reason(monkeypatch):
+    task, bound = CASES["arm"]
+    whole = Sweep.solve
+
+    def failing(self, guess, residual_limit=np.inf, **rest):
+        found = whole(self, guess, residual_limit, **rest)
+        if 0.0 < found.peaks.get("residual", 0.0) < 8e-3:
+            object.__setattr__(found, "status", SolveStatus.ITERATION_LIMIT)
+        return found
+
+    monkeypatch.setattr(Sweep, "solve", failing)
+    front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=6)
+    assert front.failures
+    assert all(f.reason == SolveStatus.ITERATION_LIMIT.text for f in front.failures)
+    assert {*front.failures[0].asked} == {"residual_weight", "energy_weight"}
+
+
+def test_ctrl_c_keeps_what_was_found():
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    task, bound = CASES["arm"]
+    front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=6, report=interrupt)
+    assert not front.complete
+    assert len(front.points) == 3

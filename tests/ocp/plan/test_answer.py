@@ -1,0 +1,321 @@
+"""The answer a person keeps: figures, equality, files to load, tables to drive a joint with."""
+
+import csv
+import json
+import math
+from dataclasses import FrozenInstanceError, replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import (
+    MAX_TERMS,
+    CycloidPolynomial,
+    Motion,
+    Plan,
+    PointToPoint,
+    SolveStatus,
+    Verification,
+    evaluate_coefficients,
+    plan_move,
+    resimulate,
+    rollout,
+)
+from ocp.answers.provenance import Provenance
+
+# Table 1, N = 2.
+TWO_TERMS = [3.347e-3, -1.697e-1]
+
+
+@pytest.fixture(scope="module")
+def plan(tasks):
+    """The single link along the paper's two terms."""
+    return evaluate_coefficients(tasks["single link"], TWO_TERMS)
+
+
+@pytest.fixture(params=["single link", "arm", "two links"])
+def any_plan(request, tasks, solved):
+    return solved(tasks[request.param], 4)
+
+
+# -- given coefficients --
+
+
+def test_given_coefficients_are_evaluated_by_both_integrators(plan):
+    assert plan.motion == resimulate(plan.task, plan.profile, TWO_TERMS)
+    fixed = rollout(plan.task, plan.profile, TWO_TERMS)
+    check = plan.verification
+    assert (check.steps, check.fixed_step_energy) == (fixed.steps, fixed.motion.energy)
+    assert check.fixed_step_residual == fixed.motion.residual
+    assert check.energy_difference == fixed.motion.energy - plan.energy
+    assert check.residual_difference == fixed.motion.residual - plan.residual
+
+
+def test_given_coefficients_are_not_said_to_be_optimal(plan):
+    assert plan.status is SolveStatus.NOT_OPTIMISED
+    assert (plan.provenance.method, plan.provenance.settings) == ("given coefficients", {})
+
+
+def test_where_coefficients_come_from_can_be_kept(tasks, tmp_path):
+    origin = {"method": "a swarm", "settings": {"seed": 3, "rule": "2002", "bound": None}}
+    plan = evaluate_coefficients(tasks["arm"], [0.1], **origin)
+    assert plan.provenance.method == "a swarm"
+    assert plan.provenance.settings == origin["settings"]
+    plan.save(tmp_path / "plan.json")
+    assert Plan.load(tmp_path / "plan.json") == plan
+
+
+def test_no_coefficients_are_the_plain_cycloid(tasks):
+    plain = evaluate_coefficients(tasks["single link"], [])
+    assert plain.profile == CycloidPolynomial(0)
+    assert plain.energy == pytest.approx(0.09115, abs=0.5e-5)  # docs/physics.md
+
+
+def test_one_coefficient_needs_no_brackets(tasks):
+    assert evaluate_coefficients(tasks["arm"], 0.1).coefficients == (0.1,)
+
+
+@pytest.mark.parametrize(
+    "a", [[math.nan], [0.0, math.inf], [0.0] * (MAX_TERMS + 1), "ab", [[0.1], [0.1]]]
+)
+def test_coefficients_that_are_not_as_many_finite_numbers_as_may_be_are_refused(tasks, a):
+    too_many = f"terms is {MAX_TERMS + 1}"
+    with pytest.raises(ValueError, match=rf"coefficient|{too_many}|could not convert") as error:
+        evaluate_coefficients(tasks["arm"], a)
+    assert "\n" not in str(error.value)
+
+
+# -- a value --
+
+
+def test_figures_have_short_names(plan):
+    assert (plan.residual, plan.energy) == (plan.motion.residual, plan.motion.energy)
+
+
+def test_a_plan_cannot_be_changed(plan):
+    with pytest.raises(FrozenInstanceError):
+        plan.coefficients = ()
+
+
+def test_plans_compare_by_value_but_for_the_time_they_took(plan, tasks):
+    again = evaluate_coefficients(tasks["single link"], TWO_TERMS)
+    assert again == plan
+    assert replace(plan, provenance=replace(plan.provenance, seconds=99.0)) == plan
+    assert replace(plan, coefficients=(0.0, 0.0)) != plan
+
+
+def test_the_path_is_the_joints(plan):
+    assert plan.path(0.0) == 0.0
+    assert plan.path(0.8) == pytest.approx(math.pi / 6)
+    assert plan.path.coefficients == plan.coefficients
+
+
+def test_versions_and_time_are_kept(plan):
+    assert set(plan.provenance.versions) == {"quietarm", "casadi", "numpy", "python"}
+    assert plan.provenance.versions["numpy"] == np.__version__
+    assert plan.provenance.seconds > 0
+
+
+# -- saved and loaded --
+
+
+def test_a_saved_plan_loads_equal(any_plan, tmp_path):
+    any_plan.save(tmp_path / "plan.json")
+    loaded = Plan.load(tmp_path / "plan.json")
+    assert loaded == any_plan
+    assert loaded.provenance.seconds == any_plan.provenance.seconds
+    assert loaded.motion == resimulate(loaded.task, loaded.profile, loaded.coefficients)
+
+
+def test_a_file_has_the_keys_that_others_read(any_plan, tmp_path):
+    # SI units and radians; the residual is that of the tip.
+    any_plan.save(tmp_path / "plan.json")
+    document = json.loads((tmp_path / "plan.json").read_text())
+    assert document["coefficients"] == list(any_plan.coefficients)
+    assert document["residual"] == any_plan.residual
+    assert document["energy"] == any_plan.energy
+    assert document["plant"] == any_plan.task.plant.name
+    move = (document["start"], document["target"], document["duration"])
+    assert move == any_plan.task.move
+    assert (document["format"], document["version"]) == ("quietarm-plan", 1)
+
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+positive = st.floats(1e-6, 1e6)
+
+
+@st.composite
+def made_up_plans(draw):
+    """Plans of any numbers, as no solve gives them."""
+    plant_class = draw(st.sampled_from([SingleLinkManipulator, ArmOnFlexibleLink]))
+    limits = draw(st.dictionaries(st.sampled_from(["torque_limit", "speed_limit"]), positive))
+    task = PointToPoint(
+        plant_class(omega=draw(positive)),
+        start=draw(st.floats(-10, 0)),
+        target=draw(st.floats(0.1, 10)),
+        duration=draw(positive),
+        residual_window=draw(positive),
+        **limits,
+    )
+    coefficients = tuple(draw(st.lists(finite, max_size=20)))
+    words = st.dictionaries(st.text(), st.none() | finite | st.integers() | st.text())
+    return Plan(
+        task,
+        CycloidPolynomial(len(coefficients)),
+        coefficients,
+        Motion(*draw(st.lists(finite, min_size=8, max_size=8))),
+        draw(st.sampled_from(SolveStatus)),
+        Verification(draw(st.integers(1, 9999)), *draw(st.lists(finite, min_size=4, max_size=4))),
+        Provenance(draw(st.text()), draw(words), {"any": draw(st.text())}, 0.5),
+    )
+
+
+@settings(max_examples=50)
+@given(plan=made_up_plans())
+def test_any_plan_saves_and_loads_equal(tmp_path_factory, plan):
+    path = tmp_path_factory.mktemp("plans") / "plan.json"
+    plan.save(path)
+    assert Plan.load(path) == plan
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"seed": np.int64(3)},
+        {"starts": np.int64(2)},
+        {"steps": np.int32(80)},
+        {"bound": np.float32(0.5)},
+        {"bound": 1},
+        {"residual_limit": np.float32(1e-3)},
+        {"residual_limit": 0},
+    ],
+)
+def test_a_plan_of_numpys_numbers_saves_and_loads_equal(tasks, tmp_path, settings):
+    plan = plan_move(tasks["single link"], CycloidPolynomial(2), **{"starts": 1, **settings})
+    plan.save(tmp_path / "plan.json")
+    assert Plan.load(tmp_path / "plan.json") == plan
+
+
+def test_a_plan_replaces_an_older_file_whole(plan, tmp_path):
+    path = tmp_path / "plan.json"
+    path.write_text("x" * 100_000)
+    plan.save(path)
+    assert Plan.load(path) == plan
+    assert [entry.name for entry in tmp_path.iterdir()] == ["plan.json"]
+
+
+def test_a_plan_of_an_unknown_number_is_not_saved(plan, tmp_path):
+    # JSON has no NaN: better no file than one that cannot be read.
+    broken = replace(plan, motion=replace(plan.motion, energy=math.nan))
+    with pytest.raises(ValueError, match="JSON"):
+        broken.save(tmp_path / "plan.json")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("save", [Plan.save, Plan.save_csv])
+def test_where_a_plan_cannot_be_saved_is_named(plan, tmp_path, save):
+    with pytest.raises(ValueError, match=r"folder .*missing does not exist"):
+        save(plan, tmp_path / "missing" / "file")
+    with pytest.raises(ValueError, match="is a folder"):
+        save(plan, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+# -- tables --
+
+
+def _table(plan, path, *rate):
+    plan.save_csv(path, *rate)
+    with path.open(newline="") as file:
+        header, *rows = csv.reader(file)
+    return header, np.array(rows, dtype=float)
+
+
+def test_a_table_names_its_quantities_and_units(plan, tmp_path):
+    header, _ = _table(plan, tmp_path / "move.csv")
+    assert header == [
+        "t_s",
+        "theta_rad",
+        "dtheta_rad_s",
+        "ddtheta_rad_s2",
+        "tip_m",
+        "torque_Nm",
+        "power_W",
+    ]
+
+
+def test_two_tips_have_a_column_each(tasks, solved, tmp_path):
+    header, rows = _table(solved(tasks["two links"], 4), tmp_path / "move.csv", 100)
+    assert header[4:6] == ["tip_1_m", "tip_2_m"]
+    assert rows.shape == (91, 8)
+    assert np.abs(rows[-1, 4:6]).max() < 1e-7
+    assert np.abs(rows[:, 4] - rows[:, 5]).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("rate", "rows"),
+    # 0.8 s: as many ticks as begin before arrival, and one at or after it.
+    [((), 801), ((1000,), 801), ((100.0,), 81), ((333.3,), 268), ((7,), 7), ((1,), 2), ((0.1,), 2)],
+)
+def test_a_table_has_a_row_for_every_tick_up_to_arrival(plan, tmp_path, rate, rows):
+    _, table = _table(plan, tmp_path / "move.csv", *rate)
+    ticks = np.arange(rows) / (rate[0] if rate else 1000.0)
+    assert table[:, 0] == pytest.approx(ticks, rel=1e-9)
+    assert table[-1, 0] >= 0.8 - 1e-9
+    assert table[-2, 0] < 0.8
+
+
+@pytest.mark.parametrize("rate", [1000.0, 333.3, 1.0, 1e-3])
+def test_the_last_row_rests_at_the_target(plan, tmp_path, rate):
+    _, table = _table(plan, tmp_path / "move.csv", rate)
+    assert table[0, 1:5] == pytest.approx(np.zeros(4), abs=1e-12)
+    assert table[-1, 1:4] == pytest.approx([math.pi / 6, 0.0, 0.0], abs=1e-9)
+    assert table[-1, -1] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("duration", [1 - 0.9, 1.7 - 0.9, 0.1 + 0.2, 0.7 * 1.1])
+def test_a_duration_that_is_a_tick_but_for_rounding_ends_at_that_tick(tasks, tmp_path, duration):
+    plan = evaluate_coefficients(replace(tasks["arm"], duration=duration), [])
+    _, table = _table(plan, tmp_path / "move.csv", 1000)
+    assert len(table) == round(duration * 1000) + 1
+    assert table[-1, 1:4] == pytest.approx([math.pi / 2, 0.0, 0.0], abs=1e-9)
+
+
+def test_a_table_agrees_with_path_and_trajectory(any_plan, tmp_path):
+    _, table = _table(any_plan, tmp_path / "move.csv", 200)
+    t, digits = table[:, 0], 1e-9  # ten digits are written
+    for order in range(3):
+        expected = any_plan.path(t, order)
+        close = digits * max(np.abs(expected).max(), 1.0)
+        assert table[:, 1 + order] == pytest.approx(expected, abs=close)
+    sampled = any_plan.trajectory(t)
+    tips = sampled.tips.shape[1]
+    assert table[:, 4 : 4 + tips] == pytest.approx(sampled.tips, abs=digits)
+    assert table[:, 4 + tips] == pytest.approx(sampled.torque, abs=digits)
+    assert table[:, 5 + tips] == pytest.approx(sampled.power, abs=digits)
+
+
+def test_the_power_of_a_table_adds_up_to_the_energy(any_plan, tmp_path):
+    _, table = _table(any_plan, tmp_path / "move.csv", 20_000)
+    assert np.trapezoid(np.abs(table[:, -1]), table[:, 0]) == pytest.approx(
+        any_plan.energy, rel=1e-5
+    )
+
+
+@pytest.mark.parametrize(
+    "rate", [0, 0.0, -100.0, 1e-10, math.nan, math.inf, -math.inf, "fast", None]
+)
+def test_a_sample_rate_that_is_not_positive_is_named(plan, tmp_path, rate):
+    with pytest.raises(ValueError, match="sample rate is") as error:
+        plan.save_csv(tmp_path / "move.csv", rate)
+    assert "\n" not in str(error.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_sample_rate_beyond_reason_is_named(plan, tmp_path):
+    with pytest.raises(ValueError, match=r"1e\+12 Hz asks for 800000000000 rows"):
+        plan.save_csv(tmp_path / "move.csv", 1e12)
+    assert list(tmp_path.iterdir()) == []

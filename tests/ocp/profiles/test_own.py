@@ -1,0 +1,258 @@
+"""A user's own profiles: whichever way the coefficients enter, derivatives and plans are right."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from models import JointMotion
+from ocp import JointProfile, Plan, PointToPoint, plan_move, resimulate, rollout
+from ocp.program.condensed import Condensed, Inputs
+from ocp.program.pieces import ProfilePieces
+from ocp.program.task_program import TaskProgram
+from ocp.program.transcription import RESIDUAL
+from ocp.simulation.rollout import symbolic_rollout
+
+pi = math.pi
+
+
+def _cycloid(U, dU, ddU, dddU, start, target):
+    """Eq (1) and its derivatives, from the input and its own."""
+    span, turn = target - start, 2 * pi
+    sine, cosine = ca.sin(turn * U), ca.cos(turn * U)
+    return (
+        start + span * (U - sine / turn),
+        span * (1 - cosine) * dU,
+        span * (turn * sine * dU**2 + (1 - cosine) * ddU),
+        span * (turn**2 * cosine * dU**3 + 3 * turn * sine * dU * ddU + (1 - cosine) * dddU),
+    )
+
+
+@dataclass(frozen=True)
+class _Waves(JointProfile):
+    """U = x + sum_j a_j sin(j pi x), x = t/T: gives `derivatives` only."""
+
+    name: ClassVar[str] = "waves-of-a-test"
+    waves: int = 4
+
+    @property
+    def size(self):
+        return self.waves
+
+    def derivatives(self, coefficients, fraction, start, target, duration):
+        U, dU, ddU, dddU = fraction, 1 / duration, 0.0, 0.0
+        for j, a in enumerate(coefficients, start=1):
+            rate = j * pi / duration
+            sine, cosine = ca.sin(j * pi * fraction), ca.cos(j * pi * fraction)
+            U, dU = U + a * sine, dU + a * rate * cosine
+            ddU, dddU = ddU - a * rate**2 * sine, dddU - a * rate**3 * cosine
+        return _cycloid(U, dU, ddU, dddU, start, target)
+
+
+@dataclass(frozen=True)
+class _LinearWaves(_Waves):
+    """The same, which says that its coefficients enter U linearly."""
+
+    name: ClassVar[str] = "linear-waves-of-a-test"
+
+    def inner(self, coefficients, fraction, start, target, duration):
+        del start, target
+        U, dU, ddU = fraction, 1 / duration, 0.0
+        for j, a in enumerate(coefficients, start=1):
+            rate, sine = j * pi / duration, ca.sin(j * pi * fraction)
+            U, dU = U + a * sine, dU + a * rate * ca.cos(j * pi * fraction)
+            ddU = ddU - a * rate**2 * sine
+        return U, dU, ddU
+
+    def outer(self, inner, start, target, duration):
+        del duration
+        return JointMotion(*_cycloid(*inner, 0.0, start, target)[:3])
+
+
+@dataclass(frozen=True)
+class _Neurons(JointProfile):
+    """U = t/T + (1 - T^2) sum_j v_j tanh(k_j T + b_j), T = -1 + 2 t/TE: `inner` is not linear.
+
+    A network in the place of the polynomial, as in docs/physics.md, 'Comparators named by the
+    paper'. Coefficients are v, k, b of one neuron after another, k about 1.
+    """
+
+    name: ClassVar[str] = "neurons-of-a-test"
+    neurons: int = 2
+
+    @property
+    def size(self):
+        return 3 * self.neurons
+
+    def _input(self, coefficients, fraction, duration):
+        T, rate = 2 * fraction - 1, 2 / duration
+        p = dp = ddp = dddp = 0.0
+        for j in range(self.neurons):
+            v, k, b = coefficients[3 * j : 3 * j + 3]
+            k = k + 1 + j
+            y = ca.tanh(k * T + b)
+            slope = 1 - y * y  # and its own derivative is -2 y slope
+            p, dp = p + v * y, dp + v * k * slope
+            ddp = ddp - 2 * v * k**2 * y * slope
+            dddp = dddp - 2 * v * k**3 * slope * (1 - 3 * y * y)
+        bump = 1 - T * T
+        return (
+            fraction + bump * p,
+            1 / duration + rate * (bump * dp - 2 * T * p),
+            rate**2 * (bump * ddp - 4 * T * dp - 2 * p),
+            rate**3 * (bump * dddp - 6 * T * ddp - 6 * dp),
+        )
+
+    def derivatives(self, coefficients, fraction, start, target, duration):
+        return _cycloid(*self._input(coefficients, fraction, duration), start, target)
+
+    def inner(self, coefficients, fraction, start, target, duration):
+        del start, target
+        return self._input(coefficients, fraction, duration)[:3]
+
+    def outer(self, inner, start, target, duration):
+        del duration
+        return JointMotion(*_cycloid(*inner, 0.0, start, target)[:3])
+
+
+PROFILES = {"waves": _Waves(4), "linear waves": _LinearWaves(4), "neurons": _Neurons(2)}
+
+
+@pytest.fixture(params=PROFILES)
+def profile(request):
+    return PROFILES[request.param]
+
+
+def _coefficients(profile, seed=0):
+    return np.random.default_rng(seed).uniform(-0.3, 0.3, profile.size)
+
+
+# -- the profile itself --
+
+
+def test_the_layers_give_the_motion_of_the_derivatives(profile):
+    a, times = _coefficients(profile), ca.DM(np.linspace(0.0, 1.0, 21))
+    move = (-0.4, 1.1, 0.7)
+    inner = profile.inner(list(a), times, *move)
+    for layered, direct in zip(
+        profile.outer(inner, *move), profile.motion(list(a), times, *move), strict=True
+    ):
+        assert layered.full() == pytest.approx(direct.full(), rel=1e-12, abs=1e-12)
+
+
+def test_each_derivative_is_that_of_the_one_before(profile):
+    path, times = profile.path(_coefficients(profile), -0.4, 1.1, 0.7), np.linspace(0.05, 0.65, 9)
+    for order in range(3):
+        slope = (path(times + 1e-6, order) - path(times - 1e-6, order)) / 2e-6
+        assert path(times, order + 1) == pytest.approx(slope, rel=1e-6, abs=1e-6)
+
+
+# -- derivatives by the coefficients --
+
+
+@pytest.mark.parametrize("steps", [1, 5])
+@pytest.mark.parametrize("name", ["arm", "two links"])
+def test_first_and_second_derivatives_are_those_of_the_plain_rollout(plants, profile, name, steps):
+    plant, a = plants[name], ca.SX.sym("a", profile.size)
+    numbers, move = _coefficients(profile, seed=steps), [-0.4, 1.1, 0.7]
+    plain = symbolic_rollout(plant, profile, ca.vertsplit(a), move, steps)
+    in_time = [ca.vec(ca.vertcat(*entries)).T for entries in (plain.power, plain.torque)]
+    everything = ca.vertcat(plain.arrival.T, ca.vec(ca.vertcat(*in_time)))
+    multipliers = np.random.default_rng(3).normal(size=everything.numel())
+    hessian = ca.hessian(ca.dot(multipliers, everything), a)[0]
+    plain = ca.Function("plain", [a], [everything, ca.jacobian(everything, a), hessian])
+    value, first, second = (x.full() for x in plain(numbers))
+
+    motion = Condensed(plant, profile, steps, ("torque",))
+    at = (numbers, move, np.ones(motion.scales), motion.basis(move, np.eye(profile.size)))
+    symbols = Inputs(*(ca.MX.sym("x", len(x)) for x in at))
+    linearised = march, slopes = motion.linearised(symbols)
+    of_arrival = ca.DM(multipliers[: motion.states])
+    of_outputs = ca.DM(multipliers[motion.states :].reshape(motion.rows, -1, order="F"))
+    curvature = motion.curvature(symbols, linearised, ca.MX(of_arrival), ca.MX(of_outputs))
+    values = ca.vertcat(march.arrival, ca.vec(march.outputs))
+    both = ca.horzcat(slopes.arrival, slopes.outputs).T
+    found = ca.Function("found", [*symbols], [values, both, curvature])(*at)
+    found_value, found_first, found_second = (x.full() for x in found)
+    assert found_value == pytest.approx(value, rel=1e-9, abs=1e-12)
+    assert found_first == pytest.approx(first, abs=1e-11 * np.abs(first).max())
+    assert found_second == pytest.approx(second, abs=1e-10 * np.abs(second).max())
+
+
+def test_only_a_linear_inner_layer_has_no_second_derivatives():
+    pieces = {name: ProfilePieces(profile, 2) for name, profile in PROFILES.items()}
+    bent = {name for name, piece in pieces.items() if piece.second is not None}
+    assert bent == {"waves", "neurons"}
+
+
+# -- plans --
+
+
+def test_two_layers_are_planned_as_one(tasks):
+    # The same family said in two ways, one of which is cheaper to differentiate.
+    found = [
+        TaskProgram(tasks["arm"], profile, 60).solve(np.zeros(5), {RESIDUAL: 1e-3}, None)
+        for profile in (_Waves(5), _LinearWaves(5))
+    ]
+    assert found[0].status.solved
+    assert found[1].energy == pytest.approx(found[0].energy, rel=1e-8)
+    assert found[1].coefficients == pytest.approx(found[0].coefficients, abs=1e-5)
+
+
+@pytest.mark.parametrize("residual_limit", [0.0, 1e-3])
+def test_a_plan_of_neurons_is_a_minimum(tasks, residual_limit):
+    task, profile = tasks["single link"], _Neurons(2)
+    plan = plan_move(task, profile, residual_limit=residual_limit, bound=1.0, starts=3)
+    assert plan.residual <= max(residual_limit * (1 + 1e-6), 1e-8)
+    # docs/physics.md: the plain cycloid's 0.09115 J, with 3.382e-2 m of residual max |W|.
+    assert plan.energy < 0.09115
+    assert np.abs(plan.coefficients).max() <= 1.0 + 1e-7
+    # Bound or not, no step along which the state on arrival stays costs less.
+    steps, h, at = plan.verification.steps, 1e-6, np.array(plan.coefficients)
+
+    def simulated(a):
+        return rollout(task, profile, a, steps=steps)
+
+    jacobian = np.column_stack([
+        np.subtract(simulated(at + h * e).arrival, simulated(at - h * e).arrival) / (2 * h)
+        for e in np.eye(profile.size)
+    ])  # fmt: skip
+    random, best = np.random.default_rng(4), simulated(at)
+    for _ in range(20):
+        away = random.normal(size=profile.size)
+        away -= np.linalg.lstsq(jacobian, jacobian @ away)[0]
+        a = at + 1e-3 * away / np.linalg.norm(away)
+        for _ in range(5):
+            a -= np.linalg.lstsq(jacobian, np.subtract(simulated(a).arrival, best.arrival))[0]
+        if np.abs(a).max() <= 1.0:
+            assert simulated(a).motion.energy >= best.motion.energy * (1 - 1e-6)
+
+
+@pytest.mark.parametrize("profile", [_Waves(5), _LinearWaves(5), _Neurons(2)], ids=lambda p: p.name)
+@pytest.mark.parametrize("name", ["single link", "arm"])
+def test_a_users_profile_is_planned_with_and_kept(tasks, tmp_path, name, profile):
+    # A bound, since neurons that cancel each other may otherwise grow for ever.
+    plan = plan_move(tasks[name], profile, starts=2, bound=1.0)
+    assert plan.residual < 1e-8
+    assert plan.motion == resimulate(plan.task, plan.profile, plan.coefficients)
+    plan.save(tmp_path / "plan.json")
+    assert Plan.load(tmp_path / "plan.json") == plan
+
+
+def test_waves_rest_with_less_energy_than_the_plain_cycloid(tasks):
+    # docs/physics.md: 0.09115 J, and the cycloid rings besides.
+    assert plan_move(tasks["single link"], _Waves(5), starts=2).energy < 0.09115
+
+
+def test_limits_hold_for_a_profile_whose_coefficients_enter_nonlinearly(tasks):
+    task = tasks["arm"]
+    free = plan_move(task, _Neurons(2), starts=2, bound=1.0)
+    limit = 0.95 * free.motion.peak_torque
+    limited = PointToPoint(task.plant, task.target, task.duration, torque_limit=limit)
+    plan = plan_move(limited, _Neurons(2), starts=2, bound=1.0)
+    assert plan.motion.peak_torque <= limit * (1 + 1e-6)
+    assert plan.residual < 1e-8
+    assert plan.energy > free.energy

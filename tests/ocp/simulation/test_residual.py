@@ -1,0 +1,205 @@
+"""The tip's motion after arrival, against the free decay of a damped oscillator."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import PointToPoint, residual_matrix
+from ocp.simulation.residual import (
+    MOST_SAMPLES,
+    RADIANS_A_SAMPLE,
+    extreme_rows,
+    fastest_mode,
+    residual_samples,
+)
+
+
+def _decay(W, dW, omega, zeta, t):
+    """Free decay of W'' + 2 zeta omega W' + omega^2 W = 0 in closed form."""
+    damped = omega * math.sqrt(1 - zeta**2)
+    sine = (dW + zeta * omega * W) / damped
+    return np.exp(-zeta * omega * t) * (W * np.cos(damped * t) + sine * np.sin(damped * t))
+
+
+def _times(task, rows):
+    return np.linspace(0.0, task.residual_window, rows)
+
+
+@given(W=st.floats(-0.1, 0.1), dW=st.floats(-1.0, 1.0))
+def test_the_single_links_tip_decays_freely(W, dW):
+    # Eq (9) with the joint at rest: zeta = 9.636e-3, omega = 10.43 of eq (10); w = 2.28 W.
+    task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+    matrix = residual_matrix(task)
+    expected = 2.28 * _decay(W, dW, 10.43, 9.636e-3, _times(task, len(matrix)))
+    assert matrix @ [W, dW] == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize("target", [math.pi / 2, math.pi / 4, 0.3, -2.0])
+def test_the_arms_tip_decays_freely_with_the_mass_of_its_target(target):
+    # Eq (13) at rest: (1 + alpha1 cos theta_E) W'' + 2 zeta omega W' + omega^2 W = 0.
+    task = PointToPoint(ArmOnFlexibleLink(), target, 0.8)
+    mass = 1 - 1.055e-1 * math.cos(target)
+    omega, zeta = 7.320 / math.sqrt(mass), 1.500e-3 / math.sqrt(mass)
+    matrix = residual_matrix(task)
+    expected = 0.508 * _decay(0.01, -0.2, omega, zeta, _times(task, len(matrix)))
+    assert matrix @ [0.01, -0.2] == pytest.approx(expected, abs=1e-12)
+
+
+def test_two_tips_decay_each_at_its_own_frequency(two_links):
+    task = PointToPoint(two_links, math.pi / 2, 0.9)
+    matrix = residual_matrix(task)
+    assert matrix.shape[1] == 4
+    tips = (matrix @ [0.02, -0.01, 0.3, 0.1]).reshape(-1, 2)
+    t = _times(task, len(tips))
+    # docs/physics.md: omega_i, zeta_i; tips are 2.7244 W_i.
+    first = 2.7244 * _decay(0.02, 0.3, 12.68 * 0.993, 15.49e-3 * 1.214, t)
+    second = 2.7244 * _decay(-0.01, 0.1, 10.71 * 0.993, 14.27e-3 * 1.071, t)
+    assert tips == pytest.approx(np.column_stack([first, second]), abs=1e-12)
+
+
+def test_an_arm_at_rest_has_no_residual(two_links):
+    matrix = residual_matrix(PointToPoint(two_links, 1.0, 1.0))
+    assert np.abs(matrix @ np.zeros(4)).max() == 0.0
+
+
+def test_the_largest_entry_is_the_amplitude():
+    # Undamped: |w| peaks at phi sqrt(W^2 + (W'/omega)^2), at a phase between two samples that is
+    # at most half of RADIANS_A_SAMPLE away.
+    plant = SingleLinkManipulator(zeta=0.0)
+    matrix = residual_matrix(PointToPoint(plant, 1.0, 1.0))
+    for phase in np.linspace(0.0, 2 * np.pi, 50):
+        state = [0.01 * math.cos(phase), -0.1043 * math.sin(phase)]
+        peak = np.abs(matrix @ state).max()
+        assert peak <= 0.0228 * (1 + 1e-9)
+        assert peak >= 0.0228 * math.cos(RADIANS_A_SAMPLE / 2) * (1 - 1e-9)
+
+
+@pytest.mark.parametrize("window", [0.01, 0.5, 1.0, 3.0])
+def test_the_last_sample_is_at_the_end_of_the_window(window):
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0, residual_window=window)
+    last = residual_matrix(task)[-1] @ [0.01, 0.1]
+    assert last == pytest.approx(2.28 * _decay(0.01, 0.1, 10.43, 9.636e-3, window), abs=1e-12)
+
+
+def test_a_longer_window_never_shows_less():
+    plant, state = ArmOnFlexibleLink(), [0.0, -0.1]
+    peaks = [
+        np.abs(residual_matrix(PointToPoint(plant, 1.0, 1.0, residual_window=w)) @ state).max()
+        for w in (0.05, 0.1, 0.2, 0.4, 0.8)
+    ]
+    assert peaks == sorted(peaks)
+    assert peaks[0] < peaks[-1] / 2  # a quarter period is 0.21 s: the first windows end before it
+
+
+def test_a_window_of_too_many_swings_is_named():
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0, residual_window=1e6)
+    with pytest.raises(ValueError, match=r"residual window 1e\+06 s .*give a shorter one"):
+        residual_matrix(task)
+
+
+@pytest.mark.parametrize("window", [0.21, 1.01, 3.03])
+def test_samples_are_as_close_as_stated_and_no_closer(window):
+    # The arm is faster at the start, where nothing is left of the motion: the target counts.
+    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, residual_window=window)
+    phase = 7.320 * window  # eq (13) at theta = pi/2
+    steps = residual_samples(task) - 1
+    assert phase / steps <= RADIANS_A_SAMPLE < phase / (steps - 1)
+    assert len(residual_matrix(task)) == steps + 1
+
+
+def test_both_ends_of_the_shortest_window_are_sampled():
+    still = SingleLinkManipulator(omega=0.0)
+    task = PointToPoint(still, 1.0, 0.8, residual_window=0.5)
+    assert residual_samples(task) == 2
+    # Nothing holds the mode: it goes on at its speed.
+    assert residual_matrix(task) @ [0.01, 0.1] == pytest.approx([2.28 * 0.01, 2.28 * 0.06])
+
+
+def test_a_window_is_sampled_as_often_as_asked():
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
+    expected = 2.28 * _decay(0.01, 0.1, 10.43, 9.636e-3, np.linspace(0.0, 1.0, 101))
+    assert residual_matrix(task, 101) @ [0.01, 0.1] == pytest.approx(expected, abs=1e-8)
+
+
+def test_the_longest_window_is_accepted_and_a_longer_one_refused():
+    # 200,000 steps of 0.02 radians of the mode: 400 s at 10 rad/s.
+    plant = SingleLinkManipulator(omega=10.0, zeta=0.0)
+    longest = PointToPoint(plant, 1.0, 0.8, residual_window=399.999)
+    assert residual_samples(longest) == MOST_SAMPLES + 1
+    with pytest.raises(ValueError, match=r"residual window 400\.1 s is 4e\+03 radians"):
+        residual_samples(PointToPoint(plant, 1.0, 0.8, residual_window=400.1))
+
+
+def test_the_matrix_cannot_be_written_to():
+    # It is shared by everyone who asks for the same task.
+    with pytest.raises(ValueError, match="read-only"):
+        residual_matrix(PointToPoint(SingleLinkManipulator(), 1.0, 1.0))[0, 0] = 1.0
+
+
+# -- the fastest mode --
+
+
+@pytest.mark.parametrize("start", [0.0, -1.0])
+def test_the_single_links_fastest_mode_is_omega(start):
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8, start=start)
+    assert fastest_mode(task) == pytest.approx(10.43)
+
+
+@pytest.mark.parametrize(("start", "target"), [(0.0, math.pi / 2), (math.pi / 2, 0.0)])
+def test_the_arms_fastest_mode_is_at_the_angle_of_least_mass(start, target):
+    # omega/sqrt(1 + alpha1 cos theta) is largest at theta = 0.
+    task = PointToPoint(ArmOnFlexibleLink(), target, 0.8, start=start)
+    assert fastest_mode(task) == pytest.approx(7.320 / math.sqrt(1 - 1.055e-1))
+
+
+class _StifferInMotion(SingleLinkManipulator):
+    """A link that every motion of the joint makes stiffer."""
+
+    def modal_accelerations(self, joint, W, dW):
+        (still,) = super().modal_accelerations(joint, W, dW)
+        return [still - 50 * (joint.speed**2 + joint.acceleration**2) * W[0]]
+
+
+def test_the_modes_are_those_of_the_joint_at_rest():
+    usual, stiffer = (
+        PointToPoint(plant, 1.0, 0.8) for plant in (SingleLinkManipulator(), _StifferInMotion())
+    )
+    assert fastest_mode(stiffer) == pytest.approx(10.43)
+    np.testing.assert_array_equal(residual_matrix(stiffer), residual_matrix(usual))
+
+
+def test_the_fastest_of_two_modes_counts(two_links):
+    assert fastest_mode(PointToPoint(two_links, 1.0, 1.0)) == pytest.approx(12.68 * 0.993)
+
+
+@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+@pytest.mark.parametrize("target", [math.pi / 2, math.pi / 6, -1.0])
+def test_extreme_rows_hold_the_largest_displacement_of_any_state(plants, name, target):
+    # by definition: the maximum over the kept rows against that over all rows
+    plant = plants[name]
+    matrix = residual_matrix(PointToPoint(plant, target, 0.8))
+    rows = extreme_rows(matrix, plant.tips)
+    states = np.random.default_rng(0).standard_normal((matrix.shape[1], 500))
+    assert len(rows) < len(matrix) / 2
+    peaks, kept = np.abs(matrix @ states).max(axis=0), np.abs(rows @ states).max(axis=0)
+    np.testing.assert_allclose(kept, peaks, rtol=1e-13)
+
+
+@pytest.mark.parametrize("rank", [3, 4])
+@pytest.mark.parametrize("scale", [1.0, 1e-7, 1e7])
+def test_rows_of_a_tip_that_does_not_turn_in_a_plane_are_all_kept(rank, scale):
+    matrix = scale * np.random.default_rng(1).standard_normal((40, 4))
+    matrix[:, rank:] = 0.0
+    np.testing.assert_array_equal(extreme_rows(matrix, 1), matrix)
+
+
+def test_the_rows_of_a_turning_tip_are_its_extreme_ones():
+    # 40 points on a circle and as many inside it: a direction's largest is on the circle.
+    angle = np.linspace(0.0, 2 * np.pi, 80, endpoint=False)[:40]
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    rows = extreme_rows(np.vstack([circle, 0.9 * circle]), 1)
+    assert sorted(rows.tolist()) == sorted(circle.tolist())

@@ -1,0 +1,131 @@
+"""What is asked: valid tasks, and what is refused when a task is made."""
+
+import math
+from dataclasses import FrozenInstanceError
+
+import numpy as np
+import pytest
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import PointToPoint
+from ocp.task.point_to_point import LIMITS
+
+PLANT = SingleLinkManipulator()
+NOT_POSITIVE = [0, 0.0, -0.0, -0.8, math.nan, math.inf, -math.inf]
+NOT_FINITE = [math.nan, math.inf, -math.inf]
+NOT_NUMBERS = ["soon", None, [0.8], 1j]
+
+
+def _task(**changes):
+    return PointToPoint(**{"plant": PLANT, "target": math.pi / 6, "duration": 0.8, **changes})
+
+
+def _refused(name, value, **changes):
+    """The message of the ValueError; one line that names the quantity and the value."""
+    with pytest.raises(ValueError, match=name) as error:
+        _task(**changes)
+    message = str(error.value)
+    assert "\n" not in message
+    assert (f"{value:g}" if isinstance(value, int | float) else str(value)) in message
+    return message
+
+
+def test_a_task_starts_at_zero_without_limits_and_watches_one_second():
+    # Section 3.1: theta_S = 0; eq (11): one second after the positioning.
+    task = _task()
+    assert (task.start, task.residual_window, task.limits) == (0.0, 1.0, {})
+
+
+def test_span_and_move():
+    task = _task(start=-math.pi / 2, target=math.pi / 4, duration=1.0)
+    assert task.span == pytest.approx(3 * math.pi / 4)
+    assert task.move == (-math.pi / 2, math.pi / 4, 1.0)
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_limit_that_is_set_is_listed_by_its_quantity(name):
+    assert _task(**{name: 0.3}).limits == {name.removesuffix("_limit"): 0.3}
+
+
+def test_all_limits_together():
+    limits = dict.fromkeys(LIMITS, 2)
+    expected = {"torque": 2.0, "speed": 2.0, "acceleration": 2.0, "deflection": 2.0}
+    assert _task(**limits).limits == expected
+
+
+@pytest.mark.parametrize("kind", [int, np.float64, np.float32, np.int64])
+def test_every_kind_of_number_becomes_a_float(kind):
+    task = _task(start=kind(1), target=kind(2), duration=kind(3), torque_limit=kind(4))
+    numbers = (task.start, task.target, task.duration, task.torque_limit)
+    assert numbers == (1.0, 2.0, 3.0, 4.0)
+    assert {type(number) for number in numbers} == {float}
+
+
+def test_tasks_are_equal_by_value():
+    assert _task() == _task()
+    assert _task() != _task(duration=0.9)
+    assert _task() != _task(plant=ArmOnFlexibleLink())
+    assert hash(_task(duration=1)) == hash(_task(duration=1.0))
+
+
+def test_a_task_cannot_be_changed():
+    with pytest.raises(FrozenInstanceError):
+        _task().duration = 2.0
+
+
+@pytest.mark.parametrize("value", [*NOT_POSITIVE, *NOT_NUMBERS])
+def test_a_duration_that_is_not_positive_and_finite_is_named(value):
+    _refused("duration is", value, duration=value)
+
+
+@pytest.mark.parametrize("value", [*NOT_POSITIVE, *NOT_NUMBERS])
+def test_a_residual_window_that_is_not_positive_and_finite_is_named(value):
+    _refused("residual.window is", value, residual_window=value)
+
+
+@pytest.mark.parametrize("value", [*NOT_POSITIVE, "much", [0.8], 1j])
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_limit_that_is_not_positive_and_finite_is_named(name, value):
+    _refused(name.replace("_", ".") + " is", value, **{name: value})
+
+
+@pytest.mark.parametrize("value", [*NOT_FINITE, *NOT_NUMBERS])
+@pytest.mark.parametrize("name", ["start", "target"])
+def test_an_angle_that_is_not_finite_is_named(name, value):
+    _refused(f"{name} is", value, **{name: value})
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("duration", 1e-7), ("duration", 1e-300), ("duration", 1e7), ("target", 1e7), ("start", -1e9)],
+)
+def test_a_number_beyond_all_scale_is_named(name, value):
+    _refused(f"{name} is", value, **{name: value})
+
+
+@pytest.mark.parametrize("angle", [0.0, math.pi / 6, -1])
+def test_a_target_equal_to_the_start_is_named(angle):
+    _refused("target equals start", float(angle), start=angle, target=float(angle))
+
+
+@pytest.mark.parametrize("value", [True, "0.8"])
+def test_what_only_looks_like_a_number_is_refused(value):
+    _refused("duration is", repr(value), duration=value)
+
+
+def test_a_number_too_large_for_a_float_is_refused():
+    with pytest.raises(ValueError, match="duration"):
+        _task(duration=10**400)
+
+
+@pytest.mark.parametrize("plant", ["single-link", SingleLinkManipulator, None])
+def test_a_plant_that_is_not_a_plant_is_refused(plant):
+    with pytest.raises(ValueError, match=r"plant is .*give a Plant"):
+        _task(plant=plant)
+
+
+@pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
+def test_a_plant_that_breaks_its_contract_is_refused():
+    cubic = {"name": "cubic", "modal_accelerations": lambda plant, joint, W, dW: [-(W[0] ** 3)]}
+    with pytest.raises(ValueError, match=r"'cubic'.*not affine"):
+        _task(plant=type("Cubic", (SingleLinkManipulator,), cubic)())
