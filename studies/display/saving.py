@@ -104,6 +104,11 @@ def finish(
     _raise(saved, trouble, interrupted=bool(came))
 
 
+def interruption() -> QuietarmError:
+    """The error to raise after Ctrl-C."""
+    return QuietarmError("interrupted; what was found until then is kept")
+
+
 def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
     """What writes a picture, and loads what draws only then."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 
 from metaheuristics.ensemble import energy_at
-from ocp import FailedPoint, Front, QuietarmError
+from ocp import FailedPoint, Front
 from ocp.front.sweep import RESIDUAL_LIMIT
 from studies.comparison.measures import LEVELS
 from studies.display.words import counted, millimetres, print_lines
@@ -71,11 +71,6 @@ def gap_lines(front: Front) -> list[str]:
         "is not convex there"
         for begin, end in front.gaps
     ]
-
-
-def interruption() -> QuietarmError:
-    """The error to raise after Ctrl-C."""
-    return QuietarmError("interrupted; what was found until then is kept")
 
 
 def _asked(failure: FailedPoint) -> str:

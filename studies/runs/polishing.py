@@ -13,10 +13,10 @@ from rich.console import Console
 from ocp import Front, Gain, polish_front
 from ocp.base.checks import whole
 from studies.display.progress import count
-from studies.display.saving import drawing, finish
+from studies.display.saving import drawing, finish, interruption
 from studies.display.tables import Column, Table
 from studies.display.words import counted, millimetres, print_lines
-from studies.reports.sweep import failure_lines, interruption
+from studies.reports.sweep import failure_lines
 from studies.runs.files import refuse_same_file, warn_of_workers
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from ocp import (
     SolverFailedError,
 )
 from studies.display.progress import count
-from studies.display.saving import drawing, finish
+from studies.display.saving import drawing, finish, interruption
 from studies.methods import Method
-from studies.reports.sweep import failure_lines, interruption, print_sweep
+from studies.reports.sweep import failure_lines, print_sweep
 from studies.runs.files import refuse_same_file, warn_of_workers
 
 if TYPE_CHECKING:

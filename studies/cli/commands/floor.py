@@ -14,9 +14,8 @@ from ocp.base.interrupts import note_interrupts
 from studies.cli.arguments import task_of
 from studies.cli.options import OUTPUT, PICTURE, quiet_option, task_options
 from studies.display.progress import working
-from studies.display.saving import drawing, finish
+from studies.display.saving import drawing, finish, interruption
 from studies.reports.floor import plan_beside, print_floor
-from studies.reports.sweep import interruption
 from studies.runs.files import refuse_same_file
 
 if TYPE_CHECKING:
