@@ -100,9 +100,7 @@ def plan_move(
     )
 
 
-def first_steps(
-    task: PointToPoint, profile: JointProfile, settings: SolveSettings, least: int = LEAST_STEPS
-) -> int:
+def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> int:
     """Steps of the solver's discretisation to begin with.
 
     Parameters
@@ -113,8 +111,6 @@ def first_steps(
         How the joint moves.
     settings : SolveSettings
         Its steps count where they are given.
-    least : int
-        Fewest steps otherwise.
 
     Returns
     -------
@@ -126,7 +122,7 @@ def first_steps(
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = max(LIMITED_STEPS if task.limits else least, STEPS_A_TERM * (profile.size - 2))
+    least = max(LIMITED_STEPS if task.limits else LEAST_STEPS, STEPS_A_TERM * (profile.size - 2))
     least = min(least, MOST_LEAST_STEPS)
     steps = settings.steps or default_steps(task, least=least)
     if steps > MOST_STEPS and settings.steps is None:
