@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ocp import Motion, Plan, PointToPoint
-from ocp.task.point_to_point import LIMITS
+from ocp.task.quantities import QUANTITIES
 from studies.display.words import millimetres
 
 
@@ -68,10 +68,12 @@ def add_figures(table: Table, task: PointToPoint, motion: Motion) -> None:
         "residual F1",
         f"{millimetres(motion.residual)} at the tip within {task.residual_window:g} s",
     )
-    table.add_row("peak torque", f"{motion.peak_torque:.4g} N m")
-    table.add_row("peak speed", f"{motion.peak_speed:.4g} rad/s")
-    table.add_row("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2")
-    table.add_row("peak deflection", millimetres(motion.peak_deflection))
+    for name, quantity in QUANTITIES.items():
+        peak = motion.peak(name)
+        if peak < math.inf:  # the jerk has none where the acceleration jumps
+            in_metres = quantity.unit == "m"
+            words = millimetres(peak) if in_metres else f"{peak:.4g} {quantity.unit}"
+            table.add_row(f"peak {name}", words)
     table.add_row("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none")
 
 
@@ -80,9 +82,9 @@ def _angle(value: float) -> str:
 
 
 def _quantity(name: str, value: float) -> str:
-    return f"{value:g} {LIMITS[f'{name}_limit']}"
+    return f"{value:g} {QUANTITIES[name].unit}"
 
 
 def _broken(name: str, peak: float, limit: float) -> str:
     """How a limit is broken; nothing where it is kept to the README's tolerance."""
-    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {LIMITS[f'{name}_limit']})"
+    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {QUANTITIES[name].unit})"
