@@ -66,13 +66,18 @@ def add_figures(table: Table, task: PointToPoint, motion: Motion) -> None:
     """Add a motion's residual, peaks and overshoot."""
     table.add_row(
         "residual F1",
-        f"{millimetres(motion.residual)} at the tip within {task.residual_window:g} s",
+        f"{millimetres(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
     )
     table.add_row("peak torque", f"{motion.peak_torque:.4g} N m")
     table.add_row("peak speed", f"{motion.peak_speed:.4g} rad/s")
     table.add_row("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2")
     table.add_row("peak deflection", millimetres(motion.peak_deflection))
     table.add_row("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none")
+
+
+def _tip(task: PointToPoint) -> str:
+    tips = task.plant.tips
+    return "tip" if tips == 1 else f"worst of {tips} tips"
 
 
 def _angle(value: float) -> str:
