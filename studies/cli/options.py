@@ -12,6 +12,7 @@ import click
 
 from models import Plant, known_plants
 from ocp.base.files import check_writable
+from ocp.profiles.shapers import SHAPERS
 from studies.cli.quantities import (
     parse_angle,
     parse_coefficients,
@@ -90,6 +91,12 @@ OUTPUT = Parsed("file", _is_output)
 PICTURE = Parsed("picture", check_figure)
 FOLDER = Parsed("folder", _is_folder)
 
+POLYNOMIAL = "polynomial"
+profile_option = click.option(
+    "--profile", type=click.Choice([POLYNOMIAL, *SHAPERS]), default=POLYNOMIAL, show_default=True,
+    help="How the joint moves: the cycloid of a polynomial, or the plain cycloid through an input "
+    "shaper for the plant's frequencies at the target.",
+)  # fmt: skip
 _TASK_OPTIONS = (
     click.argument("plant", type=PLANT),
     click.option("--start", type=ANGLE, default=0.0, show_default=True,

@@ -7,7 +7,7 @@ import math
 from rich.console import Console
 from rich.table import Table
 
-from ocp import Motion, Plan, PointToPoint
+from ocp import Motion, Plan, PointToPoint, ShapedCycloid
 from ocp.task.point_to_point import LIMITS
 from studies.display.words import millimetres
 
@@ -25,8 +25,7 @@ def print_plan(console: Console, plan: Plan) -> None:
     motion, check = plan.motion, plan.verification
     table = upright_table()
     add_move(table, plan.task, motion)
-    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
-    table.add_row("coefficients", coefficients or "none: the plain cycloid")
+    table.add_row(*_choice(plan))
     table.add_row("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)")
     add_figures(table, plan.task, motion)
     table.add_row("status", plan.status.text)
@@ -73,6 +72,16 @@ def add_figures(table: Table, task: PointToPoint, motion: Motion) -> None:
     table.add_row("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2")
     table.add_row("peak deflection", millimetres(motion.peak_deflection))
     table.add_row("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none")
+
+
+def _choice(plan: Plan) -> tuple[str, str]:
+    """What tells the motion from others of its task, and its name."""
+    if isinstance(plan.profile, ShapedCycloid):
+        impulses = len(plan.profile.impulses.times)
+        shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
+        return "profile", f"{plan.profile.label}: {shaper}"
+    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    return "coefficients", coefficients or "none: the plain cycloid"
 
 
 def _tip(task: PointToPoint) -> str:

@@ -7,27 +7,42 @@ from typing import Any
 import click
 from rich.console import Console
 
-from ocp import evaluate_coefficients
-from studies.cli.arguments import split_options, write_plan
-from studies.cli.options import COEFFICIENTS, output_options, task_options
+from ocp import evaluate_coefficients, shaped_cycloid
+from studies.cli.arguments import refuse_idle, split_options, write_plan
+from studies.cli.options import (
+    COEFFICIENTS,
+    POLYNOMIAL,
+    output_options,
+    profile_option,
+    task_options,
+)
 from studies.reports.plan import print_plan
 
 
 @click.command()
 @task_options
+@profile_option
 @click.option(
-    "--coefficients", type=COEFFICIENTS, required=True,
-    help="a_1 to a_N, separated by commas, as --coefficients=-0.0019,-0.14.",
+    "--coefficients", type=COEFFICIENTS,
+    help="a_1 to a_N of the polynomial, separated by commas, as --coefficients=-0.0019,-0.14.",
 )  # fmt: skip
 @output_options
-def evaluate(coefficients: list[float], **rest: Any) -> None:
-    """Compute residual, energy and peaks of given coefficients.
+@click.pass_context
+def evaluate(
+    context: click.Context, profile: str, coefficients: list[float] | None, **rest: Any
+) -> None:
+    """Compute residual, energy and peaks of given coefficients, or of an input shaper's motion.
 
     \b
-    Example, the paper's two terms for the single link:
+    Examples; the first has the paper's two terms for the single link:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
+      quietarm evaluate single-link --target pi/6 --duration 0.8 --profile zvd
     """  # noqa: D301  # \b is click's: do not rewrap
+    refuse_idle(context, profile, {"coefficients": [POLYNOMIAL]})
+    if profile == POLYNOMIAL and coefficients is None:
+        raise click.MissingParameter(param_hint="'--coefficients'", param_type="option")
     task, outputs = split_options(rest)
-    found = evaluate_coefficients(task, coefficients)
+    shaped = None if profile == POLYNOMIAL else shaped_cycloid(task, profile)
+    found = evaluate_coefficients(task, coefficients or [], profile=shaped)
     print_plan(Console(), found)
     write_plan(found, **outputs)

@@ -320,8 +320,3 @@ def test_a_setting_out_of_range_is_named(tasks, settings, message):
     with pytest.raises(ValueError, match=message) as error:
         plan_move(tasks["arm"], **settings)
     assert "\n" not in str(error.value)
-
-
-def test_a_profile_without_terms_has_nothing_to_choose(tasks):
-    with pytest.raises(ValueError, match="0 terms"):
-        plan_move(tasks["arm"], CycloidPolynomial(0))

@@ -340,7 +340,6 @@ BAD = [  # the line, the value that is named, the remedy
     (f"{PLAN} --residual-limit -1mm", "residual limit is -0.001 m", "give 0 (at rest) or more"),
     (f"{PLAN} --residual-limit nan", "residual limit is nan", "give a finite number"),
     (f"{PLAN} --residual-limit small", "small", "metres (0.001) or 1mm"),
-    (f"{PLAN} --terms 0", "0 terms", "give 1 term or more"),
     (f"{PLAN} --terms -1", "terms is -1", "to 32"),
     (f"{PLAN} --terms 33", "terms is 33", "to 32: beyond that double precision"),
     (f"{PLAN} --terms 1.5", "1.5", "--terms"),
