@@ -152,7 +152,12 @@ class JointProfile(ABC):
                 f"duration is {duration:g} s, too short for the {self.label}; give "
                 f"{_rounded_up(self.least_duration):.4g} s or more"
             )
-        values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        try:
+            values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        except (TypeError, ValueError, OverflowError):
+            raise ValueError(
+                f"coefficients are {coefficients!r}; give {self.size} numbers"
+            ) from None
         if values.shape != (self.size,):
             raise ValueError(
                 f"got {values.size} coefficients for a profile of {self.size}; "

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import click
 from rich.console import Console
 
 from ocp import evaluate_coefficients, shaped_cycloid
-from studies.cli.arguments import refuse_idle, split_options, write_plan
+from studies.cli.arguments import plan_files, refuse_idle, split_options
 from studies.cli.options import (
     COEFFICIENTS,
     POLYNOMIAL,
     output_options,
     profile_option,
+    quiet_option,
     task_options,
 )
+from studies.display.progress import working
+from studies.display.saving import finish
 from studies.reports.plan import print_plan
 
 
@@ -26,10 +30,15 @@ from studies.reports.plan import print_plan
     "--coefficients", type=COEFFICIENTS,
     help="a_1 to a_N of the polynomial, separated by commas, as --coefficients=-0.0019,-0.14.",
 )  # fmt: skip
+@quiet_option
 @output_options
 @click.pass_context
 def evaluate(
-    context: click.Context, profile: str, coefficients: list[float] | None, **rest: Any
+    context: click.Context,
+    profile: str,
+    coefficients: list[float] | None,
+    quiet: bool,
+    **rest: Any,
 ) -> None:
     """Compute residual, energy and peaks of given coefficients, or of an input shaper's motion.
 
@@ -43,6 +52,6 @@ def evaluate(
         raise click.MissingParameter(param_hint="'--coefficients'", param_type="option")
     task, outputs = split_options(rest)
     shaped = None if profile == POLYNOMIAL else shaped_cycloid(task, profile)
-    found = evaluate_coefficients(task, coefficients or [], profile=shaped)
-    print_plan(Console(), found)
-    write_plan(found, **outputs)
+    with working("integrating", Console(stderr=True), quiet=quiet):
+        found = evaluate_coefficients(task, coefficients or [], profile=shaped)
+    finish(plan_files(found, **outputs), partial(print_plan, plan=found))
