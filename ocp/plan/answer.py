@@ -6,7 +6,7 @@ import io
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import ClassVar
 
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from ocp.answers.documents import (
     Document,
-    numbers_of,
+    motion_of,
     profile_from_document,
     profile_to_document,
     task_from_document,
@@ -116,7 +116,7 @@ class Plan(Saved):
             task=task_from_document(document),
             profile=profile,
             coefficients=profile.checked(document["coefficients"]),
-            motion=Motion(**numbers_of(figures, [entry.name for entry in fields(Motion)])),
+            motion=motion_of(figures),
             status=SolveStatus(document["status"]),
             verification=verification_of(document["verification"]),
             provenance=provenance_of(document["provenance"]),

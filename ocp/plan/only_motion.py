@@ -8,6 +8,7 @@ from ocp.plan.answer import Plan, evaluate_coefficients
 from ocp.plan.verification import OVERRUN
 from ocp.profiles.joint_profile import JointProfile
 from ocp.task.point_to_point import PointToPoint
+from ocp.task.quantities import QUANTITIES
 
 
 def only_motion(task: PointToPoint, profile: JointProfile, residual_limit: float = 0.0) -> Plan:
@@ -41,14 +42,15 @@ def only_motion(task: PointToPoint, profile: JointProfile, residual_limit: float
         task, [], profile=profile, method="evaluated", settings={"residual_limit": residual_limit}
     )
     limits = {**({"residual": residual_limit} if residual_limit else {}), **task.limits}
+    units = {"residual": "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
     broken = [
-        f"its {name} reaches {plan.motion.peak(name):.4g}, above the limit of {limit:g}"
+        f"its {name} reaches {plan.motion.peak(name):.4g} {units[name]}, above {limit:g}"
         for name, limit in limits.items()
         if plan.motion.peak(name) > limit * (1 + OVERRUN)
     ]
     if broken:
         raise InfeasibleTaskError(
-            f"the {profile.label} has one motion for this move, and {'; '.join(broken)} (SI "
-            "units): widen what is broken, or give a longer duration or another profile"
+            f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
+            "widen what is broken, or give a longer duration or another profile"
         )
     return plan

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from numbers import Integral
 from typing import Any, ClassVar
@@ -21,7 +21,7 @@ class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
     A new family is one subclass: it says how many coefficients it has and gives theta and its
-    first three time derivatives, in operations that work element by element.
+    first two time derivatives, in operations that work element by element. casadi derives the jerk.
     """
 
     name: ClassVar[str]
@@ -57,8 +57,8 @@ class JointProfile(ABC):
         start: Expression,
         target: Expression,
         duration: Expression,
-    ) -> tuple[Expression, Expression, Expression, Expression]:
-        """Joint angle and its first three time derivatives.
+    ) -> tuple[Expression, ...]:
+        """Joint angle and its first two time derivatives.
 
         Parameters
         ----------
@@ -74,7 +74,7 @@ class JointProfile(ABC):
         Returns
         -------
         tuple of Expression
-            theta [rad], theta' [rad/s], theta'' [rad/s^2], theta''' [rad/s^3].
+            theta [rad], theta' [rad/s], theta'' [rad/s^2]; what follows them is not read.
         """
 
     def inner(
@@ -111,9 +111,30 @@ class JointProfile(ABC):
         start: Expression,
         target: Expression,
         duration: Expression,
+        jerk: bool = False,
     ) -> JointMotion:
-        """Angle, speed and acceleration of the joint; arguments as in `derivatives`."""
-        return JointMotion(*self.derivatives(coefficients, fraction, start, target, duration)[:3])
+        """Angle, speed and acceleration of the joint, and its jerk where it is asked for.
+
+        Other arguments as in `derivatives`.
+        """
+        arguments = coefficients, fraction, start, target, duration
+        if not jerk:
+            angle, speed, acceleration = self.derivatives(*arguments)[:3]
+            return JointMotion(angle, speed, acceleration)
+        values, rates = _with_rates(self.derivatives, arguments, slice(2, 3))
+        return JointMotion(*values[:3], *rates)
+
+    def inner_with_rates(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> Sequence[Expression]:
+        """The values of `inner`, then their time derivatives; arguments as in `derivatives`."""
+        values, rates = _with_rates(self.inner, (coefficients, fraction, start, target, duration))
+        return *values, *rates
 
     def path(
         self, coefficients: ArrayLike, start: float, target: float, duration: float
@@ -175,6 +196,31 @@ def _rounded_up(value: float, digits: int = 4) -> float:
     return math.ceil(value / unit) * unit
 
 
+def _with_rates(
+    of: Callable[..., Sequence[Expression]],
+    arguments: tuple[Sequence[Expression], Expression, Expression, Expression, Expression],
+    rates_of: slice = slice(None),
+) -> tuple[list[Expression], list[Expression]]:
+    """What a method of a profile gives, and time derivatives of some of it by casadi.
+
+    casadi differentiates by symbols only: another fraction is put in the place of one afterwards.
+    """
+    coefficients, fraction, *move = arguments
+    kinds = {type(one) for one in (*coefficients, fraction, *move)}
+    kind: Any = ca.SX if ca.SX in kinds else ca.MX
+    place = fraction if type(fraction) is kind else kind(ca.DM(fraction))
+    at = place if place.is_symbolic() else kind.sym("t", *place.shape)
+    ones = kind.ones(*at.shape)
+    values = [kind(value) for value in of(coefficients, at, *move)]
+    rates = [ca.jtimes(value, at, ones) * ones / move[-1] for value in values[rates_of]]
+    both: Any = [*values, *rates]
+    if at is not place:
+        both = ca.substitute(both, [at], [place])
+    if kinds.isdisjoint({ca.SX, ca.MX}):
+        both = [ca.evalf(value) for value in both]
+    return both[: len(values)], both[len(values) :]
+
+
 def known_profiles() -> dict[str, type[JointProfile]]:
     """The families that can be found by name, those of the user's own files included."""
     return dict(JointProfile._known)
@@ -228,9 +274,8 @@ class JointPath:
         if not np.all(np.isfinite(t)):
             raise ValueError("a time is not finite; give times in seconds")
         fraction: Any = ca.DM(np.clip(t.ravel() / self.duration, 0.0, 1.0))
-        values = self.profile.derivatives(
-            self.coefficients, fraction, self.start, self.target, self.duration
-        )
-        result = values[order].full().reshape(t.shape)
+        arguments = self.coefficients, fraction, self.start, self.target, self.duration
+        motion = self.profile.motion(*arguments, jerk=order == 3)
+        result = motion[order].full().reshape(t.shape)
         outside = (t < 0) | (t > self.duration)
         return np.where(outside, 0.0, result) if order else result

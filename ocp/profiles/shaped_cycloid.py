@@ -108,21 +108,21 @@ class ShapedCycloid(JointProfile):
         start: Expression,
         target: Expression,
         duration: Expression,
-    ) -> tuple[Expression, Expression, Expression, Expression]:
+    ) -> tuple[Expression, ...]:
         """Sum of the cycloids, each at rest before it begins and after it ends."""
         del coefficients
         cycloid, turn = duration - self.length, 2 * math.pi
-        angle = speed = acceleration = jerk = 0 * fraction
+        angle = speed = acceleration = 0 * fraction
         for share, begin in zip(*self.impulses, strict=True):
             own = (fraction * duration - begin) / cycloid
-            phase = turn * ca.fmin(ca.fmax(own, 0), 1)
-            sine, cosine = ca.sin(phase), ca.cos(phase)
-            angle += share * (phase - sine) / turn
+            # Not fmin and fmax, whose derivative is halved where the move begins and ends.
+            own = ca.if_else(ca.logic_and(own >= 0, own <= 1), own, own > 1)
+            sine, cosine = ca.sin(turn * own), ca.cos(turn * own)
+            angle += share * (own - sine / turn)
             speed += share * (1 - cosine) / cycloid
             acceleration += share * turn * sine / cycloid**2
-            jerk += ca.if_else(ca.logic_and(own >= 0, own <= 1), share * turn**2 * cosine, 0)
         span = target - start
-        return start + span * angle, span * speed, span * acceleration, span * jerk / cycloid**3
+        return start + span * angle, span * speed, span * acceleration
 
 
 @lru_cache(maxsize=64)

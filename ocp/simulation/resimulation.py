@@ -135,7 +135,7 @@ def resimulated(
     extreme = Trajectory.from_outputs(task.plant, np.zeros(2), extremes)
     motion = Motion.from_samples(
         task,
-        extreme.joint,
+        extreme.motion,
         extreme.tips,
         extreme.torque,
         residual=residual_of(task, arrival[:, 0]),
@@ -171,9 +171,9 @@ def _figures(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
 def _along(plant: Plant, profile: JointProfile, fractions: NDArray[np.float64]) -> ca.Function:
     """(coefficients and move) -> states and outputs at these fractions of the move, from 0 on."""
 
-    def joint(given: Expression, fraction: Expression) -> JointMotion:
+    def joint(given: Expression, fraction: Expression, jerk: bool = False) -> JointMotion:
         entries = ca.vertsplit(given)
-        return profile.motion(entries[:-3], fraction, *entries[-3:])
+        return profile.motion(entries[:-3], fraction, *entries[-3:], jerk=jerk)
 
     size, count = 2 * plant.modes, len(fractions)
     state, fraction, given = ca.SX.sym("x", size), ca.SX.sym("t"), ca.SX.sym("p", profile.size + 3)
@@ -182,7 +182,7 @@ def _along(plant: Plant, profile: JointProfile, fractions: NDArray[np.float64]) 
     integrate = ca.integrator("move", "cvodes", problem, 0.0, fractions[1:].tolist(), CVODES)
     states, fraction = ca.MX.sym("x", size, count), ca.MX.sym("t", 1, count)
     given = ca.MX.sym("p", profile.size + 3)
-    outputs = outputs_of(plant, joint(given, fraction), states)
+    outputs = outputs_of(plant, joint(given, fraction, jerk=True), states)
     observe = ca.Function("observe", [fraction, states, given], [outputs])
     at_rest = ca.DM.zeros(size)
     states = ca.horzcat(at_rest, integrate(x0=at_rest, p=given)["xf"])

@@ -7,7 +7,7 @@ import math
 from rich.console import Console
 
 from ocp import Motion, Plan, PointToPoint, ShapedCycloid
-from ocp.task.point_to_point import LIMITS
+from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
 from studies.display.words import millimetres
 
@@ -54,17 +54,20 @@ def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
 
 def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     """A motion's residual, peaks and overshoot."""
+    known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         (
             "residual F1",
             f"{millimetres(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
         ),
-        ("peak torque", f"{motion.peak_torque:.4g} N m"),
-        ("peak speed", f"{motion.peak_speed:.4g} rad/s"),
-        ("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2"),
-        ("peak deflection", f"{millimetres(motion.peak_deflection)}{_large(task, motion)}"),
+        *((f"peak {name}", _peak(name, task, motion)) for name in known),
         ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none"),
     ]
+
+
+def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
+    peak, unit = motion.peak(name), QUANTITIES[name].unit
+    return f"{millimetres(peak)}{_large(task, motion)}" if unit == "m" else f"{peak:.4g} {unit}"
 
 
 def _large(task: PointToPoint, motion: Motion) -> str:
@@ -98,9 +101,9 @@ def _angle(value: float) -> str:
 
 
 def _quantity(name: str, value: float) -> str:
-    return f"{value:g} {LIMITS[f'{name}_limit']}"
+    return f"{value:g} {QUANTITIES[name].unit}"
 
 
 def _broken(name: str, peak: float, limit: float) -> str:
     """How a limit is broken; nothing where it is kept to the README's tolerance."""
-    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {LIMITS[f'{name}_limit']})"
+    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {QUANTITIES[name].unit})"

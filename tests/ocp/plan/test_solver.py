@@ -164,6 +164,7 @@ def test_a_limit_is_kept_and_costs_energy(plants, tasks, solved, name, limit):
         "torque": sampled.torque,
         "speed": sampled.joint[:, 1],
         "acceleration": sampled.joint[:, 2],
+        "jerk": sampled.jerk,
         "deflection": sampled.tips,
     }[quantity]
     assert np.abs(peak).max() <= value * (1 + 1e-3)
@@ -173,7 +174,7 @@ def test_a_limit_is_kept_and_costs_energy(plants, tasks, solved, name, limit):
 
 def test_a_limit_that_is_not_in_the_way_changes_nothing(tasks, solved):
     free, task = solved(tasks["arm"], 4), tasks["arm"]
-    loose = dict.fromkeys(LIMITS, 100.0)
+    loose = dict.fromkeys(LIMITS, 1e5)
     limited = solved(PointToPoint(task.plant, task.target, task.duration, **loose), 4)
     assert limited.energy == pytest.approx(free.energy, rel=1e-6)
 
@@ -184,6 +185,7 @@ def test_all_limits_at_once_are_kept(tasks, solved):
         "torque_limit": 0.95 * free.peak_torque,
         "speed_limit": 0.97 * free.peak_speed,
         "acceleration_limit": 0.95 * free.peak_acceleration,
+        "jerk_limit": 0.8 * free.peak_jerk,
         "deflection_limit": 0.98 * free.peak_deflection,
     }
     plan = solved(PointToPoint(task.plant, task.target, task.duration, **limits))

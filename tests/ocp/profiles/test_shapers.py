@@ -158,6 +158,10 @@ def test_the_jerk_is_the_limit_of_differences(shaper):
     path, t = profile.path([], 0.0, 1.0, duration), np.linspace(0.011, duration - 0.011, 97)
     differences = (path(t + h, 2) - path(t - h, 2)) / (2 * h)
     assert path(t, 3) == pytest.approx(differences, abs=1e-5 * np.abs(path(t, 3)).max())
+    # The first cycloid begins, and the last one ends, with its share of (2 pi)^2 / cycloid^3.
+    shares = np.array(profile.impulses.amplitudes)[[0, -1]]
+    ends = shares * (2 * pi) ** 2 / (duration - profile.length) ** 3
+    assert path([0.0, duration], 3) == pytest.approx(ends)
 
 
 def test_numbers_symbols_and_matrices_give_the_same():

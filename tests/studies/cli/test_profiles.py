@@ -42,6 +42,7 @@ def test_one_shaper_for_each_mode(call):
         (f"evaluate {MOVE}", 2, "--coefficients"),
         (f"plan {MOVE} --profile zvdd", 2, "zvd"),
         (f"plan {MOVE} --profile zv --torque-limit 0.01", 1, "its torque reaches"),
+        (f"plan {MOVE} --profile zv --jerk-limit 1", 1, "rad/s^3, above 1"),
         (f"plan {MOVE} --profile zv --residual-limit 1um", 1, "its residual reaches"),
     ],
 )
