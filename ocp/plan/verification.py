@@ -22,7 +22,7 @@ _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
 """Share of that which the residual at rest is brought below."""
 _ROUNDS = 12
-_OVERRUN = 1e-3
+OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
 
 
@@ -116,7 +116,7 @@ def verified(
         tried.append((best, motion, problem.program.steps))
     best, motion, steps = _cheapest_kept(tried, kept, still)
     for name, limit in kept.items():
-        if motion.peak(name) > max(limit * (1 + _OVERRUN), still):
+        if motion.peak(name) > max(limit * (1 + OVERRUN), still):
             raise SolverFailedError(
                 f"the verified {name} is {motion.peak(name):.4g}, above its limit of {limit:g}: "
                 "the solver's steps are too coarse for this motion; bound the coefficients or use "
