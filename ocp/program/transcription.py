@@ -299,7 +299,7 @@ class NonlinearProgram:
         )
         march, first = linearised
         by_energy = ca.MX(motion.size, motion.size)
-        of_power = ca.MX.zeros(1, motion.nodes)  # dense: `mac` keeps the sparsity of what it adds to
+        of_power = ca.MX.zeros(1, motion.nodes)  # dense: `mac` keeps what it adds to as sparse
         if form.sampled:
             of_samples = ca.reshape(of_samples, 2, motion.steps)
             of_power = ca.vec(self._sampling.T @ of_samples).T
