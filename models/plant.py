@@ -79,6 +79,9 @@ class Plant(ABC):
     modes: ClassVar[int]
     """How many modal amplitudes the plant has."""
 
+    small_deflection: ClassVar[float | None] = None
+    """Largest tip displacement that the equations are made for [m]; None where none is stated."""
+
     _known: ClassVar[dict[str, type[Plant]]] = {}
 
     def __init_subclass__(cls) -> None:

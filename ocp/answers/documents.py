@@ -6,8 +6,9 @@ import json
 import platform
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import MISSING, fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -101,8 +102,8 @@ def read_document(path: str | Path, kind: str, version: int, oldest: int = 1) ->
         )
     if found < oldest:
         raise FileFormatError(
-            f"{path} has version {found} of the {name} format and this quietarm reads {oldest} to "
-            f"{version}; find the {name} again"
+            f"{path} has version {found} of the {name} format and this quietarm reads "
+            f"{version if oldest == version else f'{oldest} to {version}'}; find the {name} again"
         )
     return document
 
@@ -116,8 +117,13 @@ def reading(path: str | Path, name: str) -> Iterator[None]:
         raise
     except KeyError as error:
         raise FileFormatError(f"{path} is not a whole {name}: {error} is missing") from None
-    except (TypeError, ValueError, AttributeError, OverflowError) as error:
+    except ValueError as error:
         raise FileFormatError(f"{path} is not a valid {name}: {error}") from None
+    except (TypeError, AttributeError, OverflowError):  # in Python's own words, which help nobody
+        raise FileFormatError(
+            f"{path} is not a valid {name}: an entry is not of the kind it should be; write the "
+            f"{name} again"
+        ) from None
 
 
 def task_to_document(task: PointToPoint) -> Document:
@@ -136,18 +142,18 @@ def task_to_document(task: PointToPoint) -> Document:
 def task_from_document(document: Document) -> PointToPoint:
     """The task of a document; KeyError, TypeError or ValueError where it is not one."""
     name = document["plant"]
-    plant = known_plants().get(name)
+    plant = known_plants().get(name) if isinstance(name, str) else None
     if plant is None:
         raise ValueError(
             f"its plant {name!r} is not known here (known: {', '.join(sorted(known_plants()))}); "
             "import the file that defines it first"
         )
-    limits = {f"{name}_limit": value for name, value in document["limits"].items()}
+    limits = {f"{name}_limit": value for name, value in _table(document, "limits").items()}
     unknown = sorted(set(limits) - set(LIMITS))
     if unknown:
         raise ValueError(f"unknown limit {unknown[0]!r}")
     return PointToPoint(
-        plant=plant(**document["plant_parameters"]),
+        plant=made(plant, _table(document, "plant_parameters")),
         start=document["start"],
         target=document["target"],
         duration=document["duration"],
@@ -171,10 +177,52 @@ def profile_from_document(document: Document) -> JointProfile:
     """The profile of a document; KeyError, TypeError or ValueError where it is not one."""
     arguments = dict(document)
     name = arguments.pop("name")
-    profile = known_profiles().get(name)
+    profile = known_profiles().get(name) if isinstance(name, str) else None
     if profile is None:
         raise ValueError(f"its profile {name!r} is not known here")
-    return profile(**arguments)
+    return made(profile, arguments)
+
+
+_Made = TypeVar("_Made")
+
+
+def made(kind: type[_Made], arguments: Mapping[str, Any]) -> _Made:
+    """An object of its arguments.
+
+    Parameters
+    ----------
+    kind : type
+        Its class.
+    arguments : mapping
+        What it takes, by name.
+
+    Returns
+    -------
+    object
+        The object.
+
+    Raises
+    ------
+    KeyError
+        When an argument is missing.
+    ValueError
+        When it takes no such argument.
+    """
+    entries = fields(kind) if is_dataclass(kind) else ()
+    for entry in entries:
+        if entry.init and entry.default is MISSING and entry.default_factory is MISSING:
+            arguments[entry.name]
+    known = {entry.name for entry in entries} or set(arguments)
+    unknown = sorted(set(arguments) - known)
+    if unknown:
+        raise ValueError(f"{kind.__name__} has no {unknown[0]!r}")
+    return kind(**arguments)
+
+
+def _table(document: Document, name: str) -> Mapping[str, Any]:
+    if not isinstance(document[name], dict):
+        raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
+    return document[name]
 
 
 def numbers_of(document: Document, names: Iterable[str]) -> dict[str, float]:

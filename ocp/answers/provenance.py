@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 
-from ocp.answers.documents import Document, numbers_of, versions
+from ocp.answers.documents import Document, made, numbers_of, versions
 from ocp.base.checks import finite, positive, whole
 from ocp.base.readonly import ReadOnlyDict
 from ocp.simulation.objective import Motion
 
 MOST_BOUND = 1e6
 """Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+
+
+MOST_STARTS, MOST_POINTS, MOST_STEPS = 10_000, 10_000, 20_000
 
 
 @dataclass(frozen=True)
@@ -37,10 +40,21 @@ class SolveSettings:
         object.__setattr__(self, "residual_limit", limit)
         if self.bound is not None:
             object.__setattr__(self, "bound", coefficient_bound(self.bound))
-        for name, least in (("starts", 1), ("seed", 0), ("steps", 1)):
-            value = getattr(self, name)
-            if value is not None or name != "steps":
-                object.__setattr__(self, name, whole(name, value, least))
+        object.__setattr__(self, "starts", number_of_starts(self.starts))
+        object.__setattr__(self, "seed", whole("seed", self.seed, 0))
+        if self.steps is not None:
+            steps = whole("steps", self.steps, 1, MOST_STEPS, "finer ones differ by rounding alone")
+            object.__setattr__(self, "steps", steps)
+
+
+def number_of_starts(value: object) -> int:
+    """A number of starts as an int; ValueError when it is out of range."""
+    return whole("starts", value, 1, MOST_STARTS, "each is a solve of a twentieth of a second")
+
+
+def number_of_points(value: object) -> int:
+    """How many points a front is to have as an int; ValueError when it is out of range."""
+    return whole("points", value, 2, MOST_POINTS, "50 show a front, and each takes some solves")
 
 
 def coefficient_bound(value: object) -> float:
@@ -118,4 +132,4 @@ def provenance_of(document: Document) -> Provenance:
         if not isinstance(document[name], dict):
             raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
     finite("seconds", document["seconds"], "s")
-    return Provenance(**document)
+    return made(Provenance, document)

@@ -8,7 +8,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from ocp.answers.provenance import Provenance, Verification
+from ocp.answers.provenance import Provenance, Verification, number_of_starts
 from ocp.base.checks import positive, whole
 from ocp.base.errors import SolverFailedError
 from ocp.floor.answer import Floor, Level
@@ -83,7 +83,7 @@ def energy_floor(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    starts, seed = whole("starts", starts, 1), whole("seed", seed, 0)
+    starts, seed = number_of_starts(starts), whole("seed", seed, 0)
     tolerance = positive("tolerance", tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, bool(smooth))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ocp.answers.documents import Document, profile_from_document, task_from_document
+from ocp.answers.documents import Document, made, profile_from_document, task_from_document
 from ocp.base.checks import finite, not_negative, positive, whole
 from ocp.front.points import FailedPoint, FrontPoint, Generation, Setting, non_dominated
 from ocp.profiles.joint_profile import JointProfile
@@ -35,7 +35,7 @@ def front_from_document(document: Document) -> dict[str, Any]:
     points = tuple(_point(profile, entry) for entry in document["points"])
     if points != non_dominated(points):
         raise ValueError("its points are out of order, or one is better than another")
-    residual, energy = document["reference"]
+    residual, energy = _pair("reference", document["reference"])
     seed = document["seed"]
     counts = ("evaluations", "failed", "infeasible")
     return {
@@ -65,7 +65,7 @@ def _point(profile: JointProfile, entry: Document) -> FrontPoint:
 
 
 def _generation(entry: Document) -> Generation:
-    checked = Generation(**entry)
+    checked = made(Generation, entry)
     share = not_negative("hypervolume", checked.hypervolume)
     if share > 1:
         raise ValueError(f"hypervolume is {share:g}, and a share is at most 1")
@@ -78,7 +78,7 @@ def _failure(entry: Document) -> FailedPoint:
 
 
 def _gap(entry: Sequence[float]) -> tuple[float, float]:
-    begin, end = entry
+    begin, end = _pair("gap", entry)
     return not_negative("gap", begin, "m"), not_negative("gap", end, "m")
 
 
@@ -86,6 +86,12 @@ def _table(name: str, entries: Any, kind: Any) -> Mapping[str, Any]:
     """A table of values of one kind, not of further tables."""
     _of_kind(name, entries, dict)
     return {key: _of_kind(f"{name}: {key}", value, kind) for key, value in entries.items()}
+
+
+def _pair(name: str, value: Any) -> Any:
+    if len(_of_kind(name, value, list)) != 2:
+        raise ValueError(f"{name} is {value!r}; give two numbers")
+    return value
 
 
 def _of_kind(name: str, value: Any, kind: Any) -> Any:

@@ -10,12 +10,14 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.answers.provenance import SolveSettings
-from ocp.base.checks import whole
-from ocp.base.workers import Say, Workers, death_of_process
+from ocp.answers.provenance import SolveSettings, number_of_points
+from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
 from ocp.front.answer import Front
+from ocp.front.assembly import front_of
+from ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
+from ocp.front.ends import Ends, find_ends
 from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, better, no_report
+from ocp.front.sweep import Guess, Report, Sweep, better, no_report
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.solution import Solution
@@ -94,12 +96,12 @@ def epsilon_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points, workers = whole("points", points, 2), whole("workers", workers, 1)
+    points, workers = number_of_points(points), number_of_workers(workers)
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
-    ends = sweep.ends()
+    ends = find_ends(sweep)
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
-    found.append(sweep.checked(ends.cheapest, asked, free=True))
+    found.append(checked(sweep, ends.cheapest, asked, free=True))
     report(2, points)
     heard = _Heard(report, points)
     iterations, complete = 0, True
@@ -116,7 +118,7 @@ def epsilon_front(
             found += shared
     except KeyboardInterrupt:
         complete = False
-    return sweep.front("epsilon", found, points, iterations=iterations, complete=complete)
+    return front_of(sweep, "epsilon", found, points, iterations=iterations, complete=complete)
 
 
 class _Heard:
@@ -187,8 +189,8 @@ class _Stretch:
             self._sweep(above, below)
         except KeyboardInterrupt:
             complete = False
-        points, all_checked = self._points(interrupted=not complete)
-        return points, complete and all_checked
+        points, whole = self._points(interrupted=not complete)
+        return points, complete and whole
 
     def _sweep(self, above: Guess, below: Guess) -> None:
         order, before_sweeps = range(len(self.limits)), self.sweep.iterations
@@ -259,10 +261,10 @@ class _Stretch:
             FailedPoint(asked, best.status.text) for best, asked in tried if not best.status.solved
         ]
         solved = [(best, asked) for best, asked in tried if best.status.solved]
-        points, all_checked = self.sweep.all_checked(
-            solved, interrupted=interrupted, heed=lambda: self.report(self.done)
+        points, whole = all_checked(
+            self.sweep, solved, interrupted=interrupted, heed=lambda: self.report(self.done)
         )
-        return [*points, *failed], all_checked
+        return [*points, *failed], whole
 
 
 def _in_processes(

@@ -21,7 +21,7 @@ from ocp.program.transcription import RESIDUAL
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 40, 80, 80, 8
+LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
 """Steps that a profile needs: more where more terms let the power change sign more often, and where
 limits hold only at the nodes."""
 _HIDDEN = 2e-3

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,23 +18,42 @@ MOST_STEPS = 3200
 STILL, STILL_SHARE = 1e-8, 1e-7
 """Verified residual up to which 'at rest on arrival' counts as kept: in metres, or as a share of
 what the plain cycloid leaves, whichever is more."""
-_ENERGY_AGREEMENT = 1e-3
 _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
 """Share of that which the residual at rest is brought below."""
-ENOUGH_STEPS = 150
-"""Steps with which a minimum counts though the solver did not settle there."""
 _ROUNDS = 12
 _OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
+
+
+@dataclass(frozen=True)
+class Care:
+    """How far to go for a solution that both integrators agree on.
+
+    Attributes
+    ----------
+    agreement : float
+        Share of the energy by which they may differ.
+    enough_steps : int
+        Steps with which a minimum counts though the solver did not settle there.
+    most_steps : int
+        Steps up to which they are doubled.
+    """
+
+    agreement: float = 1e-5
+    enough_steps: int = 150
+    most_steps: int = MOST_STEPS
+
+
+OF_A_PLAN = Care()
+"""The cheapest motion for the solver is the cheapest for the independent integrator to 1e-6."""
 
 
 def verified(
     problem: Problem,
     best: Solution,
     *,
-    most_steps: int = MOST_STEPS,
-    enough_steps: int = ENOUGH_STEPS,
+    care: Care = OF_A_PLAN,
     kept: Mapping[str, float] | None = None,
 ) -> tuple[Solution, Motion, int]:
     """Verify; mend the arrival, double the steps while energies disagree, tighten passed limits.
@@ -48,10 +68,8 @@ def verified(
         What was solved.
     best : Solution
         Its solution.
-    most_steps : int
-        Steps up to which they are doubled.
-    enough_steps : int
-        Steps with which a minimum counts though the solver did not settle there.
+    care : Care
+        How far to go.
     kept : mapping of str to float, optional
         The limits that the verified figures must keep; all of them by default.
 
@@ -77,8 +95,8 @@ def verified(
         tried.append((best, motion, steps))
         overrun = {name: motion.peak(name) / limit for name, limit in kept.items() if limit > 0}
         used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
-        rough = abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
-        unsettled = not best.settled and steps < enough_steps
+        rough = abs(best.energy - motion.energy) > care.agreement * motion.energy
+        unsettled = not best.settled and steps < care.enough_steps
         missed = abs(best.residual - motion.residual) > tolerated
         again = None
         if not rough and (missed or any(ratio > 1 for ratio in overrun.values())):
@@ -86,7 +104,7 @@ def verified(
         elif not (rough or unsettled):
             break
         if again is None or not again.status.solved:
-            if 2 * steps > most_steps:
+            if 2 * steps > care.most_steps:
                 break
             problem = problem.finer()
             again, used = problem.refined(best), dict(limits)

@@ -355,7 +355,7 @@ def test_a_front_from_before_the_first_release_is_refused(tmp_path):
     path = tmp_path / "front.json"
     front().save(path)
     path.write_text(path.read_text().replace('"version": 2', '"version": 1', 1))
-    with pytest.raises(FileFormatError, match=r"version 1 .* reads 2 to 2; find the front again"):
+    with pytest.raises(FileFormatError, match=r"version 1 .* reads 2; find the front again"):
         Front.load(path)
 
 
