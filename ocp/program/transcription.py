@@ -298,7 +298,8 @@ class NonlinearProgram:
             multipliers, [*sizes, constraints - sum(sizes)]
         )
         march, first = linearised
-        by_energy, of_power = ca.MX(motion.size, motion.size), ca.MX(1, motion.nodes)
+        by_energy = ca.MX(motion.size, motion.size)
+        of_power = ca.MX.zeros(1, motion.nodes)  # dense: `mac` keeps what it adds to as sparse
         if form.sampled:
             of_samples = ca.reshape(of_samples, 2, motion.steps)
             of_power = ca.vec(self._sampling.T @ of_samples).T
