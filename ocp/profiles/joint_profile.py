@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -37,6 +38,16 @@ class JointProfile(ABC):
     @abstractmethod
     def size(self) -> int:
         """How many coefficients the profile has."""
+
+    @property
+    def label(self) -> str:
+        """What the profile is called in a message."""
+        return f"{self.name} profile"
+
+    @property
+    def least_duration(self) -> float:
+        """The shortest duration for which the profile has a motion [s]; 0 where all will do."""
+        return 0.0
 
     @abstractmethod
     def derivatives(
@@ -147,12 +158,21 @@ class JointProfile(ABC):
         Raises
         ------
         ValueError
-            When a coefficient is missing, superfluous or not finite.
+            When a coefficient is missing, superfluous or not finite, or the duration is below
+            `least_duration`.
         """
-        return JointPath(self, self.checked(coefficients), start, target, duration)
+        return JointPath(self, self.checked(coefficients, duration), start, target, duration)
 
-    def checked(self, coefficients: ArrayLike) -> tuple[float, ...]:
-        """The coefficients as a tuple of `size` finite floats; ValueError otherwise."""
+    def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
+        """The coefficients as a tuple of `size` finite floats; ValueError otherwise.
+
+        ValueError, too, where a duration [s] is given that is below `least_duration`.
+        """
+        if duration is not None and duration < self.least_duration:
+            raise ValueError(
+                f"duration is {duration:g} s, too short for the {self.label}; give "
+                f"{_rounded_up(self.least_duration):.4g} s or more"
+            )
         try:
             values = np.atleast_1d(np.asarray(coefficients, dtype=float))
         except (TypeError, ValueError, OverflowError):
@@ -168,6 +188,12 @@ class JointProfile(ABC):
             bad = int(np.flatnonzero(~np.isfinite(values))[0])
             raise ValueError(f"coefficient {bad + 1} is {values[bad]}; give a finite number")
         return tuple(float(value) for value in values)
+
+
+def _rounded_up(value: float, digits: int = 4) -> float:
+    """The least number of so many digits that is not below a positive value."""
+    unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return math.ceil(value / unit) * unit
 
 
 def _with_rates(

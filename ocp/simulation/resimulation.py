@@ -65,7 +65,8 @@ def sample_trajectory(
     Raises
     ------
     ValueError
-        When the times do not increase from 0 or later, or the coefficients do not fit.
+        When the times do not increase from 0 or later, or coefficients or duration do not
+        fit the profile.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
@@ -73,7 +74,7 @@ def sample_trajectory(
     ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
     if not (ordered and np.all(np.isfinite(grid))):
         raise ValueError("sample times must be finite and increase from 0 or later")
-    checked = profile.checked(coefficients)
+    checked = profile.checked(coefficients, task.duration)
     moving, later = grid[grid <= task.duration], grid[grid > task.duration] - task.duration
     fractions, at = np.unique(np.append(moving / task.duration, [0.0, 1.0]), return_inverse=True)
     with _cvodes_along(checked):
@@ -120,12 +121,12 @@ def resimulated(
     Raises
     ------
     ValueError
-        When the coefficients do not fit the profile.
+        When the coefficients or the duration do not fit the profile.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
     residual_samples(task)  # refuses a window beyond reason
-    checked = profile.checked(coefficients)
+    checked = profile.checked(coefficients, task.duration)
     blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / _STEPS)
     with _cvodes_along(checked):
         figures = _figures(task.plant, profile, _STEPS * max(1, blocks))

@@ -252,11 +252,11 @@ def rollout(
     Raises
     ------
     ValueError
-        When the coefficients do not fit the profile.
+        When the coefficients or the duration do not fit the profile.
     """
     steps = default_steps(task) if steps is None else whole("steps", steps, 1)
     function = _compiled(task.plant, profile, steps)
-    values = function(ca.DM(profile.checked(coefficients)), ca.DM(task.move))
+    values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.move))
     joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
     residual = float(np.abs(residual_matrix(task) @ arrival.ravel()).max())
     motion = Motion.from_samples(

@@ -12,6 +12,7 @@ import click
 
 from models import Plant, known_plants
 from ocp.base.files import check_writable
+from ocp.profiles.shapers import SHAPERS
 from ocp.task.quantities import QUANTITIES, Quantity
 from studies.cli.quantities import (
     is_number,
@@ -127,6 +128,13 @@ OUTPUT = Parsed("file", _is_output)
 STATE = Parsed("file", _is_file)
 PICTURE = Parsed("picture", _is_picture)
 FOLDER = Parsed("folder", _is_folder)
+
+POLYNOMIAL = "polynomial"
+profile_option = click.option(
+    "--profile", type=click.Choice([POLYNOMIAL, *SHAPERS]), default=POLYNOMIAL, show_default=True,
+    help="How the joint moves: the cycloid of a polynomial, or the plain cycloid through an input "
+    "shaper for the plant's frequencies at the target.",
+)  # fmt: skip
 
 
 def _limit_option(quantity: Quantity) -> Callable[[F], F]:

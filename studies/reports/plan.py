@@ -6,7 +6,7 @@ import math
 
 from rich.console import Console
 
-from ocp import Motion, Plan, PointToPoint
+from ocp import Motion, Plan, PointToPoint, ShapedCycloid
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
 from studies.display.words import millimetres
@@ -25,11 +25,10 @@ def print_plan(console: Console, plan: Plan) -> None:
         The plan.
     """
     motion, check = plan.motion, plan.verification
-    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
     relative = abs(check.energy_difference) / motion.energy if motion.energy else 0.0
     rows = [
         *move_rows(plan.task, motion),
-        ("coefficients", coefficients or "none: the plain cycloid"),
+        _choice(plan),
         ("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
         ("status", plan.status.text),
@@ -59,7 +58,7 @@ def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     return [
         (
             "residual F1",
-            f"{millimetres(motion.residual)} at the tip within {task.residual_window:g} s",
+            f"{millimetres(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
         ),
         *((f"peak {name}", _peak(name, task, motion)) for name in known),
         ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none"),
@@ -80,6 +79,21 @@ def _large(task: PointToPoint, motion: Motion) -> str:
         f"  (warning: beyond {millimetres(limit)}, up to which the plant's deflections count as "
         "small; its equations are less exact there)"
     )
+
+
+def _choice(plan: Plan) -> tuple[str, str]:
+    """What tells the motion from others of its task, and its name."""
+    if isinstance(plan.profile, ShapedCycloid):
+        impulses = len(plan.profile.impulses.times)
+        shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
+        return "profile", f"{plan.profile.label}: {shaper}"
+    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    return "coefficients", coefficients or "none: the plain cycloid"
+
+
+def _tip(task: PointToPoint) -> str:
+    tips = task.plant.tips
+    return "tip" if tips == 1 else f"worst of {tips} tips"
 
 
 def _angle(value: float) -> str:
