@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.floor.motion import FreeMotion
+from ocp.profiles.free_motion import FreeMotion
 from ocp.simulation.collocation import mesh
 
 _AT_AN_END, _SHRINK = 3, 4.0

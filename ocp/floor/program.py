@@ -13,8 +13,8 @@ from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.status import SolveStatus
 from ocp.floor.grid import first_grid
-from ocp.floor.motion import FreeMotion
 from ocp.floor.transcription import FreePoint, FreeProgram
+from ocp.profiles.free_motion import FreeMotion
 from ocp.profiles.joint_profile import JointPath
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.ipopt import OPTIONS

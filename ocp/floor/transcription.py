@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from models import Plant
 from ocp.base.interrupts import keep_interrupts
-from ocp.floor.motion import joint_after
+from ocp.profiles.free_motion import joint_after
 from ocp.program.step_model import JOINT, LiftedStep, groups_of
 from ocp.program.symbols import split
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES

@@ -79,7 +79,7 @@ def find_ends(sweep: Sweep) -> Ends:
     cheapest = least_energy(free)
     sweep.iterations += cheapest.iterations
     if still is None:
-        least = least_peaks(free)
+        least = least_peaks(free.limits, free.guesses, free.least)
         if RESIDUAL not in least:
             return Ends(
                 cheapest,

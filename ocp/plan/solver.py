@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ocp.answers.provenance import Provenance, SolveSettings, Verification
 from ocp.plan.answer import Plan
-from ocp.plan.feasibility import explain, least_peaks
+from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
 from ocp.plan.verification import MOST_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
@@ -164,19 +164,20 @@ def least_energy(problem: Problem) -> Solution:
         When no start ended at an optimum for another reason.
     """
     solutions = [problem.solve(guess, finish=False) for guess in problem.guesses]
+    solutions, least = rescued(
+        solutions,
+        problem.limits,
+        problem.guesses[:2],
+        problem.least,
+        lambda found: problem.solve(found.coefficients, finish=False),
+    )
     solved = [solution for solution in solutions if solution.status.solved]
     if not solved:
-        least = least_peaks(problem, starts=2)
-        rescues = [found.coefficients for name, found in least.items()
-                   if found.peaks[name] <= problem.limits[name]]  # fmt: skip
-        solutions += [problem.solve(guess, finish=False) for guess in rescues]
-        solved = [solution for solution in solutions if solution.status.solved]
-        if not solved:
-            raise explain(problem, solutions, least)
+        raise explain(problem, solutions, least)
     before = sum(solution.iterations for solution in solutions)
-    least, finished = min(map(_energy, solved)), list[Solution]()
+    lowest, finished = min(map(_energy, solved)), list[Solution]()
     for found in sorted(solved, key=_energy):
-        near = found.energy <= least * (1 + _HIDDEN)
+        near = found.energy <= lowest * (1 + _HIDDEN)
         if near and not any(same_minimum(found, other) for other in finished):
             finished.append(problem.finished(replace(found, iterations=0)))
     best = min(finished, key=_energy)

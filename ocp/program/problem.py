@@ -81,6 +81,10 @@ class Problem:
         found = run.solve(guess, finish)
         return replace(found, iterations=iterations + found.iterations)
 
+    def least(self, guess: NDArray[np.float64], limits: Mapping[str, float], name: str) -> Solution:
+        """Make one peak as small as it can be within other limits."""
+        return self.within(limits).solve(guess, {name: 1.0})
+
     @keep_interrupts()
     def finished(self, found: Solution) -> Solution:
         """Go on from a sampled minimum of the energy to the resolved one."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -192,6 +192,11 @@ class Motion:
         """The residual, or the peak of a quantity, by name: infinite where it is not known."""
         value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
         return math.inf if value is None else float(value)
+
+    def passed(self, limits: Mapping[str, float], room: float = 0.0) -> dict[str, float]:
+        """What passes its limit by more than a share `room`: its peak over the limit, by name."""
+        of_limit = {name: self.peak(name) / limit for name, limit in limits.items() if limit > 0}
+        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + room}
 
     @classmethod
     def from_samples(

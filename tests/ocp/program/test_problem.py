@@ -11,6 +11,7 @@ from ocp.plan.solver import _HIDDEN
 from ocp.program import run
 from ocp.program.solution import same_minimum
 from ocp.program.transcription import RESIDUAL
+from ocp.simulation.piecewise import PiecewiseMotion
 from ocp.simulation.resimulation import resimulated
 from ocp.task.point_to_point import LIMITS
 
@@ -75,9 +76,10 @@ def test_a_corrected_solution_rests_by_the_other_integrator(problem, task, steps
     # Few steps miss the true state on arrival; what they miss is given back.
     asked = problem(task, AT_REST, bound, steps=steps)
     found = asked.solve(START)
-    motion, arrival = resimulated(task, PROFILE, found.coefficients)
+    first = resimulated(task, PiecewiseMotion.of_profile(task, PROFILE, found.coefficients))
+    motion = first.motion
     assert motion.residual > 1e-12
-    corrected = asked.corrected(found, arrival)
+    corrected = asked.corrected(found, first.arrival)
     assert corrected.status is SolveStatus.OPTIMAL
     assert corrected.settled
     # By what it was told: IPOPT keeps scaled constraints to 1e-10, here 5e-12 m at most.

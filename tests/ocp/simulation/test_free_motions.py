@@ -7,7 +7,14 @@ from scipy.integrate import quad, solve_ivp
 from models import JointMotion
 from ocp import CycloidPolynomial, resimulate
 from ocp.floor.grid import finer, first_grid
-from ocp.floor.motion import FreeMotion, simulate
+from ocp.profiles.free_motion import FreeMotion
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.resimulation import resimulated
+
+
+def simulate(task, free):
+    return resimulated(task, PiecewiseMotion.of_free_motion(task, free))
+
 
 COARSE = np.array([0.0, 0.01, 0.3, 0.45, 0.8])
 
