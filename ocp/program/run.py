@@ -13,10 +13,10 @@ from models import Plant
 from ocp.base.status import SolveStatus
 from ocp.profiles.joint_profile import JointProfile
 from ocp.program.condensed import condensed
-from ocp.program.ipopt import PEAK, RESOLVED, SAMPLED, UNBOXED
+from ocp.program.ipopt import PEAK, RESOLVED, SAMPLED, UNBOXED, Point, Stop
 from ocp.program.solution import ENERGY, Solution
 from ocp.program.task_program import TaskProgram
-from ocp.program.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop
+from ocp.program.transcription import RESIDUAL, Form, NonlinearProgram
 from ocp.simulation.collocation import NODES
 from ocp.simulation.objective import two_samples
 
