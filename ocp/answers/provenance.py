@@ -2,16 +2,35 @@
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
 
-from ocp.answers.documents import Document, numbers_of, versions
+import casadi as ca
+import numpy as np
+
+from models import __version__
 from ocp.base.checks import finite, positive, whole
+from ocp.base.ranges import CountFromOne, NotNegative
 from ocp.base.readonly import ReadOnlyDict
 from ocp.simulation.objective import Motion
 
+Setting = str | bool | int | float | None
+S = TypeVar("S")
+
 MOST_BOUND = 1e6
 """Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+
+
+def versions() -> dict[str, str]:
+    """Versions of what computed an answer."""
+    return {
+        "quietarm": __version__,
+        "casadi": ca.CasadiMeta.version(),
+        "numpy": np.__version__,
+        "python": platform.python_version(),
+    }
 
 
 @dataclass(frozen=True)
@@ -29,6 +48,7 @@ class SolveSettings:
     starts: int = 4
     seed: int = 0
     steps: int | None = None
+    guess: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         limit = finite("residual limit", self.residual_limit, "m")
@@ -41,6 +61,8 @@ class SolveSettings:
             value = getattr(self, name)
             if value is not None or name != "steps":
                 object.__setattr__(self, name, whole(name, value, least))
+        if self.guess is not None:
+            object.__setattr__(self, "guess", tuple(finite("guess", a) for a in self.guess))
 
 
 def coefficient_bound(value: object) -> float:
@@ -68,7 +90,7 @@ class Verification:
         Those less the independent integrator's [J, m].
     """
 
-    steps: int
+    steps: CountFromOne
     fixed_step_energy: float
     fixed_step_residual: float
     energy_difference: float
@@ -81,15 +103,17 @@ class Verification:
 
 
 @dataclass(frozen=True)
-class Provenance:
+class Provenance(Generic[S]):
     """What is needed to get an answer again.
 
     Attributes
     ----------
     method : str
         ``"ipopt"``, ``"given coefficients"`` or the name of a metaheuristic.
-    settings : dict
-        What was asked of the method, the seed included.
+    settings : dataclass or None
+        What was asked of the gradient's solver, the seed included; None where it was not used.
+    search : dict
+        Settings of the search that the coefficients come from; empty where there was none.
     versions : dict of str to str
         Versions of quietarm, casadi, numpy and Python.
     seconds : float
@@ -97,25 +121,11 @@ class Provenance:
     """
 
     method: str
-    settings: Mapping[str, str | int | float | None]
+    settings: S
+    search: Mapping[str, Setting] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=versions)
-    seconds: float = field(default=0.0, compare=False)
+    seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
-        for name in ("settings", "versions"):
+        for name in ("search", "versions"):
             object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
-
-
-def verification_of(document: Document) -> Verification:
-    """The verification of a document; KeyError, TypeError or ValueError where it is not one."""
-    names = [entry.name for entry in fields(Verification) if entry.name != "steps"]
-    return Verification(whole("steps", document["steps"], 1), **numbers_of(document, names))
-
-
-def provenance_of(document: Document) -> Provenance:
-    """The provenance of a document; KeyError, TypeError or ValueError where it is not one."""
-    for name in ("settings", "versions"):
-        if not isinstance(document[name], dict):
-            raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
-    finite("seconds", document["seconds"], "s")
-    return Provenance(**document)

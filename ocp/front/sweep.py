@@ -327,7 +327,7 @@ class Sweep:
                       "steps": self.steps},
             seed=settings.seed,
             reference=reference_corner(self.task),
-            evaluations=self.iterations + iterations,
+            iterations=self.iterations + iterations,
             failed=len(failures),
             failures=failures,
             gaps=tuple(gaps),

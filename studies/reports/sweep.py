@@ -26,7 +26,7 @@ def print_sweep(console: Console, front: Front, asked_for: int) -> None:
     state = "" if front.complete else " (interrupted: what was found until then)"
     print_lines(
         console,
-        f"{front.method}: {len(front.points)} points, {front.evaluations} iterations of the solver "
+        f"{front.method}: {len(front.points)} points, {front.iterations} iterations of the solver "
         f"in {front.seconds:.1f} s{state}",
         *point_lines(front),
         *failure_lines(front, asked_for),
