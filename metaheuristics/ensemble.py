@@ -14,12 +14,11 @@ from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.search import search
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.base.checks import whole
-from ocp.base.workers import Say, Workers, remedy
+from ocp.base.workers import Say, Workers, number_of_workers, remedy
 
 STILL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
 MOST_RUNS = 10_000
-"""More fronts would fill the memory."""
 
 _KILLED_REMEDY = "where memory ran short, give fewer workers or a smaller population"
 
@@ -94,11 +93,14 @@ def energy_at(front: Front, residual_limit: float = STILL) -> float:
         return np.nan
 
 
+def number_of_runs(value: object, name: str = "runs") -> int:
+    """A number of seeds as an int; ValueError when it is out of range."""
+    return whole(name, value, 1, MOST_RUNS, "the fronts of more would fill the memory")
+
+
 def seeds_of(seed: int, runs: int) -> range:
     """The seeds of so many runs from the first on; ValueError when a number is out of range."""
-    seed, runs = whole("seed", seed, 0), whole("runs", runs, 1)
-    if runs > MOST_RUNS:
-        raise ValueError(f"runs is {runs}; give at most {MOST_RUNS}")
+    seed, runs = whole("seed", seed, 0), number_of_runs(runs)
     return range(seed, seed + runs)
 
 
@@ -148,7 +150,7 @@ def search_many(
     LostSeedsError
         When a process died, as where memory runs out; it holds the fronts of the other seeds.
     """
-    seeds, workers = seeds_of(seed, runs), whole("workers", workers, 1)
+    seeds, workers = seeds_of(seed, runs), number_of_workers(workers)
     if not isinstance(method, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ValueError(
             f"method is {type(method).__name__}; give {' or '.join(map(repr, PRESETS))}, or call "

@@ -78,6 +78,9 @@ class Plant(ABC):
     modes: ClassVar[int]
     """How many modal amplitudes the plant has."""
 
+    small_deflection: ClassVar[float | None] = None
+    """Largest tip displacement that the equations are made for [m]; None where none is stated."""
+
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
 

@@ -1,8 +1,14 @@
 """What a person runs: the command line, and the studies behind it.
 
 Rooms, each of which may import those after it: `cli`, then `study` and `reproduction`, `runs`,
-`reports`, `comparison`, `paper`, and last `display` and `methods`, the registry of methods. All of
-them may import the other three packages.
+`reports`, `comparison`, `paper`, and last `display`, `methods`, the registry of methods, and
+`early`, for Ctrl-C while the command is being loaded. All of them may import the other three
+packages, but for `early`, which comes before everything.
 """
+
+# ruff: noqa: E402  # what follows takes a third of a second
+from studies.early import end_in_one_line
+
+end_in_one_line()
 
 import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]  # refuses a file that shadows models

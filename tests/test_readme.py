@@ -191,7 +191,8 @@ def test_the_commands_run_one_after_another(tmp_path, lines):
         )
         assert (ran.returncode, ran.stdout != "") == (0, True), ran.stderr
         said = ran.stderr.splitlines()
-        assert [line for line in said if not line.startswith("generation ")] == []  # progress
+        progress = ("generation ", "refining", "finding", "solving", "integrating")
+        assert [line for line in said if not line.startswith(progress)] == []
         options = ("--output", "--csv", "--figure")
         asked |= {words[i + 1] for i, word in enumerate(words) if word in options}
         assert {path.name for path in tmp_path.iterdir()} == asked

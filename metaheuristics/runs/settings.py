@@ -11,6 +11,20 @@ from ocp import JointProfile, PointToPoint
 from ocp.answers.provenance import coefficient_bound, versions
 from ocp.base.checks import whole
 
+MOST_INDIVIDUALS, MOST_GENERATIONS = 100_000, 1_000_000
+
+
+def number_of_individuals(value: object) -> int:
+    """The size of a population as an int; ValueError when it is out of range."""
+    # a crossing takes a pair, and a swarm of one has nobody to learn from
+    because = f"{MOST_INDIVIDUALS} take 1.6 GB of memory"
+    return whole("population", value, 2, MOST_INDIVIDUALS, because)
+
+
+def number_of_generations(value: object) -> int:
+    """A number of generations as an int; ValueError when it is out of range."""
+    return whole("generations", value, 1, MOST_GENERATIONS, "the longest of the paper's takes 500")
+
 
 @dataclass(frozen=True)
 class SearchSettings:
@@ -38,9 +52,8 @@ class SearchSettings:
     def __post_init__(self) -> None:
         object.__setattr__(self, "bound", coefficient_bound(self.bound))
         if self.population is not None:
-            # a crossing takes a pair, and a swarm of one has nobody to learn from
-            object.__setattr__(self, "population", whole("population", self.population, 2))
-        object.__setattr__(self, "generations", whole("generations", self.generations, 1))
+            object.__setattr__(self, "population", number_of_individuals(self.population))
+        object.__setattr__(self, "generations", number_of_generations(self.generations))
 
 
 @dataclass(frozen=True)

@@ -110,9 +110,10 @@ def content_of(
     if found == version:
         return content
     if found not in upgrades:
+        oldest = min(upgrades, default=version)
         raise FileFormatError(
             f"{path} has version {found} of the {name} format and this quietarm reads "
-            f"{min(upgrades, default=version)} to {version}; find the {name} again"
+            f"{version if oldest == version else f'{oldest} to {version}'}; find the {name} again"
         )
     with reading(path, name):
         return upgrades[found](content)
@@ -125,9 +126,11 @@ def reading(path: str | Path, name: str) -> Iterator[None]:
         yield
     except KeyError as error:
         raise FileFormatError(f"{path} is not a whole {name}: {error} is missing") from None
-    except OverflowError:
-        raise FileFormatError(
-            f"{path} is not a valid {name}: a number is beyond double precision"
-        ) from None
-    except (TypeError, ValueError, AttributeError, IndexError, RecursionError) as error:
+    except ValueError as error:
         raise FileFormatError(f"{path} is not a valid {name}: {error}") from None
+    except (TypeError, AttributeError, IndexError, OverflowError, RecursionError):
+        # in Python's own words, which help nobody
+        raise FileFormatError(
+            f"{path} is not a valid {name}: an entry is not of the kind it should be; write the "
+            f"{name} again"
+        ) from None

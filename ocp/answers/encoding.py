@@ -127,9 +127,13 @@ def _named(what: str, entry: Any, known: Mapping[str, type[Any]]) -> Any:
             f"{', '.join(sorted(known))}); import the file that defines it first"
         )
     arguments = {key: value for key, value in entry.items() if key != "name"}
-    unknown = sorted(arguments.keys() - {field.name for field in dataclasses.fields(known[name])})
+    fields = {field.name: field for field in dataclasses.fields(known[name])}
+    unknown = sorted(arguments.keys() - fields)
     if unknown:
         raise ValueError(f"its {what} {name!r} has no {reprlib.repr(unknown[0])}; take it out")
+    for field in fields.values():
+        if field.default is field.default_factory is dataclasses.MISSING:
+            arguments[field.name]
     try:
         return known[name](**arguments)
     except OverflowError:

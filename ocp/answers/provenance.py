@@ -21,6 +21,7 @@ S = TypeVar("S")
 
 MOST_BOUND = 1e6
 """Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+MOST_STARTS, MOST_POINTS, MOST_STEPS = 10_000, 10_000, 20_000
 
 
 def versions() -> dict[str, str]:
@@ -57,12 +58,23 @@ class SolveSettings:
         object.__setattr__(self, "residual_limit", limit)
         if self.bound is not None:
             object.__setattr__(self, "bound", coefficient_bound(self.bound))
-        for name, least in (("starts", 1), ("seed", 0), ("steps", 1)):
-            value = getattr(self, name)
-            if value is not None or name != "steps":
-                object.__setattr__(self, name, whole(name, value, least))
+        object.__setattr__(self, "starts", number_of_starts(self.starts))
+        object.__setattr__(self, "seed", whole("seed", self.seed, 0))
+        if self.steps is not None:
+            steps = whole("steps", self.steps, 1, MOST_STEPS, "finer ones differ by rounding alone")
+            object.__setattr__(self, "steps", steps)
         if self.guess is not None:
             object.__setattr__(self, "guess", tuple(finite("guess", a) for a in self.guess))
+
+
+def number_of_starts(value: object) -> int:
+    """A number of starts as an int; ValueError when it is out of range."""
+    return whole("starts", value, 1, MOST_STARTS, "each is a solve of a twentieth of a second")
+
+
+def number_of_points(value: object) -> int:
+    """How many points a front is to have as an int; ValueError when it is out of range."""
+    return whole("points", value, 2, MOST_POINTS, "50 show a front, and each takes some solves")
 
 
 def coefficient_bound(value: object) -> float:

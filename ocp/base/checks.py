@@ -60,8 +60,35 @@ def not_negative(name: str, value: object, unit: str = "") -> float:
     return number
 
 
-def whole(name: str, value: object, least: int) -> int:
-    """A whole number of at least `least` as an int; ValueError otherwise."""
+def whole(name: str, value: object, least: int, most: int | None = None, because: str = "") -> int:
+    """A whole number as an int.
+
+    Parameters
+    ----------
+    name : str
+        What the number is, for the message.
+    value : object
+        What was given; numpy's numbers count, booleans and text do not.
+    least : int
+        The least that it may be.
+    most : int, optional
+        The most that it may be.
+    because : str
+        Why no more, for the message.
+
+    Returns
+    -------
+    int
+        The number.
+
+    Raises
+    ------
+    ValueError
+        When it is no whole number, or out of range.
+    """
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
-    return int(value)
+    number = int(value)
+    if most is not None and number > most:
+        raise ValueError(f"{name} is {number}; give at most {most}{because and f': {because}'}")
+    return number

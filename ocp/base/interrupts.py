@@ -1,4 +1,4 @@
-"""Ctrl-C during casadi's own loops, which swallow it."""
+"""Ctrl-C: lost nowhere, not even in casadi's own loops, and let in only where nothing breaks."""
 
 from __future__ import annotations
 
@@ -7,8 +7,34 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
 
 _deferring = False
+_listeners: list[list[int]] = []
+_signals = [signal.SIGINT]
+"""What stops the work."""
+
+
+@contextmanager
+def as_ctrl_c() -> Iterator[None]:
+    """Let the end of a batch job and a closed terminal stop the block as Ctrl-C does.
+
+    For a program that is a process of its own: SIGTERM and SIGHUP then raise KeyboardInterrupt,
+    unless somebody handles or ignores them already.
+    """
+    wanted = [getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP")]
+    taken = [one for one in wanted if one and signal.getsignal(one) is signal.SIG_DFL]
+    if threading.current_thread() is not threading.main_thread():
+        taken = []
+    for one in taken:
+        signal.signal(one, signal.default_int_handler)
+    _signals.extend(taken)
+    try:
+        yield
+    finally:
+        for one in taken:
+            _signals.remove(one)
+            signal.signal(one, signal.SIG_DFL)
 
 
 @contextmanager
@@ -57,22 +83,48 @@ def note_interrupts() -> Iterator[list[int]]:
 
 
 @contextmanager
+def hear_interrupts() -> Iterator[list[int]]:
+    """Tell the block of every interrupt, also of those that work inside it ends well in spite of.
+
+    An interrupt acts as it would without this. Work that keeps what it found may come to its end
+    all the same, and its answer then does not tell that the rest is not wanted any more.
+
+    Yields
+    ------
+    list of int
+        The interrupts until now.
+    """
+    with _noting(at_once=True) as came:
+        _listeners.append(came)
+        try:
+            yield came
+        finally:
+            _listeners.pop()
+
+
+@contextmanager
 def _noting(at_once: bool) -> Iterator[list[int]]:
     """Note the interrupts that come during the block; `at_once` they act as before, too."""
     came: list[int] = []
-    before = signal.getsignal(signal.SIGINT)
+    handlers: dict[int, Any] = {number: signal.getsignal(number) for number in _signals}
+    before = {number: handler for number, handler in handlers.items() if callable(handler)}
     in_main = threading.current_thread() is threading.main_thread()
-    if not in_main or not callable(before) or (at_once and _deferring):
+    if not in_main or not before or (at_once and _deferring):
         yield came
         return
 
     def note(number: int, frame: FrameType | None) -> None:
         came.append(number)
         if at_once:
-            before(number, frame)
+            before[number](number, frame)
+        else:  # it ends here: nobody farther out would hear of it
+            for heard in _listeners:
+                heard.append(number)
 
-    signal.signal(signal.SIGINT, note)
+    for number in before:
+        signal.signal(number, note)
     try:
         yield came
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -12,6 +12,7 @@ from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+from ocp.base.checks import whole
 from ocp.base.interrupts import defer_interrupts
 
 Say = Callable[[Any], None]
@@ -27,6 +28,7 @@ _CONTEXT = get_context("spawn")  # a fork would carry casadi's and the threads' 
 _PATIENCE = 1.2
 """How long [s] the pieces that are worked on at Ctrl-C have to hand over what they found."""
 _SAY_SECONDS = 0.2
+MOST_WORKERS = 1000
 _ENDED = "status"
 """How the end of a process is told that ended by itself, neither killed nor out of memory."""
 
@@ -60,6 +62,11 @@ def remedy(
 def death_of_process(how: str) -> str:
     """Why a piece is missing whose process died, from what `Workers.lost` says of it."""
     return f"its process died ({how}); {remedy([how])}"
+
+
+def number_of_workers(value: object) -> int:
+    """A number of processes as an int; ValueError when it is out of range."""
+    return whole("workers", value, 1, MOST_WORKERS, "each is a process with 0.1 GB of memory")
 
 
 class Workers:
@@ -216,7 +223,7 @@ class _Worker:
 
     def end(self) -> None:
         """End the process, whatever it does."""
-        self.process.terminate()
+        self.process.kill()
         self.process.join()
         self.link.close()
 
@@ -247,12 +254,16 @@ def _serve(link: Connection, work: Work) -> None:
 
 @contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """Let a process that starts here never see Ctrl-C, which a terminal sends to every process."""
+    """Let a process that starts here see neither Ctrl-C nor the end of a batch job.
+
+    Both are sent to every process of a group, and what this one found is to be asked for first.
+    """
     if sys.platform == "win32":
         yield
         return
     resource_tracker.ensure_running()  # its own start would let the signal through again
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    stops = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, stops)
     try:
         yield
     finally:

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from ocp.answers.documents import Upgrades
 from ocp.answers.older import floor_of_version_1
-from ocp.answers.provenance import Provenance, Verification
+from ocp.answers.provenance import Provenance, Verification, number_of_starts
 from ocp.answers.saved import Saved
 from ocp.base.checks import positive, whole
 from ocp.base.ranges import CountFromOne
@@ -57,8 +57,8 @@ class FloorSettings:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "smooth", bool(self.smooth))
-        for name, least in (("starts", 1), ("seed", 0)):
-            object.__setattr__(self, name, whole(name, getattr(self, name), least))
+        object.__setattr__(self, "starts", number_of_starts(self.starts))
+        object.__setattr__(self, "seed", whole("seed", self.seed, 0))
         object.__setattr__(self, "tolerance", positive("tolerance", self.tolerance))
 
 

@@ -10,9 +10,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.answers.provenance import SolveSettings
-from ocp.base.checks import whole
-from ocp.base.workers import Say, Workers, death_of_process
+from ocp.answers.provenance import SolveSettings, number_of_points
+from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
 from ocp.front.answer import Front
 from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, better, no_report
@@ -94,7 +93,7 @@ def epsilon_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points, workers = whole("points", points, 2), whole("workers", workers, 1)
+    points, workers = number_of_points(points), number_of_workers(workers)
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = sweep.ends()
     found: list[FrontPoint | FailedPoint] = [ends.still_point]

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings
-from ocp.base.checks import finite, whole
-from ocp.base.workers import Say, Workers, death_of_process
+from ocp.base.checks import finite
+from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
 from ocp.front.answer import Front
 from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import RESIDUAL_LIMIT, Report, Sweep, no_report
@@ -91,7 +91,7 @@ def polish_front(
         When the front has no point, or `workers` is below 1.
     """
     front.stillest()  # refuses an empty front
-    workers = min(whole("workers", workers, 1), len(front.points))
+    workers = min(number_of_workers(workers), len(front.points))
     bound = front.settings.get("bound")
     settings = SolveSettings(
         bound=None if bound is None else finite("bound", bound),

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ocp.answers.provenance import SolveSettings
-from ocp.base.checks import finite, whole
+from ocp.answers.provenance import SolveSettings, number_of_points
+from ocp.base.checks import finite
 from ocp.front.answer import Front
 from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, no_report
@@ -79,7 +79,7 @@ def weighted_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points = whole("points", points, 2)
+    points = number_of_points(points)
     chosen = None if weights is None else [_checked(pair) for pair in weights]
     if chosen == []:
         raise ValueError("no weights are given; give a pair of residual and energy, or none at all")

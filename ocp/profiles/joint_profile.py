@@ -131,7 +131,12 @@ class JointProfile(ABC):
 
     def checked(self, coefficients: ArrayLike) -> tuple[float, ...]:
         """The coefficients as a tuple of `size` finite floats; ValueError otherwise."""
-        values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        try:
+            values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+        except (TypeError, ValueError, OverflowError):
+            raise ValueError(
+                f"coefficients are {coefficients!r}; give {self.size} numbers"
+            ) from None
         if values.shape != (self.size,):
             raise ValueError(
                 f"got {values.size} coefficients for a profile of {self.size}; "

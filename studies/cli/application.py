@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -9,6 +10,9 @@ from importlib import import_module
 import click
 
 from ocp import FileFormatError, QuietarmError
+from ocp.base.interrupts import as_ctrl_c
+from studies.cli.streams import patient_streams
+from studies.early import ready
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
@@ -84,27 +88,41 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Raises
     ------
     SystemExit
-        0 when done, 2 for bad input or a file that fails, 1 where a solve failed or was
-        interrupted.
+        0 when done; 1 where there is no answer, or not the whole of it: a solve failed or the work
+        was interrupted; 2 for bad input, or a file that cannot be read or written.
     """
+    loaded_by_itself = ready()
     try:
-        status = quietarm.main(arguments, prog_name="quietarm", standalone_mode=False)
+        with patient_streams() as out, as_ctrl_c():
+            status = _run(arguments)
+            out.flush()
+            if out.trouble:
+                status = _complain(f"standard output cannot be written: {out.trouble}", BAD_INPUT)
+    except KeyboardInterrupt:  # one more, while the first was being answered
+        status = NOT_SOLVED
+    if loaded_by_itself:  # nothing is left to be stopped
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.exit(status)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    try:
+        return quietarm.main(arguments, prog_name="quietarm", standalone_mode=False) or 0
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
-        status = BAD_INPUT
+        return BAD_INPUT
     except click.ClickException as error:
-        status = _complain(error.format_message(), BAD_INPUT)
+        return _complain(error.format_message(), BAD_INPUT)
     except (FileFormatError, ValueError) as error:
-        status = _complain(str(error), BAD_INPUT)
+        return _complain(str(error), BAD_INPUT)
     except QuietarmError as error:
-        status = _complain(str(error), NOT_SOLVED)
+        return _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
-        status = _complain("interrupted; nothing was written", NOT_SOLVED)
+        return _complain("interrupted; nothing was written", NOT_SOLVED)
     except MemoryError:
-        status = _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
+        return _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
     except OSError as error:
-        status = _complain(f"{error.filename or ''} {error.strerror or error}".strip(), BAD_INPUT)
-    sys.exit(status or 0)
+        return _complain(f"{error.filename or ''} {error.strerror or error}".strip(), BAD_INPUT)
 
 
 def _complain(message: str, status: int) -> int:

@@ -1,10 +1,11 @@
-"""What several commands do with their arguments: make a task, write a plan, refuse an option."""
+"""What several commands do with their arguments: make a task, name files, refuse an option."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
@@ -12,7 +13,15 @@ from click.core import ParameterSource
 from models import Plant
 from ocp import Plan, PointToPoint
 from ocp.plan.answer import ticks_of_move
+from studies.cli.options import bare_angles
+from studies.display.saving import File, drawing
 from studies.runs.files import refuse_same_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+TURN = 2 * math.pi
 
 
 def split_options(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
@@ -21,37 +30,45 @@ def split_options(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
     names = {"--output": "output", "--csv": "csv_file", "--figure": "figure"}
     refuse_same_file((option, outputs[name]) for option, name in names.items())
     task = task_of(rest)
-    ticks_of_move(task.duration, outputs["sample_rate"])  # refused now rather than after the solve
+    if outputs["csv_file"] is not None:  # refused now rather than after the solve
+        ticks_of_move(task.duration, outputs["sample_rate"])
     return task, outputs
 
 
 def task_of(rest: dict[str, Any]) -> PointToPoint:
     """The task of the options that `task_options` adds; ValueError where it is none."""
     plant: Plant = rest.pop("plant")
-    return PointToPoint(plant, **rest)
+    task = PointToPoint(plant, **rest)
+    _ask_for_degrees(task)
+    return task
 
 
-def write_plan(
+def _ask_for_degrees(task: PointToPoint) -> None:
+    """Refuse a move beyond a turn whose angles were typed without a unit."""
+    for name, text in bare_angles(click.get_current_context()).items():
+        if abs(task.span) > TURN and abs(getattr(task, name)) > TURN:
+            degrees = math.degrees(getattr(task, name))
+            raise ValueError(
+                f"{name} {text} is in radians, {degrees:.6g} degrees, more than a turn; were "
+                f"degrees meant? give {text}deg, or {text}rad"
+            )
+
+
+def plan_files(
     found: Plan, output: Path | None, csv_file: Path | None, sample_rate: float, figure: Path | None
-) -> None:
-    """Write a plan to the files that were asked for, and say so."""
-    if output is not None:
-        found.save(output)
-    if csv_file is not None:
-        found.save_csv(csv_file, sample_rate)
-    if figure is not None:
-        from studies.display.pictures import save_figure
+) -> list[File]:
+    """The files of a plan that were asked for."""
+
+    def picture() -> Figure:
         from studies.reports.motion_figure import four_panels
 
-        save_figure(four_panels(found), figure)
-    say_written(output, csv_file, figure)
+        return four_panels(found)
 
-
-def say_written(*files: Path | None) -> None:
-    """Print the names of the files that were written; None is a file that was not asked for."""
-    for path in files:
-        if path is not None:
-            click.echo(f"wrote {path}")
+    return [
+        (output, found.save),
+        (csv_file, lambda path: found.save_csv(path, sample_rate)),
+        (figure, drawing(picture)),
+    ]
 
 
 def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequence[str]]) -> None:

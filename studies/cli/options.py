@@ -13,6 +13,7 @@ import click
 from models import Plant, known_plants
 from ocp.base.files import check_writable
 from studies.cli.quantities import (
+    is_number,
     parse_angle,
     parse_coefficients,
     parse_length,
@@ -20,7 +21,9 @@ from studies.cli.quantities import (
     parse_weights,
 )
 from studies.display.picture_names import check_figure
+from studies.display.saving import STDOUT
 
+_BARE = "quietarm.bare_angles"
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -40,6 +43,21 @@ class Parsed(click.ParamType):
             self.fail(str(error), param, ctx)
 
 
+class _Angle(Parsed):
+    """An angle; `bare_angles` tells which were typed as a number alone."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read the text, and note where it has no unit."""
+        if isinstance(value, str) and is_number(value) and param and ctx:
+            ctx.meta.setdefault(_BARE, {})[param.name] = value.strip()
+        return super().convert(value, param, ctx)
+
+
+def bare_angles(context: click.Context) -> dict[str, str]:
+    """The angles that were typed without a unit, by the name of their option."""
+    return context.meta.get(_BARE, {})
+
+
 def parse_plant(name: str) -> Plant:
     """A plant by its name, with the paper's parameters; ValueError suggests the nearest name."""
     plants = known_plants()
@@ -51,12 +69,32 @@ def parse_plant(name: str) -> Plant:
     raise ValueError(f"unknown plant {name!r}; {hint}(known: {', '.join(sorted(plants))})")
 
 
+def _is_file(text: str) -> Path:
+    if text == str(STDOUT):
+        raise ValueError(f"this is for a file, not for standard output; give its name, or ./{text}")
+    return check_writable(_named(text))
+
+
 def _is_output(text: str) -> Path:
-    return check_writable(text)
+    if text == str(STDOUT):
+        return STDOUT
+    return check_writable(_named(text))
+
+
+def _is_picture(text: str) -> Path:
+    return check_figure(_named(text))
+
+
+def _named(text: str) -> str:
+    if not text:
+        raise ValueError("the name is empty; give one")
+    return text
 
 
 def _is_folder(text: str) -> Path:
-    folder = Path(text)
+    if text == str(STDOUT):
+        raise ValueError(f"this is for a folder, not for standard output; give ./{text} or another")
+    folder = Path(_named(text))
     place = folder
     if folder.is_dir():
         check_writable(folder / "any")
@@ -74,20 +112,19 @@ def _is_folder(text: str) -> Path:
 
 
 def _is_input(text: str) -> Path:
-    if not text:
-        raise ValueError("the name of the file is empty; give one")
-    return Path(text)
+    return Path(_named(text))
 
 
 PLANT = Parsed("plant", parse_plant)
-ANGLE = Parsed("angle", parse_angle)
+ANGLE = _Angle("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
 COEFFICIENTS = Parsed("numbers", parse_coefficients)
 WEIGHTS = Parsed("weights", parse_weights)
 INPUT = Parsed("file", _is_input)
 OUTPUT = Parsed("file", _is_output)
-PICTURE = Parsed("picture", check_figure)
+STATE = Parsed("file", _is_file)
+PICTURE = Parsed("picture", _is_picture)
 FOLDER = Parsed("folder", _is_folder)
 
 _TASK_OPTIONS = (
@@ -104,12 +141,16 @@ _TASK_OPTIONS = (
                  help="Time after arrival in which the residual is measured."),
 )  # fmt: skip
 _OUTPUT_OPTIONS = (
-    click.option("--output", type=OUTPUT, help="Write the plan to this JSON file."),
+    click.option("--output", type=OUTPUT,
+                 help="Write the plan to this JSON file; - is standard output."),
     click.option("--csv", "csv_file", type=OUTPUT, help="Write the move to this CSV file."),
     click.option("--sample-rate", type=float, default=1000.0, show_default=True,
                  help="Rows per second of the CSV file [Hz]."),
     click.option("--figure", type=PICTURE, help="Draw the four panels (.png, .pdf or .svg)."),
 )  # fmt: skip
+
+
+quiet_option = click.option("--quiet", is_flag=True, help="Show no progress.")
 
 
 def task_options(command: F) -> F:

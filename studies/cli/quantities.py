@@ -41,6 +41,15 @@ def parse_angle(text: str) -> float:
     return _with_unit(text, _ANGLES, "an angle", "radians (0.5), 30deg, pi/6 or -pi/2")
 
 
+def is_number(text: str) -> bool:
+    """Whether a text is a number alone, without a unit."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 def parse_length(text: str) -> float:
     """Read a length: metres, or with m, cm, mm or um. ValueError when it is none."""
     return _with_unit(text, _LENGTHS, "a length", "metres (0.001) or 1mm")

@@ -11,7 +11,9 @@ from studies.methods import method_of
 from studies.paper.tasks import task_difference
 
 
-def check_fronts(fronts: Sequence[Front], names: Sequence[str], *, twice: bool = False) -> None:
+def check_fronts(
+    fronts: Sequence[Front], names: Sequence[str], *, twice: bool = False, least: int = 2
+) -> None:
     """Refuse fronts that cannot be compared.
 
     Parameters
@@ -22,14 +24,16 @@ def check_fronts(fronts: Sequence[Front], names: Sequence[str], *, twice: bool =
         What to call each in a message.
     twice : bool
         Whether one may be given twice.
+    least : int
+        How few may be compared.
 
     Raises
     ------
     ValueError
-        When there are fewer than two, one is empty, one is given twice, or their tasks differ; in
+        When there are fewer, one is empty, one is given twice, or their tasks differ; in
         one line, with what differs.
     """
-    if len(fronts) < 2:
+    if len(fronts) < least:
         raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given")
     for front, name in zip(fronts, names, strict=True):
         if not front.points:

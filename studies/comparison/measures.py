@@ -176,6 +176,7 @@ def compare_fronts(
     floor: float | None = None,
     levels: Sequence[float] = LEVELS,
     fill: int = FILL,
+    least: int = 2,
 ) -> Comparison:
     """Measure fronts of one task against each other.
 
@@ -198,6 +199,8 @@ def compare_fronts(
         Residuals [m] at which energies are compared.
     fill : int
         About how many points a filled front has; 0 leaves fronts as they were found.
+    least : int
+        How few fronts make a comparison.
 
     Returns
     -------
@@ -207,10 +210,10 @@ def compare_fronts(
     Raises
     ------
     ValueError
-        When there are fewer than two fronts, one is empty or given twice, or their tasks differ.
+        When there are fewer fronts than that, one is empty or given twice, or their tasks differ.
     """
     names = list(names) or [f"front {i}" for i in range(1, len(fronts) + 1)]
-    check_fronts(fronts, names)
+    check_fronts(fronts, names, least=least)
     if reference is not None:
         check_fronts([fronts[0], reference], [names[0], reference_name], twice=True)
     found, between = [objectives(front) for front in fronts], [filled(f, fill) for f in fronts]

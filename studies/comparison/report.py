@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from ocp import Front, QuietarmError
-from ocp.base.files import check_writable, write_whole
+from ocp.base.files import write_whole
 from ocp.floor.search import energy_floor
 from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
+from studies.display.saving import File, drawing, inside
 from studies.display.tables import print_table
 from studies.paper.points import paper_points
 from studies.paper.tasks import title_of
 
-FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
-"""What `write_comparison` writes to a folder."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+REPORT, PICTURE = "report.md", "fronts.png"
 
 
 def load_fronts(paths: list[Path]) -> tuple[list[Front], list[str]]:
@@ -50,21 +54,26 @@ def print_comparison(console: Console, comparison: Comparison) -> None:
         console.print(f"- {line}", highlight=False, style="dim")
 
 
-def write_comparison(folder: Path, comparison: Comparison) -> list[Path]:
-    """Write `FILES` to a folder, each whole or not at all; return what was written."""
-    from studies.comparison.figure import comparison_figure
-    from studies.display.pictures import save_figure
+def comparison_files(folder: Path, comparison: Comparison) -> list[File]:
+    """What writes each file of a comparison to a folder."""
+    shown, title = tables(comparison), title_of(comparison.task)
 
-    paths = [check_writable(folder / name) for name in FILES]
-    report, runs, coverage, picture = paths
-    shown = tables(comparison)
-    title = title_of(comparison.task)
-    paper = paper_points(comparison.task, terms_of(comparison))
-    lines = (*how_to_read(comparison), *units(comparison))
-    parts = [f"# Fronts compared: {title}\n", *(table.markdown() for table in shown.values())]
-    parts += ["**How to read it**\n", *(f"- {line}" for line in lines)]
-    save_figure(comparison_figure(comparison, paper, title), picture)
-    write_whole(runs, runs_table(comparison).csv())
-    write_whole(coverage, shown["coverage"].csv())
-    write_whole(report, "\n".join([*parts, f"\n![Fronts]({picture.name})\n"]))
-    return paths
+    def picture() -> Figure:
+        from studies.comparison.figure import comparison_figure
+
+        paper = paper_points(comparison.task, terms_of(comparison))
+        return comparison_figure(comparison, paper, title)
+
+    def report(path: Path) -> None:
+        lines = (*how_to_read(comparison), *units(comparison))
+        parts = [f"# Fronts compared: {title}\n", *(table.markdown() for table in shown.values())]
+        parts += ["**How to read it**\n", *(f"- {line}" for line in lines)]
+        write_whole(path, "\n".join([*parts, f"\n![Fronts]({PICTURE})\n"]))
+
+    writes = {
+        REPORT: report,
+        "runs.csv": runs_table(comparison).save_csv,
+        "coverage.csv": shown["coverage"].save_csv,
+        PICTURE: drawing(picture),
+    }
+    return inside(folder, writes)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import Protocol, TypeVar
 
 from rich.console import Console
@@ -13,7 +14,9 @@ from rich.progress import (
     MofNCompleteColumn,
     Progress,
     ProgressColumn,
+    SpinnerColumn,
     TextColumn,
+    TimeElapsedColumn,
     TimeRemainingColumn,
 )
 
@@ -21,6 +24,9 @@ from studies.display.words import print_lines
 
 Display = TypeVar("Display")
 
+SILENT_SECONDS = 2.0
+"""How long work may go on without a word; then the pauses grow to `_LONGEST_PAUSE`."""
+_LONGEST_PAUSE = 60.0
 PLAIN_SECONDS = 2.0
 """Seconds between plain lines, where the pieces are too many for one line each."""
 _COLUMNS = (
@@ -77,6 +83,59 @@ def shown(
             yield bar(bars)
 
 
+def pauses() -> Iterator[float]:
+    """How long to be silent between words [s]: longer and longer, up to a minute."""
+    pause = SILENT_SECONDS
+    while True:
+        yield pause
+        pause = min(2 * pause, _LONGEST_PAUSE)
+
+
+@contextmanager
+def _ticking(console: Console, words: Callable[[], str]) -> Iterator[None]:
+    """Print the words and the time from time to time, whatever the work does meanwhile."""
+    began, over = time.perf_counter(), threading.Event()
+
+    def tick() -> None:
+        for pause in pauses():
+            if over.wait(pause):
+                return
+            print_lines(console, f"{words()}, {time.perf_counter() - began:.0f} s so far")
+
+    ticker = threading.Thread(target=tick, daemon=True)
+    ticker.start()
+    try:
+        yield
+    finally:
+        over.set()
+        ticker.join()
+
+
+@contextmanager
+def working(what: str, console: Console, *, quiet: bool = False) -> Iterator[None]:
+    """Show that work goes on which does not tell how far it is.
+
+    Parameters
+    ----------
+    what : str
+        What is done, as "solving".
+    console : rich.console.Console
+        Where to show it, usually standard error.
+    quiet : bool
+        Show nothing.
+    """
+    if quiet:
+        yield
+    elif console.is_terminal:
+        columns = (SpinnerColumn(), TextColumn(what, markup=False), TimeElapsedColumn())
+        with Progress(*columns, console=console, transient=True) as bars:
+            bars.add_task("", total=None)
+            yield
+    else:
+        with _ticking(console, lambda: what):
+            yield
+
+
 @contextmanager
 def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[Advance]:
     """Show how far a piece of work is.
@@ -95,12 +154,13 @@ def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[A
     Advance
         Call it with the name of every piece when the piece begins.
     """
-    begun = 0
+    begun, piece = 0, ""
 
     def line(name: str) -> None:
-        nonlocal begun
+        nonlocal begun, piece
         begun += 1
-        print_lines(console, f"[{begun}/{total}] {name}")
+        piece = f"[{begun}/{total}] {name}"
+        print_lines(console, piece)
 
     def bar(bars: Progress) -> Advance:
         task = bars.add_task("", total=total)
@@ -112,7 +172,11 @@ def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[A
 
         return advance
 
-    with shown(console, quiet, _COLUMNS, lambda name: None, line, bar) as advance:
+    nothing = quiet or console.is_terminal
+    with (
+        nullcontext() if nothing else _ticking(console, lambda: piece or "beginning"),
+        shown(console, quiet, _COLUMNS, lambda name: None, line, bar) as advance,
+    ):
         yield advance
 
 
@@ -139,10 +203,11 @@ def count(
         To be called with the number of pieces done and of all. Where there is no terminal, it
         prints a line every two seconds.
     """
-    said = time.monotonic()
+    said, now = time.monotonic(), 0
 
     def line(done: int, total: int) -> None:
-        nonlocal said
+        nonlocal said, now
+        now = done
         if done == total or time.monotonic() - said >= PLAIN_SECONDS:
             said = time.monotonic()
             print_lines(console, f"{done} of {total} {what}")
@@ -151,5 +216,9 @@ def count(
         task = bars.add_task(what, total=total)
         return lambda done, total: bars.update(task, completed=done, total=total)
 
-    with shown(console, quiet, _COLUMNS, lambda done, total: None, line, bar) as report:
+    nothing = quiet or console.is_terminal
+    with (
+        nullcontext() if nothing else _ticking(console, lambda: f"{now} of {total} {what}"),
+        shown(console, quiet, _COLUMNS, lambda done, total: None, line, bar) as report,
+    ):
         yield report

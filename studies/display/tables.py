@@ -6,14 +6,20 @@ import csv
 import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from rich import box
 from rich.console import Console
 from rich.table import Table as ScreenTable
 from rich.text import Text
 
+from ocp.base.files import write_whole
+from studies.display.words import print_lines
+
 Cell = str | int | float | None
 _WIDEST = 10_000
+_LEAST_VALUE = 30
+"""Columns beside the names below which values would fall to pieces."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,10 @@ class Table:
         writer.writerows([["" if cell is None else cell for cell in row] for row in self.rows])
         return text.getvalue()
 
+    def save_csv(self, path: Path) -> None:
+        """Write the table as CSV, whole or not at all."""
+        write_whole(path, self.csv())
+
     def upright(self) -> list[list[str]]:
         """The table turned: one line for each quantity, its heading first; the names on top."""
         return [
@@ -79,6 +89,28 @@ class Table:
             for i, column in enumerate(self.columns)
             if any(row[i] is not None for row in self.rows)
         ]
+
+
+def print_rows(console: Console, rows: Sequence[tuple[str, str]]) -> None:
+    """Print names and their values beside each other, or below where the console is too narrow.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    rows : sequence of (str, str)
+        Name and value; no word of either is cut.
+    """
+    if console.width < max(len(name) for name, _ in rows) + _LEAST_VALUE:
+        for name, value in rows:
+            print_lines(console, name, f"  {value}")
+        return
+    table = ScreenTable(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, value in rows:
+        table.add_row(Text(name), Text(value))
+    console.print(table)
 
 
 def print_table(console: Console, table: Table) -> None:
@@ -89,7 +121,8 @@ def print_table(console: Console, table: Table) -> None:
     console : rich.console.Console
         Where to.
     table : Table
-        The table; no word of it is cut, as long as one row fits beside the headings.
+        The table; no word of it is cut. Where not even one row fits beside the headings, it is
+        printed as lines.
     """
     wide = console.options.update(max_width=_WIDEST)
     if console.measure(table.for_screen(), options=wide).maximum <= console.width:
@@ -102,7 +135,11 @@ def print_table(console: Console, table: Table) -> None:
         while console.measure(piece, options=wide).maximum > console.width and count > 1:
             count -= 1
             piece = replace(table, rows=rows[:count]).for_screen(narrow=True)
-        console.print(piece)
+        if console.measure(piece, options=wide).maximum > console.width:
+            lines = replace(table, rows=rows[:count]).upright()
+            print_lines(console, table.title, *(f"  {name}: {text}" for name, text in lines))
+        else:
+            console.print(piece)
         rows = rows[count:]
 
 

@@ -10,6 +10,11 @@ def print_lines(console: Console, *lines: str) -> None:
     console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
 
 
+def counted(number: int, what: str) -> str:
+    """How many of what, as in 1 point, 2 points."""
+    return f"{number} {what}{'s' * (number != 1)}"
+
+
 def millimetres(length: float) -> str:
     """A length [m] in millimetres."""
     return f"{length * 1e3:.3g} mm"

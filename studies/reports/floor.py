@@ -5,7 +5,8 @@ from __future__ import annotations
 from rich.console import Console
 
 from ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
-from studies.reports.plan import add_figures, add_move, upright_table
+from studies.display.tables import print_rows
+from studies.reports.plan import figure_rows, move_rows
 
 TERMS = 6
 """Terms of the plan that a floor is compared with."""
@@ -32,34 +33,34 @@ def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
         The plan to compare it with.
     """
     motion, check = floor.motion, floor.verification
-    table = upright_table()
-    add_move(table, floor.task, motion)
     kind = "smooth (jerk free)" if floor.smooth else "acceleration free"
-    table.add_row("least energy", f"{motion.energy:.6g} J  over all motions, {kind}")
-    table.add_row("left", _left(floor))
+    beside = "none within these limits"
     if plan is not None:
-        times = f"{plan.energy / floor.energy:.3g} times the floor"
-        table.add_row(f"plan, {TERMS} terms", f"{plan.energy:.6g} J, {times}")
-    else:
-        table.add_row(f"plan, {TERMS} terms", "none within these limits")
+        beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times the floor"
     grids = ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)
-    table.add_row("intervals", grids)
     worst = max(floor.starts) / min(floor.starts) - 1
-    table.add_row(
-        "starts",
-        f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best"
-        f"{f', the worst {worst:.1%} above it' if worst > 0.005 else ''}{_unsolved(floor)}",
-    )
-    add_figures(table, floor.task, motion)
     unsettled = "" if floor.settled else " On a finer grid it failed."
-    table.add_row("status", floor.status.text + unsettled)
-    table.add_row(
-        "verified",
-        f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
-        f"{abs(check.energy_difference) / motion.energy:.0e} in energy",
-    )
-    table.add_row("time", f"{floor.provenance.seconds:.2f} s")
-    console.print(table, highlight=False)
+    rows = [
+        *move_rows(floor.task, motion),
+        ("least energy", f"{motion.energy:.6g} J  over all motions, {kind}"),
+        ("left", _left(floor)),
+        (f"plan, {TERMS} terms", beside),
+        ("intervals", grids),
+        (
+            "starts",
+            f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best"
+            f"{f', the worst {worst:.1%} above it' if worst > 0.005 else ''}{_unsolved(floor)}",
+        ),
+        *figure_rows(floor.task, motion),
+        ("status", floor.status.text + unsettled),
+        (
+            "verified",
+            f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
+            f"{abs(check.energy_difference) / motion.energy:.0e} in energy",
+        ),
+        ("time", f"{floor.provenance.seconds:.2f} s"),
+    ]
+    print_rows(console, rows)
 
 
 def _unsolved(floor: Floor) -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 
 from rich.console import Console
-from rich.table import Table
 
 from ocp import Motion, Plan, PointToPoint
 from ocp.task.point_to_point import LIMITS
+from studies.display.tables import print_rows
 from studies.display.words import millimetres
+
+Row = tuple[str, str]
 
 
 def print_plan(console: Console, plan: Plan) -> None:
@@ -23,56 +25,58 @@ def print_plan(console: Console, plan: Plan) -> None:
         The plan.
     """
     motion, check = plan.motion, plan.verification
-    table = upright_table()
-    add_move(table, plan.task, motion)
     coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
-    table.add_row("coefficients", coefficients or "none: the plain cycloid")
-    table.add_row("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)")
-    add_figures(table, plan.task, motion)
-    table.add_row("status", plan.status.text)
     relative = abs(check.energy_difference) / motion.energy if motion.energy else 0.0
-    table.add_row(
-        "verified",
-        f"by CVODES: {check.steps} fixed steps differ by {relative:.0e} in energy and "
-        f"{millimetres(abs(check.residual_difference))} in residual",
-    )
-    table.add_row("time", f"{plan.provenance.seconds:.2f} s")
-    console.print(table, highlight=False)
+    rows = [
+        *move_rows(plan.task, motion),
+        ("coefficients", coefficients or "none: the plain cycloid"),
+        ("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
+        *figure_rows(plan.task, motion),
+        ("status", plan.status.text),
+        (
+            "verified",
+            f"by CVODES: {check.steps} fixed steps differ by {relative:.0e} in energy and "
+            f"{millimetres(abs(check.residual_difference))} in residual",
+        ),
+        ("time", f"{plan.provenance.seconds:.2f} s"),
+    ]
+    print_rows(console, rows)
 
 
-def upright_table() -> Table:
-    """A table of names and their values."""
-    table = Table(box=None, show_header=False, pad_edge=False)
-    table.add_column(style="bold")
-    table.add_column()
-    return table
-
-
-def add_move(table: Table, task: PointToPoint, motion: Motion) -> None:
-    """Add the move and its limits, and where the motion breaks one."""
-    table.add_row(
-        "move",
-        f"{task.plant.name}, {_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s",
-    )
+def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
+    """The move and its limits, and where the motion breaks one."""
+    move = f"{_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s"
     limits = ", ".join(
         f"{name} {_quantity(name, value)}{_broken(name, motion.peak(name), value)}"
         for name, value in task.limits.items()
     )
-    if limits:
-        table.add_row("limits", limits)
+    return [("move", f"{task.plant.name}, {move}"), *([("limits", limits)] if limits else [])]
 
 
-def add_figures(table: Table, task: PointToPoint, motion: Motion) -> None:
-    """Add a motion's residual, peaks and overshoot."""
-    table.add_row(
-        "residual F1",
-        f"{millimetres(motion.residual)} at the tip within {task.residual_window:g} s",
+def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
+    """A motion's residual, peaks and overshoot."""
+    return [
+        (
+            "residual F1",
+            f"{millimetres(motion.residual)} at the tip within {task.residual_window:g} s",
+        ),
+        ("peak torque", f"{motion.peak_torque:.4g} N m"),
+        ("peak speed", f"{motion.peak_speed:.4g} rad/s"),
+        ("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2"),
+        ("peak deflection", f"{millimetres(motion.peak_deflection)}{_large(task, motion)}"),
+        ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none"),
+    ]
+
+
+def _large(task: PointToPoint, motion: Motion) -> str:
+    """A warning where the tip leaves what the plant's equations are made for."""
+    limit = task.plant.small_deflection
+    if limit is None or max(motion.peak_deflection, motion.residual) <= limit:
+        return ""
+    return (
+        f"  (warning: beyond {millimetres(limit)}, up to which the plant's deflections count as "
+        "small; its equations are less exact there)"
     )
-    table.add_row("peak torque", f"{motion.peak_torque:.4g} N m")
-    table.add_row("peak speed", f"{motion.peak_speed:.4g} rad/s")
-    table.add_row("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2")
-    table.add_row("peak deflection", millimetres(motion.peak_deflection))
-    table.add_row("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none")
 
 
 def _angle(value: float) -> str:

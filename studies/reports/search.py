@@ -8,7 +8,7 @@ from rich.console import Console
 
 from metaheuristics.ensemble import STILL, Spread, energies_at, hypervolumes
 from ocp import Front
-from studies.display.words import millimetres, print_lines
+from studies.display.words import counted, millimetres, print_lines
 
 
 def print_fronts(console: Console, fronts: Sequence[Front]) -> None:
@@ -52,8 +52,9 @@ def reached(spread: Spread) -> str:
 def _front_lines(front: Front) -> list[str]:
     state = "" if front.complete else " (interrupted: what was found until then)"
     lines = [
-        f"{front.method}, seed {front.seed}: {len(front.points)} points, "
-        f"{front.evaluations} candidates in {front.seconds:.1f} s, {front.failed} failed{state}"
+        f"{front.method}, seed {front.seed}: {counted(len(front.points), 'point')}, "
+        f"{counted(front.evaluations, 'candidate')} in {front.seconds:.1f} s, "
+        f"{front.failed} failed{state}"
     ]
     if front.points:
         chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}

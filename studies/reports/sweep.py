@@ -5,10 +5,10 @@ from __future__ import annotations
 from rich.console import Console
 
 from metaheuristics.ensemble import energy_at
-from ocp import FailedPoint, Front, QuietarmError
+from ocp import FailedPoint, Front
 from ocp.front.sweep import RESIDUAL_LIMIT
 from studies.comparison.measures import LEVELS
-from studies.display.words import millimetres, print_lines
+from studies.display.words import counted, millimetres, print_lines
 
 
 def print_sweep(console: Console, front: Front, asked_for: int) -> None:
@@ -26,7 +26,8 @@ def print_sweep(console: Console, front: Front, asked_for: int) -> None:
     state = "" if front.complete else " (interrupted: what was found until then)"
     print_lines(
         console,
-        f"{front.method}: {len(front.points)} points, {front.iterations} iterations of the solver "
+        f"{front.method}: {counted(len(front.points), 'point')}, "
+        f"{counted(front.iterations, 'iteration')} of the solver "
         f"in {front.seconds:.1f} s{state}",
         *point_lines(front),
         *failure_lines(front, asked_for),
@@ -70,11 +71,6 @@ def gap_lines(front: Front) -> list[str]:
         "is not convex there"
         for begin, end in front.gaps
     ]
-
-
-def interruption() -> QuietarmError:
-    """The error to raise after Ctrl-C."""
-    return QuietarmError("interrupted; what was found until then is kept")
 
 
 def _asked(failure: FailedPoint) -> str:

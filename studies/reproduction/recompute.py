@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import product
 
-from metaheuristics.ensemble import Spread, energies_at
+from metaheuristics.ensemble import Spread, energies_at, number_of_runs
 from ocp import (
     CycloidPolynomial,
     Floor,
@@ -17,6 +17,7 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
+from ocp.base.interrupts import note_interrupts
 from studies.methods import Method
 from studies.paper.case import Case
 from studies.paper.printed import (
@@ -29,7 +30,7 @@ from studies.paper.printed import (
     SINGLE_LINK_SIXTH,
     Row,
 )
-from studies.runs.pieces import Begin, Done, Piece, run_pieces, searched
+from studies.runs.pieces import Begin, Done, InterruptedPiece, Piece, run_pieces, searched
 
 BEYOND_SIX = (8, 10)
 """Numbers of terms that check the paper's 'no gain above six'."""
@@ -134,7 +135,13 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
     list of Piece
         Solves under (condition, terms, whether in the box), floors under their condition, and
         searches under (method, condition, terms, seed).
+
+    Raises
+    ------
+    ValueError
+        When `seeds` is out of range.
     """
+    seeds = number_of_runs(seeds, "seeds")
     work: list[Piece] = []
     for condition, terms, boxed in SOLVES:
         name = f"gradient: {_label(condition, terms)}{', in the box' * boxed}"
@@ -171,19 +178,20 @@ def recompute_paper(begin: Begin = lambda name: None, seeds: int = 1) -> Reprodu
     Raises
     ------
     ValueError
-        When `seeds` is below 1.
-    KeyboardInterrupt
-        When a search was interrupted.
+        When `seeds` is out of range.
+    InterruptedPiece
+        When it was interrupted; its part is a `Done`.
     """
-    if seeds < 1:
-        raise ValueError(f"seeds is {seeds}; give 1 or more")
     done = run_pieces(pieces_of_paper(seeds), begin)
-    return Reproduction(
-        tuple(_row_result(row, done, seeds) for row in ROWS),
-        cycloids={c: evaluate_coefficients(c.task, []) for c in STUDIED},
-        more_terms={solve: done.answers[solve] for solve in SOLVES},
-        floors={c: done.answers[c] for c in CONDITIONS},
-    )
+    if done.interrupted:
+        raise InterruptedPiece(done)
+    with note_interrupts():  # nothing is left to be stopped
+        return Reproduction(
+            tuple(_row_result(row, done, seeds) for row in ROWS),
+            cycloids={c: evaluate_coefficients(c.task, []) for c in STUDIED},
+            more_terms={solve: done.answers[solve] for solve in SOLVES},
+            floors={c: done.answers[c] for c in CONDITIONS},
+        )
 
 
 def _row_result(row: Row, done: Done, seeds: int) -> RowResult:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from math import isfinite
 from pathlib import Path
 
@@ -14,8 +15,8 @@ from rich.text import Text
 
 from ocp import Plan
 from ocp.base.files import write_whole
-from studies.display.pictures import save_figure
-from studies.display.tables import Cell, Column, Table
+from studies.display.saving import File, drawing, inside
+from studies.display.tables import Cell, Column, Table, print_table
 from studies.paper.case import Case
 from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
 from studies.reports.motion_figure import Line, four_panels
@@ -122,10 +123,10 @@ def redrawn(result: Reproduction, condition: Case, title: str) -> Figure:
 def print_reproduction(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> None:
     """Print the tables and the claims."""
     for table in tables(result):
-        console.print(table.for_screen())
+        print_table(console, table)
     console.print(LEGEND, highlight=False, style="dim")
     for table in floor_tables(result):
-        console.print(table.for_screen())
+        print_table(console, table)
     console.print(FLOOR_LEGEND, highlight=False, style="dim")
     console.print(f"\n{finding(result)}", highlight=False)
     console.print("\nWhat the paper claims", style="bold")
@@ -133,30 +134,24 @@ def print_reproduction(console: Console, result: Reproduction, verdicts: Sequenc
         style = "green" if claim.holds else "red"
         console.print(Text.assemble((claim.verdict, f"bold {style}"), f"  {claim.text}"))
         for line in claim.evidence:
-            console.print(Padding(Text(line), (0, 0, 0, 11)))
+            console.print(Padding(Text(line), (0, 0, 0, 11 if console.width >= 60 else 2)))
 
 
-def write_reproduction(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[Path]:
-    """Write report.md, a CSV for every table, and the pictures; return what was written."""
-    written: list[Path] = []
-
-    def keep(name: str, content: str) -> None:
-        write_whole(folder / name, content)
-        written.append(folder / name)
-
+def reproduction_files(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[File]:
+    """What writes report.md, a CSV for every table, and the pictures to a folder."""
+    writes: dict[str, Callable[[Path], object]] = {}
     for name, condition in (("figure_2.png", SINGLE_LINK_SIXTH), ("figure_5.png", ARM_HALF)):
         number = name.removesuffix(".png").replace("figure_", "Fig. ")
         title = f"{number} redrawn: {condition.task.plant.name}, {condition.label}"
-        save_figure(redrawn(result, condition, title), folder / name)
-        written.append(folder / name)
+        writes[name] = drawing(partial(redrawn, result, condition, title))
     paper_tables = tables(result)
     for number, table in zip(_TITLES, paper_tables, strict=True):
-        keep(f"table_{number}.csv", table.csv())
-    save_figure(floor_dots(result), folder / "floor.png")
-    written.append(folder / "floor.png")
-    keep("floor.csv", floor_table(result).csv())
-    keep("report.md", _markdown(result, paper_tables, verdicts))
-    return written
+        writes[f"table_{number}.csv"] = table.save_csv
+    writes["floor.png"] = drawing(partial(floor_dots, result))
+    writes["floor.csv"] = floor_table(result).save_csv
+    report = _markdown(result, paper_tables, verdicts)
+    writes["report.md"] = lambda path: write_whole(path, report)
+    return inside(folder, writes)
 
 
 def _markdown(

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from rich.console import Console
 
+from ocp.base.workers import number_of_workers
+
 
 def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
     """Make sure that no two options name one file; ValueError names them."""
@@ -19,7 +21,7 @@ def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
 
 def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
     """Warn where more workers start than there are cores; no more start than pieces of work."""
-    cores, workers = os.cpu_count() or 1, min(workers, pieces)
+    cores, workers = os.cpu_count() or 1, min(number_of_workers(workers), pieces)
     if workers > cores:
         console.print(
             f"{workers} workers will share {cores} core{'s' * (cores > 1)}", highlight=False

@@ -8,6 +8,7 @@ from typing import Any
 
 from metaheuristics.ensemble import search_many
 from ocp import CycloidPolynomial, Front, QuietarmError
+from ocp.base.interrupts import hear_interrupts
 from studies.methods import Method
 from studies.paper.case import Case
 
@@ -25,10 +26,21 @@ class Done:
         Answers by the key of their piece.
     failures : dict
         Errors by the key of their piece.
+    parts : dict
+        What a piece that was interrupted had found, by its key.
+    interrupted : bool
+        Whether Ctrl-C came; the pieces after it were not begun.
     """
 
     answers: dict[Hashable, Any] = field(default_factory=dict)
     failures: dict[Hashable, QuietarmError] = field(default_factory=dict)
+    parts: dict[Hashable, Any] = field(default_factory=dict)
+    interrupted: bool = False
+
+    @property
+    def number(self) -> int:
+        """How many pieces came to an end."""
+        return len(self.answers) + len(self.failures)
 
 
 @dataclass(frozen=True)
@@ -54,8 +66,22 @@ class NotTriedError(QuietarmError):
     """A piece of work that is left out, because an earlier one failed."""
 
 
+class InterruptedPiece(KeyboardInterrupt):  # no error, as KeyboardInterrupt is none
+    """Ctrl-C during a piece of work.
+
+    Attributes
+    ----------
+    part : Any
+        What it had found.
+    """
+
+    def __init__(self, part: Any) -> None:
+        super().__init__()
+        self.part = part
+
+
 def run_pieces(pieces: Sequence[Piece], begin: Begin, *, go_on: bool = False) -> Done:
-    """Run pieces of work one after another.
+    """Run pieces of work one after another, until Ctrl-C.
 
     Parameters
     ----------
@@ -69,7 +95,7 @@ def run_pieces(pieces: Sequence[Piece], begin: Begin, *, go_on: bool = False) ->
     Returns
     -------
     Done
-        Every answer, and every failure that was noted.
+        Every answer, and every failure that was noted; after Ctrl-C those that there are.
 
     Raises
     ------
@@ -77,14 +103,24 @@ def run_pieces(pieces: Sequence[Piece], begin: Begin, *, go_on: bool = False) ->
         When a piece fails, unless `go_on`.
     """
     done = Done()
-    for piece in pieces:
-        begin(piece.name)
-        try:
-            done.answers[piece.key] = piece.work(done)
-        except QuietarmError as error:
-            if not go_on:
-                raise
-            done.failures[piece.key] = error
+    with hear_interrupts() as came:
+        for piece in pieces:
+            try:
+                begin(piece.name)
+                done.answers[piece.key] = piece.work(done)
+            except QuietarmError as error:
+                if not go_on and not came:
+                    raise
+                if not came:  # else it may have failed of that
+                    done.failures[piece.key] = error
+            except KeyboardInterrupt as stop:
+                done.interrupted = True
+                if isinstance(stop, InterruptedPiece):
+                    done.parts[piece.key] = stop.part
+            # a piece that ended well in spite of Ctrl-C does not tell of it
+            done.interrupted = done.interrupted or bool(came)
+            if done.interrupted:
+                break
     return done
 
 
@@ -111,13 +147,13 @@ def searched(case: Case, method: Method, terms: int, runs: int = 1, **settings: 
 
     Raises
     ------
-    KeyboardInterrupt
-        When a search was interrupted.
+    InterruptedPiece
+        When a search was interrupted, with the fronts that have a point.
     """
     profile = CycloidPolynomial(terms)
     fronts = search_many(
         case.task, method.name, runs, profile=profile, bound=case.bound, **settings
     )
     if len(fronts) < runs or not all(front.complete for front in fronts):
-        raise KeyboardInterrupt
+        raise InterruptedPiece([front for front in fronts if front.points])
     return fronts

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
 
 from ocp import Front, Gain, polish_front
 from ocp.base.checks import whole
-from ocp.base.files import write_whole
 from studies.display.progress import count
+from studies.display.saving import drawing, finish, interruption
 from studies.display.tables import Column, Table
-from studies.display.words import millimetres, print_lines
-from studies.reports.sweep import failure_lines, interruption
+from studies.display.words import counted, millimetres, print_lines
+from studies.reports.sweep import failure_lines
 from studies.runs.files import refuse_same_file, warn_of_workers
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _ROWS = 10
 """Points that the table on screen shows."""
@@ -30,8 +34,8 @@ def run_polish(
     csv_file: Path | None,
     figure: Path | None,
     quiet: bool,
-) -> Iterator[Path]:
-    """Improve a saved front, show what each point gained, and write it.
+) -> None:
+    """Improve a saved front, write it, and show what each point gained.
 
     Parameters
     ----------
@@ -45,11 +49,6 @@ def run_polish(
         Files for the improved front, the gains and the picture.
     quiet : bool
         Show no progress.
-
-    Yields
-    ------
-    Path
-        Every file, once it is written.
 
     Raises
     ------
@@ -71,21 +70,21 @@ def run_polish(
     gains = [gain for gain in polish.gains if gain.tried]
     if not gains:
         raise KeyboardInterrupt
-    _print_gains(Console(), whole_front, front, polish.front, gains)
-    if output is not None:
-        polish.front.save(output)
-        yield output
-    if csv_file is not None:
-        write_whole(csv_file, gains_table(gains).csv())
-        yield csv_file
-    if figure is not None:
-        from studies.display.pictures import save_figure
+
+    def picture() -> Figure:
         from studies.reports.sweep_figure import polish_figure
 
-        save_figure(polish_figure(front, polish), figure)
-        yield figure
-    if len(gains) < len(front.points):
-        raise interruption()
+        return polish_figure(front, polish)
+
+    finish(
+        [
+            (output, polish.front.save),
+            (csv_file, gains_table(gains).save_csv),
+            (figure, drawing(picture)),
+        ],
+        lambda console: _print_gains(console, whole_front, front, polish.front, gains),
+        trouble=interruption() if len(gains) < len(front.points) else None,
+    )
 
 
 def thinned(front: Front, points: int) -> Front:
@@ -129,7 +128,9 @@ def _print_gains(
     console: Console, whole_front: Front, front: Front, polished: Front, gains: Sequence[Gain]
 ) -> None:
     number, of = len(front.points), len(whole_front.points)
-    points = f"{number} of its {of} points, spread along it" if number < of else f"{of} points"
+    points = (
+        f"{number} of its {of} points, spread along it" if number < of else counted(of, "point")
+    )
     state = "" if len(gains) == number else f" (interrupted after {len(gains)} of them)"
     shares = np.array([gain.share for gain in gains])
     lines = [

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
@@ -23,10 +23,15 @@ from ocp import (
     plan_move,
 )
 from ocp.base.files import check_writable
+from studies.display.saving import STDOUT, drawing, finish
 from studies.display.search_progress import search_display
+from studies.display.words import counted
 from studies.methods import Method
 from studies.reports.search import print_fronts
 from studies.runs.files import refuse_same_file, warn_of_workers
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def plan_by_search(
@@ -106,8 +111,8 @@ def run_front(
     output: Path | None,
     figure: Path | None,
     quiet: bool,
-) -> Iterator[Path]:
-    """Search from every seed, show what was found, and write it.
+) -> None:
+    """Search from every seed, write what was found, and show it.
 
     Parameters
     ----------
@@ -123,11 +128,6 @@ def run_front(
         File for the picture.
     quiet : bool
         Show no progress.
-
-    Yields
-    ------
-    Path
-        Every file, once it is written.
 
     Raises
     ------
@@ -148,20 +148,22 @@ def run_front(
         if stopped:
             raise KeyboardInterrupt
         raise lost or SolverFailedError(f"{method.name}: {fronts[0].why_empty()}")
-    print_fronts(Console(), fronts)
-    for front in fronts if targets else ():
-        front.save(targets[front.seed or 0])
-        yield targets[front.seed or 0]
-    if figure is not None:
-        from studies.display.pictures import save_figure
+
+    def picture() -> Figure:
         from studies.reports.search_figure import front_figure
 
-        seeds = f"{len(fronts)} seed{'s' * (len(fronts) > 1)}"
-        title = f"{method.name}, {task.plant.name}, {seeds}"
-        save_figure(front_figure(fronts, title), figure)
-        yield figure
-    if lost or stopped or troubles:
-        raise lost or QuietarmError("; ".join([*filter(None, [stopped]), *troubles]))
+        title = f"{method.name}, {task.plant.name}, {counted(len(fronts), 'seed')}"
+        return front_figure(fronts, title)
+
+    trouble = lost
+    if stopped or troubles:
+        trouble = lost or QuietarmError("; ".join([*filter(None, [stopped]), *troubles]))
+    files = [(targets.get(front.seed or 0), front.save) for front in fronts]
+    finish(
+        [*files, (figure, drawing(picture))],
+        lambda console: print_fronts(console, fronts),
+        trouble=trouble,
+    )
 
 
 def _fronts(
@@ -210,4 +212,6 @@ def _targets(output: Path | None, seeds: range) -> dict[int, Path]:
         return {}
     if len(seeds) == 1:
         return {seeds[0]: output}
+    if output is STDOUT:
+        raise ValueError(f"--output {output} is for one run; with --runs give the name of a file")
     return {seed: check_writable(with_seed(output, seed)) for seed in seeds}

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
@@ -15,9 +14,13 @@ from ocp import (
     SolverFailedError,
 )
 from studies.display.progress import count
+from studies.display.saving import drawing, finish, interruption
 from studies.methods import Method
-from studies.reports.sweep import failure_lines, interruption, print_sweep
+from studies.reports.sweep import failure_lines, print_sweep
 from studies.runs.files import refuse_same_file, warn_of_workers
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def run_sweep(
@@ -27,8 +30,8 @@ def run_sweep(
     output: Path | None,
     figure: Path | None,
     quiet: bool,
-) -> Iterator[Path]:
-    """Sweep the front by the gradient, show what was found, and write it.
+) -> None:
+    """Sweep the front by the gradient, write what was found, and show it.
 
     Parameters
     ----------
@@ -45,11 +48,6 @@ def run_sweep(
     quiet : bool
         Show no progress.
 
-    Yields
-    ------
-    Path
-        Every file, once it is written.
-
     Raises
     ------
     QuietarmError
@@ -62,18 +60,17 @@ def run_sweep(
     if not front.points:
         reasons = (line.strip() for line in failure_lines(front, asked_for)[1:])
         raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
-    print_sweep(Console(), front, asked_for)
-    if output is not None:
-        front.save(output)
-        yield output
-    if figure is not None:
-        from studies.display.pictures import save_figure
+
+    def picture() -> Figure:
         from studies.reports.sweep_figure import sweep_figure
 
-        save_figure(sweep_figure(front), figure)
-        yield figure
-    if not front.complete:
-        raise interruption()
+        return sweep_figure(front)
+
+    finish(
+        [(output, front.save), (figure, drawing(picture))],
+        lambda console: print_sweep(console, front, asked_for),
+        trouble=None if front.complete else interruption(),
+    )
 
 
 def _swept(task: PointToPoint, method: Method, options: dict[str, Any], quiet: bool) -> Front:

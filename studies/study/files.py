@@ -3,49 +3,30 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
-from ocp.base.files import check_writable, write_whole
+from ocp.base.files import write_whole
+from studies.display.saving import File, inside
 from studies.paper.tasks import title_of
 from studies.study.page import study_page
 from studies.study.work import Study
 
 
-def write_study(study: Study, output: Path, folder: Path | None = None) -> list[Path]:
-    """Write the page, and every front to a folder; return what was written.
+def page_file(study: Study, output: Path) -> File:
+    """The page of a study, and what writes it."""
+    return output, lambda path: write_whole(path, study_page(study))
 
-    Parameters
-    ----------
-    study : Study
-        What was found.
-    output : Path
-        File of the page.
-    folder : Path, optional
-        Folder for the fronts, which `quietarm compare` reads.
 
-    Returns
-    -------
-    list of Path
-        The files, each whole.
-
-    Raises
-    ------
-    ValueError
-        When a file cannot be written.
-    """
-    content = study_page(study)
-    written = [check_writable(output)]
-    write_whole(output, content)
-    if folder is not None:
-        folder.mkdir(exist_ok=True)
-        for found in study.cases:
-            for run in found.comparison.runs:
-                seed = "" if run.front.seed is None else f"-seed{run.front.seed}"
-                name = f"{title_of(found.case.task)}-{run.front.method}{seed}"
-                path = folder / f"{_file_name(name)}.json"
-                run.front.save(path)
-                written.append(path)
-    return written
+def front_files(study: Study, folder: Path) -> list[File]:
+    """Every front of a study, which `quietarm compare` reads, in a folder, and what writes it."""
+    writes: dict[str, Callable[[Path], object]] = {}
+    for found in study.cases:
+        for run in found.comparison.runs:
+            seed = "" if run.front.seed is None else f"-seed{run.front.seed}"
+            name = f"{title_of(found.case.task)}-{run.front.method}{seed}"
+            writes[f"{_file_name(name)}.json"] = run.front.save
+    return inside(folder, writes)
 
 
 def _file_name(words: str) -> str:

@@ -6,7 +6,10 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TypeVar
 
+from metaheuristics.ensemble import seeds_of
+from metaheuristics.runs.settings import number_of_generations, number_of_individuals
 from ocp import (
     CycloidPolynomial,
     Floor,
@@ -17,16 +20,28 @@ from ocp import (
     energy_floor,
     polish_front,
 )
+from ocp.answers.provenance import number_of_points
 from ocp.base.checks import whole
+from ocp.base.interrupts import note_interrupts
+from ocp.base.workers import number_of_workers
 from studies.comparison.measures import Comparison, compare_fronts
 from studies.methods import METHODS, Kind, Method, methods_of
 from studies.paper.case import Case
 from studies.paper.points import PaperPoint, paper_points
 from studies.paper.printed import CONDITIONS
 from studies.paper.tasks import title_of
-from studies.runs.pieces import Begin, Done, NotTriedError, Piece, run_pieces, searched
+from studies.runs.pieces import (
+    Begin,
+    Done,
+    InterruptedPiece,
+    NotTriedError,
+    Piece,
+    run_pieces,
+    searched,
+)
 
 FLOOR = "floor"
+_Answer = TypeVar("_Answer")
 
 
 @dataclass(frozen=True)
@@ -64,12 +79,14 @@ class StudySettings:
 
     def __post_init__(self) -> None:
         CycloidPolynomial(self.terms)
-        least = {"terms": 1, "points": 2, "runs": 1, "seed": 0, "workers": 1}
-        for name, value in least.items():
-            whole(name, getattr(self, name), value)
-        for name, value in {"population": 2, "generations": 1}.items():
-            if getattr(self, name) is not None:
-                whole(name, getattr(self, name), value)
+        whole("terms", self.terms, 1)
+        number_of_points(self.points)
+        seeds_of(self.seed, self.runs)
+        number_of_workers(self.workers)
+        if self.population is not None:
+            number_of_individuals(self.population)
+        if self.generations is not None:
+            number_of_generations(self.generations)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,11 +119,24 @@ class CaseStudy:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A study of one task or several."""
+    """A study of one task or several.
+
+    Attributes
+    ----------
+    settings : StudySettings
+        How thorough.
+    cases : tuple of CaseStudy
+        What was found, task by task.
+    seconds : float
+        How long it took.
+    done : int or None
+        How many pieces of work came to an end before Ctrl-C; None where all did.
+    """
 
     settings: StudySettings
     cases: tuple[CaseStudy, ...]
     seconds: float
+    done: int | None = None
 
 
 def amount_of_work(cases: Sequence[Case], settings: StudySettings) -> int:
@@ -135,17 +165,28 @@ def run_study(
     -------
     Study
         Fronts, comparison, floor and polish of every case. A method that fails on a case is left
-        out of it, with its reason.
+        out of it, with its reason. After Ctrl-C what was found until then.
 
     Raises
     ------
     KeyboardInterrupt
-        When a search was interrupted.
+        When it was interrupted before anything was found.
     """
-    began = time.perf_counter()
+    began, ended = time.perf_counter(), 0
     settings = StudySettings() if settings is None else settings
-    found = tuple(_study_case(case, settings, begin) for case in cases)
-    return Study(settings, found, time.perf_counter() - began)
+    found: list[CaseStudy] = []
+    for case in cases:
+        done = run_pieces(pieces_of(case, settings), begin, go_on=True)
+        ended += done.number
+        with note_interrupts() as came:  # what was found is put together to the end
+            found += _case_study(case, settings, done)
+        if done.interrupted or came:
+            if not found:
+                raise KeyboardInterrupt
+            break
+    else:
+        return Study(settings, tuple(found), time.perf_counter() - began)
+    return Study(settings, tuple(found), time.perf_counter() - began, done=ended)
 
 
 def pieces_of(case: Case, settings: StudySettings) -> list[Piece]:
@@ -172,7 +213,7 @@ def _swept(case: Case, method: Method, settings: StudySettings, done: Done) -> l
         points=settings.points,
         **({"workers": settings.workers} if method.parallel else {}),
     )
-    return [_whole(front)]
+    return _whole(front, [front])
 
 
 def _searched(case: Case, method: Method, settings: StudySettings, done: Done) -> list[Front]:
@@ -193,41 +234,51 @@ def _polished(method: Method, settings: StudySettings, done: Done) -> Polish:
     if first is None:
         raise NotTriedError(f"not tried, as {method.name} found no front to start from")
     polish = polish_front(first, workers=settings.workers)
-    _whole(polish.front)
-    return polish
+    return _whole(polish.front, polish)
 
 
-def _whole(front: Front) -> Front:
-    """The same front; KeyboardInterrupt where it was interrupted."""
+def _whole(front: Front, answer: _Answer) -> _Answer:
+    """The answer that the front belongs to; InterruptedPiece where it was interrupted."""
     if not front.complete:
-        raise KeyboardInterrupt
-    return front
+        raise InterruptedPiece(answer)
+    return answer
 
 
-def _study_case(case: Case, settings: StudySettings, begin: Begin) -> CaseStudy:
-    pieces = pieces_of(case, settings)
-    done = run_pieces(pieces, begin, go_on=True)
+def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStudy]:
+    """What was found for a case, if anything was before Ctrl-C."""
     fronts, failures = list[Front](), list[str]()
-    for name in (str(piece.key) for piece in pieces):
+    names = [str(piece.key) for piece in pieces_of(case, settings)]
+    for name in names:
         if name in done.failures:
             failures.append(f"{name}: {done.failures[name]}")
+        elif name in done.parts:
+            fronts += _fronts_of(done.parts[name])
+            failures.append(f"{name}: interrupted, with what was found until then")
+        elif name not in done.answers:
+            failures.append(f"{name}: not done before the interruption")
         elif name != FLOOR:
-            answer = done.answers[name]
-            found = [answer.front] if isinstance(answer, Polish) else answer
+            found = _fronts_of(done.answers[name])
             kept = [front for front in found if front.points]
             if len(kept) < len(found):
                 failures.append(f"{name}: {len(found) - len(kept)} of {len(found)} found no point")
             fronts += kept
-    if len(fronts) < 2:
+    if not fronts and done.interrupted:
+        return []
+    if len(fronts) < 2 and not done.interrupted:
         where = title_of(case.task)
         raise SolverFailedError(f"{where}: no two fronts to compare; {'; '.join(failures)}")
     floor = done.answers.get(FLOOR)
     polishes = {m.name: done.answers.get(m.then_polished().name) for m in METHODS.values()}
-    return CaseStudy(
+    study = CaseStudy(
         case=case,
-        comparison=compare_fronts(fronts, floor=None if floor is None else floor.energy),
+        comparison=compare_fronts(fronts, floor=None if floor is None else floor.energy, least=1),
         polishes={name: polish for name, polish in polishes.items() if polish is not None},
         floor=floor,
         paper=tuple(paper_points(case.task, {settings.terms})),
         failures=tuple(failures),
     )
+    return [study]
+
+
+def _fronts_of(answer: list[Front] | Polish) -> list[Front]:
+    return [answer.front] if isinstance(answer, Polish) else answer

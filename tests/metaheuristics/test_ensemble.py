@@ -216,7 +216,7 @@ def test_a_front_goes_to_another_process_and_back_whole():
 
 def test_a_process_without_memory_costs_its_own_seed_only():
     with pytest.raises(LostSeedsError) as caught:
-        search_many(TASK, "nsga2", 2, workers=2, **{**SMALL, "population": 10**13})  # 160 TB
+        search_many(TASK, "nsga2", 2, workers=2, **{**SMALL, "profile": dying.Hungry(2)})
     assert "seed 0 (out of memory), seed 1 (out of memory)" in str(caught.value)
     assert "fewer workers or a smaller population" in str(caught.value)
     assert caught.value.fronts == []

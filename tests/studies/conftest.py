@@ -23,6 +23,7 @@ from ocp import (
     plan_move,
 )
 from studies.cli import main
+from studies.display import progress
 from studies.methods import METHODS
 from studies.reproduction import recompute
 from studies.runs import pieces
@@ -63,8 +64,9 @@ def let_sweep(monkeypatch):
 
 
 @pytest.fixture
-def call(capfd):
+def call(capfd, monkeypatch):
     """Run a line in this process: its status, standard output and standard error."""
+    monkeypatch.setattr(progress, "SILENT_SECONDS", 1e6)  # however slow the machine is
 
     def run_here(line):
         words = line if isinstance(line, list) else shlex.split(line)

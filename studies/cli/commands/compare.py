@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import click
 from rich.console import Console
 
-from studies.cli.arguments import say_written
-from studies.cli.options import FOLDER
-
-FRONT_FILE = click.Path(path_type=Path)
+from studies.cli.options import FOLDER, INPUT, quiet_option
+from studies.display.progress import working
 
 
 @click.command()
-@click.argument("fronts", nargs=-1, type=FRONT_FILE, metavar="FRONT FRONT ...")
-@click.option("--reference", type=FRONT_FILE, help="Measure IGD+ and epsilon against this front.")
+@click.argument("fronts", nargs=-1, type=INPUT, metavar="FRONT FRONT ...")
+@click.option("--reference", type=INPUT, help="Measure IGD+ and epsilon against this front.")
 @click.option(
     "--floor/--no-floor", default=True, show_default=True,
     help="Find the least energy over all joint motions as well: some seconds.",
@@ -24,12 +23,14 @@ FRONT_FILE = click.Path(path_type=Path)
     "--as-found", is_flag=True, help="Do not count motions between the points of a front."
 )
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
+@quiet_option
 def compare(
     fronts: tuple[Path, ...],
     reference: Path | None,
     floor: bool,
     as_found: bool,
     output: Path | None,
+    quiet: bool,
 ) -> None:
     """Compare fronts of one task, found by any methods.
 
@@ -43,26 +44,32 @@ def compare(
       quietarm compare nsga2.json vepso.json
       quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
     """  # noqa: D301  # \b is click's: do not rewrap
+    from ocp import QuietarmError
     from studies.comparison.check import check_figures
     from studies.comparison.measures import FILL, compare_fronts
     from studies.comparison.report import (
+        comparison_files,
         load_fronts,
         print_comparison,
         with_floor,
-        write_comparison,
     )
+    from studies.display.saving import finish
 
-    loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
-    for front, name in zip(loaded, names, strict=True):
-        check_figures(front, name)
-    named = None if reference is None else loaded.pop()
-    comparison = compare_fronts(
-        loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
-        fill=0 if as_found else FILL,
-    )  # fmt: skip
+    errors, trouble = Console(stderr=True), None
+    with working("comparing", errors, quiet=quiet):
+        loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
+        for front, name in zip(loaded, names, strict=True):
+            check_figures(front, name)
+        named = None if reference is None else loaded.pop()
+        comparison = compare_fronts(
+            loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
+            fill=0 if as_found else FILL,
+        )  # fmt: skip
     if floor:
-        comparison = with_floor(comparison, Console(stderr=True))
-    print_comparison(Console(), comparison)
-    if output is not None:
-        output.mkdir(exist_ok=True)
-        say_written(*write_comparison(output, comparison))
+        try:
+            with working("finding the floor", errors, quiet=quiet):
+                comparison = with_floor(comparison, errors)
+        except KeyboardInterrupt:
+            trouble = QuietarmError("interrupted; the comparison is kept, without the floor")
+    files = [] if output is None else comparison_files(output, comparison)
+    finish(files, partial(print_comparison, comparison=comparison), trouble=trouble, quiet=quiet)

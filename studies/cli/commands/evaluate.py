@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import click
 from rich.console import Console
 
 from ocp import evaluate_coefficients
-from studies.cli.arguments import split_options, write_plan
-from studies.cli.options import COEFFICIENTS, output_options, task_options
+from studies.cli.arguments import plan_files, split_options
+from studies.cli.options import COEFFICIENTS, output_options, quiet_option, task_options
+from studies.display.progress import working
+from studies.display.saving import finish
 from studies.reports.plan import print_plan
 
 
@@ -19,8 +22,9 @@ from studies.reports.plan import print_plan
     "--coefficients", type=COEFFICIENTS, required=True,
     help="a_1 to a_N, separated by commas, as --coefficients=-0.0019,-0.14.",
 )  # fmt: skip
+@quiet_option
 @output_options
-def evaluate(coefficients: list[float], **rest: Any) -> None:
+def evaluate(coefficients: list[float], quiet: bool, **rest: Any) -> None:
     """Compute residual, energy and peaks of given coefficients.
 
     \b
@@ -28,6 +32,6 @@ def evaluate(coefficients: list[float], **rest: Any) -> None:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
     """  # noqa: D301  # \b is click's: do not rewrap
     task, outputs = split_options(rest)
-    found = evaluate_coefficients(task, coefficients)
-    print_plan(Console(), found)
-    write_plan(found, **outputs)
+    with working("integrating", Console(stderr=True), quiet=quiet):
+        found = evaluate_coefficients(task, coefficients)
+    finish(plan_files(found, **outputs), partial(print_plan, plan=found))

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.console import Console
 
 from ocp import energy_floor
-from studies.cli.arguments import say_written, task_of
-from studies.cli.options import OUTPUT, PICTURE, task_options
+from ocp.base.interrupts import note_interrupts
+from studies.cli.arguments import task_of
+from studies.cli.options import OUTPUT, PICTURE, quiet_option, task_options
+from studies.display.progress import working
+from studies.display.saving import drawing, finish, interruption
 from studies.reports.floor import plan_beside, print_floor
 from studies.runs.files import refuse_same_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @click.command()
@@ -26,6 +33,7 @@ from studies.runs.files import refuse_same_file
 )  # fmt: skip
 @click.option("--output", type=OUTPUT, help="Write the floor to this JSON file.")
 @click.option("--figure", type=PICTURE, help="Draw it over the plan (.png, .pdf or .svg).")
+@quiet_option
 def floor(
     smooth: bool,
     starts: int,
@@ -33,6 +41,7 @@ def floor(
     tolerance: float,
     output: Path | None,
     figure: Path | None,
+    quiet: bool,
     **rest: Any,
 ) -> None:
     """Find the least energy of a move over all joint motions, at rest on arrival.
@@ -48,14 +57,18 @@ def floor(
     """  # noqa: D301  # \b is click's: do not rewrap
     refuse_same_file([("--output", output), ("--figure", figure)])
     task = task_of(rest)
-    found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
-    plan = plan_beside(found)
-    print_floor(Console(), found, plan)
-    if output is not None:
-        found.save(output)
-    if figure is not None:
-        from studies.display.pictures import save_figure
+    with working("refining the grid", Console(stderr=True), quiet=quiet):
+        found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
+        with note_interrupts() as came:  # the floor is found, and the plan takes a moment
+            plan = plan_beside(found)
+
+    def picture() -> Figure:
         from studies.reports.floor_figure import floor_figure
 
-        save_figure(floor_figure(found, plan), figure)
-    say_written(output, figure)
+        return floor_figure(found, plan)
+
+    finish(
+        [(output, found.save), (figure, drawing(picture))],
+        partial(print_floor, floor=found, plan=plan),
+        trouble=interruption() if came else None,
+    )

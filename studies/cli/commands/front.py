@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from studies.cli.arguments import refuse_idle, say_written, task_of
-from studies.cli.options import INPUT, OUTPUT, PICTURE, WEIGHTS, task_options
+from studies.cli.arguments import refuse_idle, task_of
+from studies.cli.options import INPUT, OUTPUT, PICTURE, STATE, WEIGHTS, quiet_option, task_options
 from studies.methods import METHODS, WEIGHTED, Kind, methods_of
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
@@ -59,7 +59,7 @@ _ONLY_FOR = {
     help="Processes: a metaheuristic's share the runs, epsilon's the points.",
 )  # fmt: skip
 @click.option(
-    "--checkpoint", type=OUTPUT, help="Metaheuristic: write the state here every few seconds."
+    "--checkpoint", type=STATE, help="Metaheuristic: write the state here every few seconds."
 )
 @click.option(
     "--resume",
@@ -75,7 +75,7 @@ _ONLY_FOR = {
 @click.option(
     "--figure", type=PICTURE, help="Draw the fronts, all in one picture (.png, .pdf or .svg)."
 )
-@click.option("--quiet", is_flag=True, help="Show no progress.")
+@quiet_option
 @click.pass_context
 def front(
     context: click.Context, output: Path | None, figure: Path | None, quiet: bool, **rest: Any
@@ -109,5 +109,4 @@ def front(
             refuse_idle(context, "--weights", {"points": ("weights that the sweep chooses",)})
     else:
         from studies.runs.searching import run_front as run
-    for path in run(task, method, options, output, figure, quiet):
-        say_written(path)
+    run(task, method, options, output, figure, quiet)

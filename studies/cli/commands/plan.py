@@ -8,8 +8,11 @@ import click
 from rich.console import Console
 
 from ocp import CycloidPolynomial, plan_move
-from studies.cli.arguments import refuse_idle, split_options, write_plan
-from studies.cli.options import LENGTH, output_options, task_options
+from studies.cli.arguments import plan_files, refuse_idle, split_options
+from studies.cli.options import LENGTH, output_options, quiet_option, task_options
+from studies.display.progress import working
+from studies.display.saving import finish
+from studies.display.words import print_lines
 from studies.methods import METHODS, Kind, methods_of
 from studies.reports.plan import print_plan
 
@@ -33,7 +36,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
     "limit (1mm where that is 0).",
 )  # fmt: skip
 @click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
-@click.option("--quiet", is_flag=True, help="Show no progress of a metaheuristic.")
+@quiet_option
 @output_options
 @click.pass_context
 def plan(
@@ -64,19 +67,24 @@ def plan(
         raise ValueError(f"--polish is for a metaheuristic's point; give --method {named}")
     profile = CycloidPolynomial(terms)
     if method == IPOPT:
-        found = plan_move(
-            task, profile, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed
-        )
+        with working("solving", Console(stderr=True), quiet=quiet):
+            found = plan_move(
+                task, profile, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed
+            )
     else:
         from studies.runs.searching import plan_by_search
 
         found = plan_by_search(
             task, METHODS[method], profile, bound, residual_limit, seed, polish, quiet
         )
-    print_plan(Console(), found)
-    if method != IPOPT and residual_limit == 0 and not polish:
-        click.echo(
-            "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; --polish "
-            "does"
-        )
-    write_plan(found, **outputs)
+
+    def show(console: Console) -> None:
+        print_plan(console, found)
+        if method != IPOPT and residual_limit == 0 and not polish:
+            print_lines(
+                console,
+                "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; "
+                "--polish does",
+            )
+
+    finish(plan_files(found, **outputs), show)

@@ -6,12 +6,11 @@ from pathlib import Path
 
 import click
 
-from studies.cli.arguments import say_written
-from studies.cli.options import OUTPUT, PICTURE
+from studies.cli.options import INPUT, OUTPUT, PICTURE, quiet_option
 
 
 @click.command()
-@click.argument("front", type=click.Path(path_type=Path), metavar="FRONT")
+@click.argument("front", type=INPUT, metavar="FRONT")
 @click.option(
     "--points", type=int,
     help="Only this many points, spread evenly along the front; all of them by default, which "
@@ -25,7 +24,7 @@ from studies.cli.options import OUTPUT, PICTURE
 @click.option(
     "--figure", type=PICTURE, help="Draw the front before and after (.png, .pdf or .svg)."
 )
-@click.option("--quiet", is_flag=True, help="Show no progress.")
+@quiet_option
 def polish(
     front: Path,
     points: int | None,
@@ -48,5 +47,4 @@ def polish(
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.runs.polishing import run_polish
 
-    for path in run_polish(front, points, workers, output, csv_file, figure, quiet):
-        say_written(path)
+    run_polish(front, points, workers, output, csv_file, figure, quiet)

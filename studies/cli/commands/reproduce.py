@@ -7,8 +7,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from studies.cli.arguments import say_written
-from studies.cli.options import FOLDER
+from studies.cli.options import FOLDER, quiet_option
 
 
 @click.command()
@@ -20,7 +19,7 @@ from studies.cli.options import FOLDER
     show_default=True,
     help="Seeds of VEPSO and NSGA-II; 5 give medians and quartiles.",
 )
-@click.option("--quiet", is_flag=True, help="Show no progress.")
+@quiet_option
 def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
     """Recompute the paper's Tables 2, 3, 5 and 6 beside the printed figures, and its claims.
 
@@ -28,15 +27,35 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
     Example:
       quietarm reproduce --output results
     """  # noqa: D301  # \b is click's: do not rewrap
+    from ocp import QuietarmError
     from studies.display.progress import progress
+    from studies.display.saving import finish, inside
+    from studies.display.words import print_lines
     from studies.reproduction.claims import claims
     from studies.reproduction.recompute import pieces_of_paper, recompute_paper
-    from studies.reproduction.report import print_reproduction, write_reproduction
+    from studies.reproduction.report import print_reproduction, reproduction_files
+    from studies.reproduction.unfinished import FILE, unfinished_table
+    from studies.runs.pieces import InterruptedPiece
 
-    with progress(len(pieces_of_paper(seeds)), Console(stderr=True), quiet=quiet) as begin:
-        result = recompute_paper(begin, seeds)
-    verdicts = claims(result)
-    print_reproduction(Console(), result, verdicts)
-    if output is not None:
-        output.mkdir(exist_ok=True)
-        say_written(*write_reproduction(output, result, verdicts))
+    pieces = pieces_of_paper(seeds)
+    try:
+        with progress(len(pieces), Console(stderr=True), quiet=quiet) as begin:
+            result = recompute_paper(begin, seeds)
+    except InterruptedPiece as stop:
+        if not stop.part.answers:
+            raise
+        table = unfinished_table(pieces, stop.part)
+        finish(
+            [] if output is None else inside(output, {FILE: table.save_csv}),
+            lambda console: print_lines(console, table.csv().rstrip()),
+            trouble=QuietarmError(
+                f"interrupted: {stop.part.number} of {len(pieces)} pieces of work are done"
+            ),
+        )
+    else:
+        verdicts = claims(result)
+        finish(
+            [] if output is None else reproduction_files(output, result, verdicts),
+            lambda console: print_reproduction(console, result, verdicts),
+            quiet=quiet,
+        )

@@ -10,8 +10,8 @@ import click
 from click.core import ParameterSource
 from rich.console import Console
 
-from studies.cli.arguments import say_written, task_of
-from studies.cli.options import FOLDER, OUTPUT, task_options
+from studies.cli.arguments import task_of
+from studies.cli.options import FOLDER, OUTPUT, quiet_option, task_options
 
 
 def _not_required(command: click.Command) -> click.Command:
@@ -40,7 +40,7 @@ def _not_required(command: click.Command) -> click.Command:
     "--output", type=OUTPUT, default="study.html", show_default=True, help="Write the report here."
 )
 @click.option("--fronts", type=FOLDER, help="Write every front to this folder.")
-@click.option("--quiet", is_flag=True, help="Show no progress.")
+@quiet_option
 @click.pass_context
 def study(
     context: click.Context, output: Path, fronts: Path | None, quiet: bool, **rest: Any
@@ -57,10 +57,13 @@ def study(
       quietarm study arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --runs 5
       quietarm study single-link --target 30deg --duration 0.8 --torque-limit 0.2 --fronts fronts
     """  # noqa: D301  # \b is click's: do not rewrap
+    from ocp import QuietarmError
     from studies.display.progress import progress
+    from studies.display.saving import Together, finish
+    from studies.display.words import counted
     from studies.paper.case import Case
     from studies.paper.printed import CONDITIONS
-    from studies.study.files import write_study
+    from studies.study.files import front_files, page_file
     from studies.study.findings import case_findings, findings
     from studies.study.work import StudySettings, amount_of_work, run_study
 
@@ -75,13 +78,24 @@ def study(
         cases = (Case(task_of(rest), bound),)
     with progress(amount_of_work(cases, settings), Console(stderr=True), quiet=quiet) as begin:
         result = run_study(cases, settings, begin)
-    console = Console()
-    for line in findings(result) if len(cases) > 1 else case_findings(result.cases[0]):
-        console.print(f"- {line}", highlight=False, markup=False)
-    written = write_study(result, output, fronts)
-    say_written(output)
+
+    def show(console: Console) -> None:
+        several = len(cases) > 1
+        for line in findings(result) if several else case_findings(result.cases[0]):
+            console.print(f"- {line}", highlight=False, markup=False)
+
+    trouble = None
+    if result.done is not None:
+        total = amount_of_work(cases, settings)
+        trouble = QuietarmError(
+            f"interrupted: {result.done} of {counted(total, 'piece')} of work are done; what was "
+            "found until then is kept"
+        )
+    together = None
     if fronts is not None:
-        click.echo(f"wrote {len(written) - 1} fronts to {fronts}")
+        together = Together("fronts", fronts, front_files(result, fronts))
+    page = [page_file(result, output)]
+    finish(page, show, trouble=trouble, together=together, quiet=quiet)
 
 
 def _refuse_without_plant(context: click.Context, names: Iterable[str]) -> None:

@@ -253,8 +253,8 @@ def test_of_two_coefficients_that_are_not_finite_the_first_is_named():
 @pytest.mark.parametrize(
     ("value", "says"),
     [
-        ("ab", "could not convert string to float: 'ab'"),
-        (["a", "b"], "could not convert string to float: 'a'"),
+        ("ab", "coefficients are 'ab'; give 2 numbers"),
+        (["a", "b"], r"coefficients are \['a', 'b'\]; give 2 numbers"),
         (None, "got 1 coefficients for a profile of 2; give 2 numbers"),
         ([None, 1.0], "coefficient 1 is nan"),
         ([[0.1], [0.1]], "got 2 coefficients for a profile of 2; give 2 numbers"),

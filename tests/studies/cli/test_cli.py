@@ -100,7 +100,7 @@ def planned(tmp_path_factory):
     ran = run(
         "plan arm-on-flexible-link --start -pi/2 --target 45deg --duration 1000ms "
         "--torque-limit 0.4 --starts 2 --seed 3 --output plan.json --csv move.csv "
-        "--sample-rate 250 --figure move.svg",
+        "--sample-rate 250 --figure move.svg --quiet",
         cwd=where,
     )
     return where, ran
@@ -388,8 +388,8 @@ FRONT = f"front {MOVE} --method nsga2"
         (f"{FRONT} --bound 0.2 --terms 0", "0 terms", "give 1 term or more"),
         (f"{FRONT} --bound 0.2 --resume nowhere", "nowhere", "cannot be read"),
         (f"front {MOVE} --method annealing --bound 0.2", "annealing", "'nsga2', 'vepso'"),
-        ("reproduce --seeds 0", "seeds is 0", "give 1 or more"),
-        ("reproduce --seeds 0 --output results", "seeds is 0", "give 1 or more"),
+        ("reproduce --seeds 0", "seeds is 0", "from 1 up"),
+        ("reproduce --seeds 0 --output results", "seeds is 0", "from 1 up"),
     ],
 )
 def test_a_bad_search_is_refused_with_its_value_and_a_remedy(refused, line, value, remedy):
@@ -623,21 +623,28 @@ def test_ctrl_c_ends_a_solve_and_writes_nothing(folder, delay):
     assert list(folder.iterdir()) == []
 
 
-def test_ctrl_c_ends_a_reproduction_and_writes_nothing(folder):
+def test_ctrl_c_ends_a_reproduction_and_keeps_what_was_solved(folder):
     process = subprocess.Popen(
-        [QUIETARM, "reproduce", "--output", "results"],
+        [sys.executable, "-m", "studies", "reproduce", "--output", "results"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
-    for number in (1, 2, 3):  # the third solve has begun
-        assert process.stderr.readline().startswith(f"[{number}/")
+    while not process.stderr.readline().startswith("[3/"):  # the third solve has begun
+        assert process.poll() is None
     out, err = interrupt(process, 0.05)
-    assert (process.returncode, out) == (1, "")
-    said = [line for line in err.splitlines() if not re.match(r"\[\d+/\d+\] ", line)]
-    assert said[-1] == INTERRUPTED
-    assert "".join(said[:-1]) == ""
-    assert list(folder.iterdir()) == []
+    assert process.returncode == 1
+    (said,) = [line for line in err.splitlines() if not re.match(r"\[\d+/\d+\] ", line)]
+    done, total = map(int, re.fullmatch(
+        r"quietarm: interrupted: (\d+) of (\d+) pieces of work are done", said
+    ).groups())  # fmt: skip
+    assert 2 <= done < total == len(pieces_of_paper(seeds=1))
+    written = (folder / "results" / "unfinished.csv").read_text()
+    assert out == f"{written}wrote results/unfinished.csv\n"
+    heading, *rows = csv.reader(written.splitlines())
+    assert heading == ["piece", "energy_J", "residual_mm"]
+    assert len(rows) == done
+    assert all(float(energy) > 0 for _, energy, _ in rows)
 
 
 # quietarm reproduce, with the one reproduction of these tests in place of another

@@ -17,13 +17,13 @@ from models import ArmOnFlexibleLink
 from ocp import FrontPoint, PointToPoint, SolverFailedError, evaluate_coefficients
 from studies.comparison.check import check_figures
 from studies.comparison.figure import BANDS, PANELS, comparison_figure, looks, panel_figure
-from studies.comparison.report import FILES, write_comparison
 from studies.comparison.tables import runs_table, tables
 from studies.paper.points import paper_points
 from studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
 from studies.paper.tasks import condition_of, title_of
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
+FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
 compare = partial(studies.comparison.measures.compare_fronts, fill=0)
 
 
@@ -308,8 +308,13 @@ def of_points(front_of, points):
     return dataclasses.replace(front_of([(1, 1)]), points=tuple(points))
 
 
-def test_nothing_is_half_written(comparison, tmp_path, monkeypatch):
-    (tmp_path / "runs.csv").mkdir()
-    with pytest.raises(ValueError, match="is a folder"):
-        write_comparison(tmp_path, comparison)
-    assert [path.name for path in tmp_path.iterdir()] == ["runs.csv"]
+def test_one_file_that_cannot_be_written_leaves_the_others(call, files):
+    (files / "compared" / "runs.csv").mkdir(parents=True)
+    code, out, err = call("compare good.json poor.json --as-found --no-floor --output compared")
+    assert code == 2
+    assert "compared/runs.csv is a folder; give the name of a file in it" in err
+    assert [line for line in out.splitlines() if line.startswith("wrote ")] == [
+        f"wrote compared/{name}" for name in FILES if name != "runs.csv"
+    ]
+    for name in FILES:
+        assert (files / "compared" / name).is_file() == (name != "runs.csv")

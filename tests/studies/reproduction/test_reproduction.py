@@ -28,8 +28,8 @@ from studies.reproduction.recompute import SEARCHES, pieces_of_paper, recompute_
 from studies.reproduction.report import (
     print_reproduction,
     redrawn,
+    reproduction_files,
     tables,
-    write_reproduction,
 )
 
 LAST_DIGIT = {2: 1e-4, 5: 1e-3}
@@ -253,7 +253,7 @@ def test_a_search_is_judged_at_the_residual_of_the_papers_own_coefficients(repro
 
 @pytest.mark.parametrize("seeds", [0, -1])
 def test_a_reproduction_needs_a_seed(seeds):
-    with pytest.raises(ValueError, match=f"seeds is {seeds}; give 1 or more"):
+    with pytest.raises(ValueError, match=f"seeds is {seeds}; give a whole number from 1 up"):
         recompute_paper(seeds=seeds)
 
 
@@ -407,7 +407,10 @@ def test_the_tuned_coefficients_would_be_optimal_if_the_gradient_found_no_less(r
 def report(reproduction, tmp_path_factory):
     """The folder that `write` filled, and what it says it wrote."""
     folder = tmp_path_factory.mktemp("results")
-    return folder, write_reproduction(folder, reproduction, claims(reproduction))
+    files = reproduction_files(folder, reproduction, claims(reproduction))
+    for path, write in files:
+        write(path)
+    return folder, [path for path, _ in files]
 
 
 def test_the_report_says_what_it_wrote_and_writes_nothing_else(report):

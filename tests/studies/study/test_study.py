@@ -3,6 +3,7 @@
 import html.parser
 import re
 import shutil
+import signal
 import subprocess
 import types
 import xml.etree.ElementTree as ElementTree
@@ -12,10 +13,11 @@ import pytest
 
 import studies.study.work as study_module
 from ocp import Front, InfeasibleTaskError, PointToPoint, SolverFailedError
+from studies.comparison.measures import compare_fronts
 from studies.paper.case import Case
 from studies.paper.printed import ARM_HALF, CONDITIONS, SINGLE_LINK_SIXTH
 from studies.runs import pieces
-from studies.study.files import _file_name, write_study
+from studies.study.files import _file_name, front_files, page_file
 from studies.study.findings import case_findings, findings, percent, percents
 from studies.study.page import study_page
 from studies.study.work import Study, StudySettings, amount_of_work, run_study
@@ -169,10 +171,56 @@ def test_the_first_front_that_has_points_is_polished(monkeypatch, small):
         assert len(case.polishes[method].gains) == len(fronts[method].points)
 
 
-def test_a_search_that_is_interrupted_interrupts_the_study(monkeypatch, small):
-    front = small.cases[0].comparison.runs[2].front
-    cut = Front(**{**vars(front), "complete": False})
-    searches_that_find(monkeypatch, lambda method: [cut, cut])
+def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(
+    monkeypatch, let_sweep, small
+):
+    fronts = [run.front for run in small.cases[0].comparison.runs]
+    for front in fronts[:2]:
+        let_sweep(front.method, lambda *given, found=front, **_: found)
+    cut = replace(fronts[2], complete=False)
+    searches_that_find(monkeypatch, lambda method: [cut, replace(cut, seed=1, points=())])
+    begun = []
+    found = run_study(CASES, QUICK, begun.append)
+    assert len(begun) == 3
+    assert found.done == 2
+    (case,) = found.cases
+    assert [run.front for run in case.comparison.runs] == [*fronts[:2], cut]
+    assert case.failures[0] == "nsga2: interrupted, with what was found until then"
+    assert case.failures[1:] == tuple(
+        f"{name}: not done before the interruption"
+        for name in ("nsga2, polished", "vepso", "vepso, polished", "floor")
+    )
+    assert "not done before the interruption" in study_page(found)
+
+
+def test_ctrl_c_while_the_last_task_is_put_together_loses_nothing(monkeypatch, let_sweep, small):
+    fronts = [run.front for run in small.cases[0].comparison.runs]
+    for front in fronts[:2]:
+        let_sweep(front.method, lambda *given, found=front, **_: found)
+    searches_that_find(monkeypatch, lambda method: [f for f in fronts if f.method == method])
+    compared = study_module.compare_fronts
+
+    def interrupted(*given, **settings):
+        signal.raise_signal(signal.SIGINT)
+        return compared(*given, **settings)
+
+    monkeypatch.setattr(study_module, "compare_fronts", interrupted)
+    (case,) = run_study(CASES[:1], QUICK).cases
+    assert len(case.comparison.runs) == len(fronts)
+
+
+def test_a_study_of_which_one_front_was_found_is_a_page(small):
+    (case, _) = small.cases
+    alone = compare_fronts([case.comparison.runs[0].front], least=1)
+    page = study_page(Study(QUICK, (replace(case, comparison=alone, polishes={}),), 1.0, done=1))
+    assert "epsilon constraint" in page
+
+
+def test_a_study_that_found_nothing_before_ctrl_c_is_none(let_sweep):
+    def stopped(*given, **settings):
+        raise KeyboardInterrupt
+
+    let_sweep("epsilon", stopped)
     with pytest.raises(KeyboardInterrupt):
         run_study(CASES[:1], QUICK)
 
@@ -341,8 +389,7 @@ def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
 
 
 def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small, tmp_path):
-    written = write_study(small, tmp_path / "a.html", tmp_path / "fronts")
-    names = [path.name for path in written[1:]]
+    names = [path.name for path, _ in front_files(small, tmp_path)]
     assert len(names) == len(set(names)) == 16
     assert "arm-on-flexible-link-0-to-pi-2-0.8-s-nsga2-polished-seed0.json" in names
     assert _file_name("-pi/2 to pi/4") == "minus-pi-2-to-pi-4"
@@ -404,11 +451,12 @@ def test_an_interrupt_leaves_no_file(call, folder, monkeypatch):
     assert list(folder.iterdir()) == []
 
 
-def test_nothing_is_half_written(small, tmp_path, monkeypatch):
+def test_a_page_that_cannot_be_drawn_is_not_half_written(small, tmp_path, monkeypatch):
     def fail(*given):
         raise RuntimeError("drawing failed")
 
     monkeypatch.setattr("studies.study.files.study_page", fail)
+    path, write = page_file(small, tmp_path / "study.html")
     with pytest.raises(RuntimeError, match="drawing failed"):
-        write_study(small, tmp_path / "study.html", tmp_path / "fronts")
+        write(path)
     assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,47 @@
+"""What a reproduction that was interrupted had computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from metaheuristics.ensemble import STILL
+from ocp import Floor, Front, Plan
+from studies.display.tables import Cell, Column, Table
+from studies.runs.pieces import Done, Piece
+
+FILE = "unfinished.csv"
+
+
+def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
+    """Energy and residual of every piece of work that came to its end, one row for each.
+
+    Parameters
+    ----------
+    pieces : sequence of Piece
+        The work, in order.
+    done : Done
+        What became of it.
+
+    Returns
+    -------
+    Table
+        Of a search the cheapest point within `STILL`, where it has one.
+    """
+    columns = [
+        Column("piece of work", key="piece"),
+        Column("F2 [J]", key="energy_J"),
+        Column("residual [mm]", "{:.3g}".format, "residual_mm"),
+    ]
+    rows = [
+        [piece.name, *_figures(done.answers[piece.key])]
+        for piece in pieces
+        if piece.key in done.answers
+    ]
+    return Table("What was done before the interruption", columns, rows)
+
+
+def _figures(answer: Plan | Floor | Front) -> list[Cell]:
+    if not isinstance(answer, Front):
+        return [answer.energy, 1e3 * answer.motion.residual]
+    still = [point for point in answer.points if point.residual <= STILL]
+    return [still[-1].energy, 1e3 * still[-1].residual] if still else [None, None]

@@ -1,0 +1,208 @@
+"""Ctrl-C and the end of a batch job: what was found is kept and said, without a traceback."""
+
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+from importlib import import_module
+
+import pytest
+
+import studies.comparison.report
+from ocp import Front
+
+MOVE = "single-link --target 30deg --duration 0.8"
+SEARCH = "--bound 0.2 --population 20 --generations 20"
+STUDY = f"study {MOVE} {SEARCH} --terms 2 --points 3"
+STOPS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
+GUARD = 240
+"""Seconds after which a process that does not end has hung, on any machine."""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """A folder of the test's own, and standing in it; lines are not wrapped."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "1000")
+    return tmp_path
+
+
+def read_until(process, begin):
+    """Read standard error until a line that begins so; all lines until then."""
+    lines = []
+    for line in process.stderr:
+        lines.append(line)
+        if line.startswith(begin):
+            return lines
+    raise AssertionError(f"never said {begin!r}, but {''.join(lines)}")
+
+
+def stop(process, number):
+    """Send a signal to a process and to those that it started; what it says until all ended."""
+    os.killpg(process.pid, number)
+    return process.communicate(timeout=GUARD)
+
+
+@pytest.mark.parametrize(
+    ("piece", "number", "workers"),
+    [(2, signal.SIGTERM, 1), (4, signal.SIGINT, 2), (7, signal.SIGINT, 1), (7, signal.SIGTERM, 2)],
+)
+def test_a_study_keeps_the_pieces_that_were_done(at_a_terminal, folder, piece, number, workers):
+    process = at_a_terminal(f"{STUDY} --runs 2 --workers {workers} --fronts fronts")
+    read_until(process, f"[{piece}/7]")
+    out, err = stop(process, number)
+    assert process.returncode == 1
+    assert "Traceback" not in err
+    (done,) = re.fullmatch(
+        r"quietarm: interrupted: (\d) of 7 pieces of work are done; what was found until then is "
+        r"kept", err.splitlines()[-1],
+    ).groups()  # fmt: skip
+    assert int(done) in (piece - 1, piece)  # the piece that was at work may have come to its end
+    written = out.splitlines()[-2:]
+    assert written[0] == "wrote study.html"
+    fronts = [Front.load(path) for path in (folder / "fronts").iterdir()]
+    assert written[1] == f"wrote {len(fronts)} fronts to fronts"
+    whole = ["epsilon", "weighted", *["nsga2"] * 2, "nsga2, polished", *["vepso"] * 2]
+    ends = [1, 2, 4, 5, 7, 8]  # fronts that there are after each piece
+    found = [front.method for front in fronts if front.complete]
+    for method in whole[: ends[piece - 2]]:
+        assert method in found
+    assert "interrupt" in (folder / "study.html").read_text()
+
+
+@pytest.mark.parametrize("number", STOPS)
+def test_a_search_keeps_what_it_found(at_a_terminal, folder, number):
+    process = at_a_terminal(
+        f"front {MOVE} --method nsga2 --bound 0.2 --population 20 --generations 100000 "
+        "--output f.json"
+    )
+    read_until(process, "generation ")
+    out, err = stop(process, number)
+    assert process.returncode == 1
+    assert err.splitlines()[-1] == "quietarm: interrupted; what was found until then is kept"
+    assert out.splitlines()[-1] == "wrote f.json"
+    found = Front.load("f.json")
+    assert not found.complete
+    assert found.points
+
+
+def test_the_end_of_a_batch_job_keeps_what_its_processes_found(at_a_terminal, folder):
+    process = at_a_terminal(
+        f"front {MOVE} --method nsga2 --bound 0.2 --population 20 --generations 100000 --runs 2 "
+        "--workers 2 --output f.json"
+    )
+    read_until(process, "seed 0, generation ")
+    read_until(process, "seed 1, generation ")
+    out, err = stop(process, signal.SIGTERM)
+    assert process.returncode == 1
+    assert err.splitlines()[-1].startswith("quietarm: interrupted: 0 of 2 seeds are done, 2 in")
+    assert out.splitlines()[-2:] == ["wrote f-seed0.json", "wrote f-seed1.json"]
+    assert all(Front.load(path).points for path in folder.iterdir())
+
+
+def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder, monkeypatch):
+    line = f"front {MOVE} --terms 2 --bound 0.3 --points 3 --quiet --method"
+    assert call(f"{line} epsilon --output a.json")[0] == 0
+    assert call(f"{line} weighted --output b.json")[0] == 0
+    monkeypatch.setattr(
+        studies.comparison.report, "energy_floor", lambda task: signal.raise_signal(signal.SIGINT)
+    )
+    code, out, err = call("compare a.json b.json --output compared")
+    assert (code, err) == (1, "quietarm: interrupted; the comparison is kept, without the floor\n")
+    assert out.splitlines()[-1] == "wrote compared/fronts.png"
+
+
+def test_ctrl_c_while_the_plan_beside_it_is_looked_for_keeps_the_floor(call, folder, monkeypatch):
+    command = import_module("studies.cli.commands.floor")
+    beside = command.plan_beside
+
+    def interrupted(floor):
+        signal.raise_signal(signal.SIGINT)
+        return beside(floor)
+
+    monkeypatch.setattr(command, "plan_beside", interrupted)
+    code, out, err = call(
+        f"floor {MOVE} --acceleration-limit 200 --starts 1 --tolerance 0.1 --output f.json"
+    )
+    assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
+    assert out.splitlines()[-1] == "wrote f.json"
+
+
+# Starts the command, and sends it a signal when it loads a module.
+AT = """
+import os, signal, sys
+import importlib.abc
+
+class Signalling(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, *rest):
+        if name == {module!r}:
+            os.kill(os.getpid(), signal.{number})
+
+sys.meta_path.insert(0, Signalling())
+sys.argv = ["quietarm", *{words!r}]
+from studies.cli import main
+main()
+"""
+LOADED = ["ocp", "casadi", "models", "click", "studies.cli", "rich.console",
+          "studies.cli.commands.plan", "studies.display.words"]  # fmt: skip
+
+
+@pytest.mark.parametrize("module", LOADED)
+@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM"])
+def test_while_it_is_loaded_it_ends_in_a_line(folder, module, number):
+    words = f"plan {MOVE} --output p.json".split()
+    ran = subprocess.run(
+        [sys.executable, "-c", AT.format(module=module, number=number, words=words)],
+        capture_output=True, text=True, timeout=GUARD, check=False,
+    )  # fmt: skip
+    assert (ran.returncode, ran.stdout) == (1, "")
+    assert ran.stderr.strip() == "quietarm: interrupted; nothing was written"
+    assert list(folder.iterdir()) == []
+
+
+def test_a_library_that_is_loaded_leaves_signals_alone():
+    code = (
+        "import signal, studies.cli\n"
+        "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler\n"
+        "assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL\n"
+    )
+    subprocess.run([sys.executable, "-c", code], timeout=GUARD, check=True)
+
+
+def test_ctrl_c_while_files_are_written_waits_until_they_are_there(call, folder, monkeypatch):
+    sync = os.fsync
+
+    def interrupted(handle):
+        signal.raise_signal(signal.SIGINT)
+        sync(handle)
+
+    monkeypatch.setattr(os, "fsync", interrupted)
+    code, out, err = call(f"evaluate {MOVE} --coefficients=0 --output o.json --csv o.csv")
+    assert (code, err) == (1, "quietarm: interrupted; wrote o.json, o.csv\n")
+    assert out.splitlines()[-2:] == ["wrote o.json", "wrote o.csv"]
+    assert sorted(path.name for path in folder.iterdir()) == ["o.csv", "o.json"]
+
+
+def test_the_command_leaves_the_signals_of_the_process_as_they_were(call):
+    before = [signal.getsignal(number) for number in STOPS]
+    assert call("--version")[0] == 0
+    assert [signal.getsignal(number) for number in STOPS] == before
+
+
+def test_a_signal_that_the_shell_ignores_stays_ignored(folder):
+    # as in the background of a script, and after nohup
+    line = f"front {MOVE} --method nsga2 {SEARCH} --output f.json"
+    script = f"trap '' INT HUP; exec {shlex.quote(sys.executable)} -c {shlex.quote(AT_END)} {line}"
+    ran = subprocess.run(
+        ["bash", "-c", script], capture_output=True, text=True, timeout=GUARD, check=False
+    )
+    assert (ran.returncode, [path.name for path in folder.iterdir()]) == (0, ["f.json"])
+
+
+AT_END = (
+    "import os, signal, studies.cli;"
+    "[os.kill(os.getpid(), s) for s in (signal.SIGINT, signal.SIGHUP)];"
+    "studies.cli.main()"
+)
