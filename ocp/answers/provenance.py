@@ -121,7 +121,8 @@ class Provenance(Generic[S]):
     Attributes
     ----------
     method : str
-        ``"ipopt"``, ``"given coefficients"`` or the name of a metaheuristic.
+        ``"ipopt"``, ``"given coefficients"``, ``"evaluated"`` (the only motion of a profile) or
+        the name of a metaheuristic.
     settings : dataclass or None
         What was asked of the gradient's solver, the seed included; None where it was not used.
     search : dict

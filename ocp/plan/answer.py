@@ -130,17 +130,22 @@ def evaluate_coefficients(
     task: PointToPoint,
     coefficients: ArrayLike,
     *,
+    profile: JointProfile | None = None,
     method: str = "given coefficients",
     settings: Mapping[str, Setting] | None = None,
 ) -> Plan:
-    """The figures of given coefficients of the cycloid of a polynomial.
+    """The figures of one motion of a profile.
 
     Parameters
     ----------
     task : PointToPoint
         The move.
-    coefficients : array_like, shape (terms,)
-        a_1 to a_N of eq (6); none for the plain cycloid.
+    coefficients : array_like, shape (profile.size,)
+        The profile's coefficients; for the cycloid of a polynomial a_1 to a_N of eq (6), none for
+        the plain cycloid.
+    profile : JointProfile, optional
+        How the joint moves; by default the cycloid of a polynomial with as many terms as there are
+        coefficients.
     method : str
         Where the coefficients come from, for the plan's provenance.
     settings : mapping, optional
@@ -154,12 +159,14 @@ def evaluate_coefficients(
     Raises
     ------
     ValueError
-        When there are too many coefficients or one is not finite.
+        When the coefficients or the duration do not fit the profile.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
     began = time.perf_counter()
-    profile = CycloidPolynomial(int(np.atleast_1d(np.asarray(coefficients, dtype=float)).size))
+    if profile is None:
+        terms = np.atleast_1d(np.asarray(coefficients, dtype=float)).size
+        profile = CycloidPolynomial(int(terms))
     checked = profile.checked(coefficients)
     motion = resimulate(task, profile, checked)
     fixed = rollout(task, profile, checked)

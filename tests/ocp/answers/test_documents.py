@@ -3,7 +3,7 @@
 import json
 import math
 import re
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pytest
 
@@ -282,5 +282,5 @@ def test_a_loaded_task_plans_the_same_move(tasks, tmp_path):
     plan = plan_move(tasks["arm"], CycloidPolynomial(2), starts=1, guess=[0.1, -0.2])
     plan.save(tmp_path / "plan.json")
     loaded = Plan.load(tmp_path / "plan.json")
-    again = plan_move(loaded.task, loaded.profile, **vars(loaded.provenance.settings))
+    again = plan_move(loaded.task, loaded.profile, **asdict(loaded.provenance.settings))
     assert again == plan
