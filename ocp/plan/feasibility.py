@@ -13,9 +13,9 @@ from ocp.profiles.joint_profile import JointProfile
 from ocp.program.solution import Solution
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
-from ocp.task.point_to_point import LIMITS
+from ocp.task.quantities import QUANTITIES
 
-_UNITS = {RESIDUAL: "m", **{name.removesuffix("_limit"): unit for name, unit in LIMITS.items()}}
+_UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
 _ROOM = 1.001
 """A found least value is quoted with this room, so that asking for it is feasible."""
 

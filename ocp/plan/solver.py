@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ocp.answers.provenance import Provenance, SolveSettings, Verification
 from ocp.plan.answer import Plan
 from ocp.plan.feasibility import explain, least_peaks
+from ocp.plan.only_motion import only_motion
 from ocp.plan.verification import MOST_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
@@ -48,9 +49,10 @@ def plan_move(
     task : PointToPoint
         The move and its limits.
     profile : JointProfile, optional
-        How the joint moves; by default the cycloid of a polynomial of six terms.
+        How the joint moves; by default the cycloid of a polynomial of six terms. The only motion
+        of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
     residual_limit : float
-        Largest F1 [m]; 0 asks for rest on arrival.
+        Largest F1 [m]; 0 asks for rest on arrival, where there are coefficients to choose.
     bound : float, optional
         Largest absolute coefficient; none by default.
     starts : int
@@ -80,7 +82,7 @@ def plan_move(
     profile = CycloidPolynomial() if profile is None else profile
     settings = SolveSettings(residual_limit, bound, starts, seed, steps)
     if profile.size == 0:
-        raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+        return only_motion(task, profile, residual_limit)
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
     guesses, asked = start_coefficients(profile.size, settings), asdict(settings)

@@ -24,7 +24,7 @@ _AT_REST = 0.3
 ENOUGH_STEPS = 150
 """Steps with which a minimum counts though the solver did not settle there."""
 _ROUNDS = 12
-_OVERRUN = 1e-3
+OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
 
 
@@ -101,7 +101,7 @@ def verified(
         tried.append((best, motion, program.steps))
     best, motion, steps = _cheapest_kept(tried, kept, still)
     for name, limit in kept.items():
-        if motion.peak(name) > max(limit * (1 + _OVERRUN), still):
+        if motion.peak(name) > max(limit * (1 + OVERRUN), still):
             raise SolverFailedError(
                 f"the verified {name} is {motion.peak(name):.4g}, above its limit of {limit:g}: "
                 "the solver's steps are too coarse for this motion; bound the coefficients or use "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -10,9 +11,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Expression
+from models import Expression, JointMotion
 from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
 from ocp.task.point_to_point import PointToPoint
+from ocp.task.quantities import QUANTITIES
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
@@ -179,6 +181,9 @@ class Motion:
         Largest absolute tip displacement during the move [m].
     overshoot : float
         How far the joint passes the target on its way [rad], 0 where it does not.
+    peak_jerk : float or None
+        Largest absolute value during the move [rad/s^3]; None where the acceleration jumps, and
+        in a file from before it was told.
     """
 
     residual: float
@@ -189,16 +194,18 @@ class Motion:
     peak_acceleration: float
     peak_deflection: float
     overshoot: float
+    peak_jerk: float | None = None
 
     def peak(self, name: str) -> float:
-        """The residual, or the peak torque, speed, acceleration or deflection, by name."""
-        return float(getattr(self, name if name == "residual" else f"peak_{name}"))
+        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
+        value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
+        return math.inf if value is None else float(value)
 
     @classmethod
     def from_samples(
         cls,
         task: PointToPoint,
-        joint: NDArray[np.float64],
+        joint: JointMotion,
         tips: NDArray[np.float64],
         torque: NDArray[np.float64],
         *,
@@ -212,8 +219,8 @@ class Motion:
         ----------
         task : PointToPoint
             The move.
-        joint : ndarray, shape (samples, 3)
-            Angle, speed, acceleration of the joint [rad, rad/s, rad/s^2].
+        joint : JointMotion of ndarray, shape (samples,)
+            How the joint moves; its jerk is None where the acceleration jumps.
         tips : ndarray, shape (samples, tips)
             Tip displacements [m].
         torque : ndarray, shape (samples,)
@@ -226,14 +233,13 @@ class Motion:
         Motion
             The figures.
         """
-        past_target = (joint[:, 0] - task.target) * np.sign(task.span)
+        past_target = (joint.angle - task.target) * np.sign(task.span)
+        of = {q.peak: q.of(joint, list(tips.T), torque) for q in QUANTITIES.values()}
+        known = {name: rows for name, rows in of.items() if all(row is not None for row in rows)}
         return cls(
             residual=residual,
             energy=energy,
             net_work=net_work,
-            peak_torque=float(np.abs(torque).max()),
-            peak_speed=float(np.abs(joint[:, 1]).max()),
-            peak_acceleration=float(np.abs(joint[:, 2]).max()),
-            peak_deflection=float(np.abs(tips).max()),
             overshoot=max(0.0, float(past_target.max())),
+            **{name: float(np.abs(rows).max()) for name, rows in known.items()},
         )

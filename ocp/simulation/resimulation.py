@@ -65,7 +65,8 @@ def sample_trajectory(
     Raises
     ------
     ValueError
-        When the times do not increase from 0 or later, or the coefficients do not fit.
+        When the times do not increase from 0 or later, or coefficients or duration do not
+        fit the profile.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
@@ -73,7 +74,7 @@ def sample_trajectory(
     ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
     if not (ordered and np.all(np.isfinite(grid))):
         raise ValueError("sample times must be finite and increase from 0 or later")
-    checked = profile.checked(coefficients)
+    checked = profile.checked(coefficients, task.duration)
     moving, later = grid[grid <= task.duration], grid[grid > task.duration] - task.duration
     fractions, at = np.unique(np.append(moving / task.duration, [0.0, 1.0]), return_inverse=True)
     with _cvodes_along(checked):
@@ -120,12 +121,12 @@ def resimulated(
     Raises
     ------
     ValueError
-        When the coefficients do not fit the profile.
+        When the coefficients or the duration do not fit the profile.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
     residual_samples(task)  # refuses a window beyond reason
-    checked = profile.checked(coefficients)
+    checked = profile.checked(coefficients, task.duration)
     blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / _STEPS)
     with _cvodes_along(checked):
         figures = _figures(task.plant, profile, _STEPS * max(1, blocks))
@@ -134,7 +135,7 @@ def resimulated(
     extreme = Trajectory.from_outputs(task.plant, np.zeros(2), extremes)
     motion = Motion.from_samples(
         task,
-        extreme.joint,
+        extreme.motion,
         extreme.tips,
         extreme.torque,
         residual=residual_of(task, arrival[:, 0]),
@@ -170,9 +171,9 @@ def _figures(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
 def _along(plant: Plant, profile: JointProfile, fractions: NDArray[np.float64]) -> ca.Function:
     """(coefficients and move) -> states and outputs at these fractions of the move, from 0 on."""
 
-    def joint(given: Expression, fraction: Expression) -> JointMotion:
+    def joint(given: Expression, fraction: Expression, jerk: bool = False) -> JointMotion:
         entries = ca.vertsplit(given)
-        return profile.motion(entries[:-3], fraction, *entries[-3:])
+        return profile.motion(entries[:-3], fraction, *entries[-3:], jerk=jerk)
 
     size, count = 2 * plant.modes, len(fractions)
     state, fraction, given = ca.SX.sym("x", size), ca.SX.sym("t"), ca.SX.sym("p", profile.size + 3)
@@ -181,7 +182,7 @@ def _along(plant: Plant, profile: JointProfile, fractions: NDArray[np.float64]) 
     integrate = ca.integrator("move", "cvodes", problem, 0.0, fractions[1:].tolist(), CVODES)
     states, fraction = ca.MX.sym("x", size, count), ca.MX.sym("t", 1, count)
     given = ca.MX.sym("p", profile.size + 3)
-    outputs = outputs_of(plant, joint(given, fraction), states)
+    outputs = outputs_of(plant, joint(given, fraction, jerk=True), states)
     observe = ca.Function("observe", [fraction, states, given], [outputs])
     at_rest = ca.DM.zeros(size)
     states = ca.horzcat(at_rest, integrate(x0=at_rest, p=given)["xf"])

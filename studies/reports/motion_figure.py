@@ -66,7 +66,7 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
                 axis.plot(
                     sampled.time,
                     values[:, i],
-                    line.style if i == 0 else ":",
+                    _style(line.style, i),
                     color=line.colour,
                     linewidth=1.6,
                     label=line.label if values.shape[1] == 1 else f"{line.label}, tip {i + 1}",
@@ -87,10 +87,19 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
     for axis in axes[2:]:
         axis.set_xlabel("time [s]  (dashed: arrival)")
     handles, labels = axes[2].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=9, frameon=False)
+    columns = min(3, len(lines))  # of the tips of one motion each, where there are several
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=columns, fontsize=9, frameon=False
+    )
     if title:
         figure.suptitle(title, fontsize=12)
     return figure
+
+
+def _style(of_line: str, tip: int) -> str:
+    """The line's own style for its first tip, others for its other tips."""
+    others = [style for style in (":", "-.", "--") if style != of_line]
+    return of_line if tip == 0 else others[(tip - 1) % len(others)]
 
 
 def _sampled(motion: Plan | Floor) -> Trajectory:

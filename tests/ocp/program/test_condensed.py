@@ -15,6 +15,7 @@ from ocp.program.condensed import Condensed, Inputs
 from ocp.program.pieces import EnergyPieces
 from ocp.simulation.collocation import NODES, mesh
 from ocp.simulation.rollout import symbolic_rollout
+from ocp.task.quantities import QUANTITIES as TABLE
 
 TERMS = 3
 MOVE = np.array([-0.4, 1.1, 0.7])
@@ -23,7 +24,7 @@ QUANTITIES = {
     "none": (),
     "one": ("torque",),
     "two": ("deflection", "speed"),
-    "all": ("torque", "speed", "acceleration", "deflection"),
+    "all": tuple(TABLE),
 }
 CASES = [
     *((plant, "all", 4) for plant in ("single link", "arm", "two links")),
@@ -39,13 +40,14 @@ def _plain(plant, profile, steps, quantities, second):
     """Arrival, outputs at the nodes in time, and their derivatives, from the plain rollout."""
     a, move, modes = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3), plant.modes
     scale = ca.SX.sym("scale", 2 * modes + 1 + len(quantities))
-    plain = symbolic_rollout(plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps)
+    plain = symbolic_rollout(plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps, jerk=True)
     tips = [plant.tip_displacements(node.W) for node in plain.states]
     at_nodes = {
         "power": [plain.power],
         "torque": [plain.torque],
         "speed": [[joint.speed for joint in plain.joints]],
         "acceleration": [[joint.acceleration for joint in plain.joints]],
+        "jerk": [[joint.jerk for joint in plain.joints]],
         "deflection": [[tip[i] for tip in tips] for i in range(plant.tips)],
     }
     rows = [

@@ -62,6 +62,20 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_jerk_limit_is_kept_by_a_smooth_floor_and_refused_by_another(call, tmp_path):
+    line = f"floor {MOVE} --jerk-limit 5000 --starts 1 --tolerance 0.1"
+    code, out, err = call(f"{line} --smooth --output {tmp_path / 'f.json'}")
+    assert (code, err) == (0, "")
+    shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
+    assert shown["limits"] == "jerk 5000 rad/s^3"
+    peak = Floor.load(tmp_path / "f.json").motion.peak_jerk
+    assert shown["peak jerk"] == f"{peak:.4g} rad/s^3"
+    code, out, err = call(line)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "jerk limit is 5000 rad/s^3" in err
+    assert "--smooth" in err
+
+
 def test_the_help_shows_examples_that_are_read(call, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     code, out, _ = call("floor --help")
