@@ -13,7 +13,8 @@ from typing import Any, TypeVar
 import casadi as ca
 import numpy as np
 
-from models import __version__, known_plants
+from models import __version__
+from ocp.answers.plants import known_plant, plant_file_entry
 from ocp.base.checks import finite
 from ocp.base.errors import FileFormatError
 from ocp.base.files import write_whole
@@ -132,6 +133,7 @@ def task_to_document(task: PointToPoint) -> Document:
     return {
         "plant": task.plant.name,
         "plant_parameters": task.plant.parameters,
+        **plant_file_entry(task.plant),
         "start": task.start,
         "target": task.target,
         "duration": task.duration,
@@ -142,13 +144,7 @@ def task_to_document(task: PointToPoint) -> Document:
 
 def task_from_document(document: Document) -> PointToPoint:
     """The task of a document; KeyError, TypeError or ValueError where it is not one."""
-    name = document["plant"]
-    plant = known_plants().get(name) if isinstance(name, str) else None
-    if plant is None:
-        raise ValueError(
-            f"its plant {name!r} is not known here (known: {', '.join(sorted(known_plants()))}); "
-            "import the file that defines it first"
-        )
+    plant = known_plant(document["plant"], document.get("plant_file"))
     limits = {f"{name}_limit": value for name, value in _table(document, "limits").items()}
     unknown = sorted(set(limits) - set(LIMITS))
     if unknown:
