@@ -6,6 +6,7 @@ from math import isclose
 
 from ocp import PointToPoint
 from ocp.task.quantities import QUANTITIES
+from studies.display.words import plant_words
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
 
@@ -72,4 +73,4 @@ def title_of(task: PointToPoint) -> str:
         f", {name} within {value:g} {QUANTITIES[name].unit}" for name, value in task.limits.items()
     )
     move = f"{task.start:.4g} to {task.target:.4g} rad, {task.duration:g} s"
-    return f"{task.plant.name}, {move}{limits}"
+    return f"{plant_words(task.plant)}, {move}{limits}"

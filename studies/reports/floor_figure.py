@@ -5,6 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from ocp import Floor, Plan
+from studies.display.words import plant_words
 from studies.reports.floor import TERMS
 from studies.reports.motion_figure import Line, four_panels
 
@@ -17,5 +18,6 @@ def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
     task = floor.task
     return four_panels(
         lines,
-        f"{task.plant.name}, {task.start:.4g} to {task.target:.4g} rad in {task.duration:g} s",
+        f"{plant_words(task.plant)}, {task.start:.4g} to {task.target:.4g} rad "
+        f"in {task.duration:g} s",
     )

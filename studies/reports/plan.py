@@ -9,7 +9,7 @@ from rich.console import Console
 from ocp import Motion, Plan, PointToPoint, ShapedCycloid
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
-from studies.display.words import millimetres
+from studies.display.words import millimetres, plant_words
 
 Row = tuple[str, str]
 
@@ -49,7 +49,8 @@ def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
         f"{name} {_quantity(name, value)}{_broken(name, motion.peak(name), value)}"
         for name, value in task.limits.items()
     )
-    return [("move", f"{task.plant.name}, {move}"), *([("limits", limits)] if limits else [])]
+    words = f"{plant_words(task.plant)}, {move}"
+    return [("move", words), *([("limits", limits)] if limits else [])]
 
 
 def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ocp import Front, Polish
 from ocp.front.sweep import RESIDUAL_LIMIT
-from studies.display.words import millimetres
+from studies.display.words import millimetres, plant_words
 from studies.reports.search_figure import scale_residuals
 
 _STAIRS = "steps-post"  # between two points the stiller one is the best there is
@@ -89,7 +89,7 @@ def _panels(front: Front, panels: int) -> tuple[Figure, list[Axes]]:
     axes: list[Axes] = list(figure.subplots(1, panels, squeeze=False).flat)
     task = front.task
     figure.suptitle(
-        f"{front.method}, {task.plant.name}, {np.degrees(task.start):.4g} to "
+        f"{front.method}, {plant_words(task.plant)}, {np.degrees(task.start):.4g} to "
         f"{np.degrees(task.target):.4g} deg in {task.duration:g} s",
         fontsize=10,
     )

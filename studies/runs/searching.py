@@ -26,7 +26,7 @@ from ocp import (
 from ocp.base.files import check_writable
 from studies.display.saving import STDOUT, drawing, finish
 from studies.display.search_progress import search_display
-from studies.display.words import counted
+from studies.display.words import counted, plant_words
 from studies.methods import Method
 from studies.reports.search import print_fronts
 from studies.runs.files import refuse_same_file, warn_of_workers
@@ -155,7 +155,7 @@ def run_front(
     def picture() -> Figure:
         from studies.reports.search_figure import front_figure
 
-        title = f"{method.name}, {task.plant.name}, {counted(len(fronts), 'seed')}"
+        title = f"{method.name}, {plant_words(task.plant)}, {counted(len(fronts), 'seed')}"
         return front_figure(fronts, title)
 
     trouble = lost
