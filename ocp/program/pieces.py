@@ -16,11 +16,11 @@ from ocp.profiles.joint_profile import JointProfile
 from ocp.program.step_model import Group, quantities_at, solve
 from ocp.program.symbols import over_columns
 from ocp.simulation.collocation import GAUSS_NODES, NODES, NodeState, Step, end_to_end, mesh
-from ocp.simulation.objective import beyond_quadratic, energy_derivatives, resolved_energy
+from ocp.simulation.objective import energy_derivatives, resolved_energy
 
 _INNER = 3
 """Values by `JointProfile.inner` at a node."""
-_LEAST_SLOPE = 0.1
+_LEAST_SLOPE = 1e-3
 """Least slope of the power that its zeros' curvature counts with, in peak powers a duration."""
 
 
@@ -186,6 +186,10 @@ def linear_steps(modes: int, by_modes: ca.Sparsity, steps: int) -> ca.Function:
 class EnergyPieces:
     """F2 by `resolved_energy`, scaled by duration and power, and its derivatives by the power.
 
+    It leaves out what neighbouring steps tell beyond the quadratic: that makes the energy a little
+    more exact, but bends it sharply wherever a zero of the power leaves a step or meets another,
+    and the solver gets stuck there.
+
     Attributes
     ----------
     value : Function
@@ -198,19 +202,11 @@ class EnergyPieces:
     def __init__(self, lengths: ca.DM) -> None:
         steps = lengths.numel()
         at_nodes = ca.MX.sym("power", 1, NODES * steps)
-        to_cubic, to_quartic = beyond_quadratic(steps)
         by_step = ca.reshape(at_nodes, NODES, steps)
-        power = ca.vertsplit(by_step)
-        flat = ca.horzcat(*power)
-        cubic, quartic = flat @ to_cubic, flat @ to_quartic
-        value = resolved_energy(power, lengths, cubic, quartic)
+        value = resolved_energy(ca.vertsplit(by_step), lengths)
         self.value = ca.Function("energy", [at_nodes], [value])
-        _, gradients, bends = over_columns(energy_derivatives(), steps)(
-            by_step, cubic, quartic, _LEAST_SLOPE * lengths
-        )
-        gradients *= ca.repmat(lengths, NODES + 2, 1)
-        beyond = to_cubic @ gradients[NODES, :].T + to_quartic @ gradients[NODES + 1, :].T
-        gradient = gradients[:NODES, :] + ca.reshape(beyond, steps, NODES).T
+        gradient, bends = over_columns(energy_derivatives(), steps)(by_step, _LEAST_SLOPE * lengths)
+        gradient *= ca.repmat(lengths, NODES, 1)
         weights = ca.kron(lengths, ca.DM.ones(NODES, NODES))
         self.first = ca.Function("energy_first", [at_nodes], [ca.vec(gradient), bends * weights])
 

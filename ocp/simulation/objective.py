@@ -20,8 +20,6 @@ _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
 ).tolist()
 _TINY = 1e-300
-_LEAST_SHARE = 1e-5
-"""The exact gradient trusts slopes down to this share of the least slope that curvature does."""
 
 
 def resolved_energy(
@@ -93,40 +91,34 @@ def _parted_energy(
 
 @lru_cache(maxsize=1)
 def energy_derivatives() -> ca.Function:
-    """One step's share of `resolved_energy` with its derivatives.
+    """One step's share of `resolved_energy` with its derivatives, nothing beyond the quadratic.
 
-    The gradient is exact: that with the breaks held fixed, and the little that the terms beyond the
-    quadratic add where the breaks move. Of second derivatives it gives what the moving zeros cause,
-    2 g g' / |slope| for each with g the gradient of the power there, never negative; the rest is
-    linear in the power. Where zeros meet, that curvature is without bound, though only there: the
-    slope counts as `least_slope` at least.
+    The gradient is that with the breaks held fixed, since the power is zero there, and continuous.
+    Second derivatives come from the zeros that move: 2 g g' / |slope| for each, with g the gradient
+    of the power there, never negative; the rest is linear in the power. Where zeros meet, that
+    curvature is without bound, though only there: the slope counts as `least_slope` at least.
 
     Returns
     -------
     Function
-        (power at the nodes [3], cubic, quartic, least_slope) -> (mean |power|, its gradient by the
-        power, cubic and quartic [5], second derivatives by the power [3, 3]).
+        (power at the nodes [3], least_slope) -> (its gradient by the power [3], second derivatives
+        by the power [3, 3]).
     """
-    power, cubic, quartic = ca.SX.sym("p", NODES), ca.SX.sym("cubic"), ca.SX.sym("quartic")
-    least_slope, breaks = ca.SX.sym("least"), ca.SX.sym("x", 2)
+    power, least_slope = ca.SX.sym("p", NODES), ca.SX.sym("least")
+    breaks = ca.SX.sym("x", 2)
     c = _quadratic(ca.vertsplit(power))
-    energy = _parted_energy(c, cubic, quartic, ca.vertsplit(breaks))
-    gradient = ca.gradient(energy, ca.vertcat(power, cubic, quartic))
-    by_break = ca.gradient(energy, breaks)
+    gradient = ca.gradient(_parted_energy(c, 0.0, 0.0, ca.vertsplit(breaks)), power)
     is_zero = c[1] * c[1] > 4 * c[0] * c[2]  # else both breaks stand where the power is least
     bends = ca.SX.zeros(NODES, NODES)
     for i in range(2):
         x = breaks[i]
         at_zero = ca.gradient(c[0] + x * (c[1] + x * c[2]), power)
-        slope = c[1] + 2 * x * c[2]
         inside = ca.logic_and(is_zero, ca.logic_and(x > 0, x < 1))
-        moved = -by_break[i] * ca.sign(slope) / ca.fmax(ca.fabs(slope), _LEAST_SHARE * least_slope)
-        gradient[:NODES] += ca.if_else(inside, moved, 0) * at_zero
-        bend = 2 / ca.fmax(ca.fabs(slope), least_slope)
+        bend = 2 / ca.fmax(ca.fabs(c[1] + 2 * x * c[2]), least_slope)
         bends += ca.if_else(inside, bend, 0) * (at_zero @ at_zero.T)
     places = ca.vertcat(*_breaks(c))
-    outputs = [ca.densify(ca.substitute(e, breaks, places)) for e in (energy, gradient, bends)]
-    return ca.Function("energy", [power, cubic, quartic, least_slope], outputs, {"cse": True})
+    outputs = [ca.densify(ca.substitute(e, breaks, places)) for e in (gradient, bends)]
+    return ca.Function("energy", [power, least_slope], outputs, {"cse": True})
 
 
 @lru_cache(maxsize=32)

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ocp import Front, Polish
-from ocp.front.sweep import RESIDUAL_LIMIT
+from ocp.front.checking import RESIDUAL_LIMIT
 from studies.display.words import millimetres, plant_words
 from studies.reports.search_figure import scale_residuals
 

@@ -12,6 +12,7 @@ from models import JointMotion
 from ocp import JointProfile, Plan, PointToPoint, plan_move, resimulate, rollout
 from ocp.program.condensed import Condensed, Inputs
 from ocp.program.pieces import ProfilePieces
+from ocp.program.problem import Problem
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
 from ocp.simulation.rollout import symbolic_rollout
@@ -193,7 +194,7 @@ def test_only_a_linear_inner_layer_has_no_second_derivatives():
 def test_two_layers_are_planned_as_one(tasks):
     # The same family said in two ways, one of which is cheaper to differentiate.
     found = [
-        TaskProgram(tasks["arm"], profile, 60).solve(np.zeros(5), {RESIDUAL: 1e-3}, None)
+        Problem(TaskProgram(tasks["arm"], profile, 60), {RESIDUAL: 1e-3}).solve(np.zeros(5))
         for profile in (_Waves(5), _LinearWaves(5))
     ]
     assert found[0].status.solved

@@ -223,11 +223,11 @@ def test_every_limit_reaches_the_solver(monkeypatch, call):
     monkeypatch.setattr(studies.cli.commands.plan, "plan_move", note)
     call(
         f"plan {MOVE} --torque-limit 0.2 --speed-limit 1.5 --acceleration-limit 9 "
-        "--deflection-limit 80mm --residual-window 500ms --residual-limit 1mm --bound 0.3 "
-        "--terms 5 --starts 7 --seed 11"
+        "--jerk-limit 700 --deflection-limit 80mm --residual-window 500ms --residual-limit 1mm "
+        "--bound 0.3 --terms 5 --starts 7 --seed 11"
     )
     assert asked["task"].limits == {
-        "torque": 0.2, "speed": 1.5, "acceleration": 9.0, "deflection": 0.08
+        "torque": 0.2, "speed": 1.5, "acceleration": 9.0, "jerk": 700.0, "deflection": 0.08
     }  # fmt: skip
     assert asked["task"].residual_window == 0.5
     assert asked["profile"].terms == 5
@@ -272,7 +272,7 @@ def test_help_shows_examples(call, command, flag):
 def test_help_names_every_option(call):
     _, out, _ = call("plan --help")
     options = (
-        "start target duration terms bound residual-limit torque-limit speed-limit "
+        "start target duration terms bound residual-limit torque-limit speed-limit jerk-limit "
         "acceleration-limit deflection-limit starts seed output csv figure"
     )
     for option in options.split():

@@ -63,7 +63,7 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
 
 
 def test_a_jerk_limit_is_kept_by_a_smooth_floor_and_refused_by_another(call, tmp_path):
-    line = f"floor {MOVE} --jerk-limit 5000 --starts 1 --tolerance 0.1"
+    line = f"floor {MOVE} --jerk-limit 5000 --starts 1 --tolerance 0.1 --quiet"
     code, out, err = call(f"{line} --smooth --output {tmp_path / 'f.json'}")
     assert (code, err) == (0, "")
     shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
