@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import Field, field, fields
 from numbers import Real
 from typing import Any, ClassVar, NamedTuple
 
@@ -59,7 +59,6 @@ def parameter(default: float, unit: str, source: str) -> Any:
     return field(default=default, metadata={"unit": unit, "source": source})
 
 
-@dataclass(frozen=True)
 class Plant(ABC):
     """A joint with flexible modes: subclass it as a frozen dataclass, in one file.
 
@@ -83,6 +82,7 @@ class Plant(ABC):
     small_deflection: ClassVar[float | None] = None
     """Largest tip displacement that the equations are made for [m]; None where none is stated."""
 
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
 
     def __init_subclass__(cls) -> None:

@@ -34,9 +34,10 @@ def check_contract(plant: Plant) -> None:
 
 def _check_class(plant: Plant) -> None:
     kind, called = type(plant), repr(plant.name)
-    if not is_dataclass(plant) or any(isinstance(entry, Field) for entry in vars(kind).values()):
+    bare = any(isinstance(entry, Field) for entry in vars(kind).values())
+    if bare or not is_dataclass(plant) or kind.__hash__ is None:
         raise ValueError(
-            f"plant {called} is no dataclass; write @dataclass(frozen=True) above class "
+            f"plant {called} is no frozen dataclass; write @dataclass(frozen=True) above class "
             f"{kind.__name__}"
         )
     modes: object = getattr(plant, "modes", None)

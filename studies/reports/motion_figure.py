@@ -10,9 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ocp import Floor, Plan, Trajectory, evaluate_coefficients
+from ocp import Floor, Plan, evaluate_coefficients
 
-_SAMPLES = 1500
 _SHOWN, _ABOVE = 0.99, 1.15
 """The torque panel ends at this multiple of the torque that is not exceeded 99 % of the time."""
 
@@ -58,7 +57,7 @@ def four_panels(lines: Sequence[Line] | Plan, title: str = "") -> Figure:
     FigureCanvasAgg(figure)
     axes: list[Axes] = list(figure.subplots(2, 2, sharex=True).flat)
     for line in lines:
-        sampled = _sampled(line.plan)
+        sampled = line.plan.trajectory
         tips = sampled.tips * 1e3
         panels = [sampled.joint[:, :1], sampled.joint[:, 1:2], tips, sampled.torque[:, None]]
         for axis, values in zip(axes, panels, strict=True):
@@ -102,19 +101,11 @@ def _style(of_line: str, tip: int) -> str:
     return of_line if tip == 0 else others[(tip - 1) % len(others)]
 
 
-def _sampled(motion: Plan | Floor) -> Trajectory:
-    if isinstance(motion, Floor):
-        return motion.trajectory
-    task = motion.task
-    end = task.duration + task.residual_window
-    return motion.trajectory(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
-
-
 def _leave_out_jolts(axis: Axes, lines: Sequence[Line]) -> None:
     """Cut off a floor's jolts: for a moment their torque is a thousand times the rest."""
     peaks, usual = [0.0], [0.0]
     for line in lines:
-        sampled = _sampled(line.plan)
+        sampled = line.plan.trajectory
         torque, held = np.abs(sampled.torque), np.gradient(sampled.time)
         order = np.argsort(torque)
         most_of_the_time = np.searchsorted(np.cumsum(held[order]), _SHOWN * held.sum())

@@ -275,6 +275,13 @@ def test_a_missing_dataclass_is_told():
         Crane().validate()
 
 
+def test_a_dataclass_that_can_be_changed_is_told():
+    members = {"name": "x-soft", "modes": 1, **_equations()}
+    soft = dataclass(type("Soft", (Plant,), members))
+    with pytest.raises(ValueError, match=r"@dataclass\(frozen=True\) above class Soft"):
+        soft().validate()
+
+
 @pytest.mark.parametrize("value", ["5 cm", 0.0, -0.1, True])
 def test_a_small_deflection_that_is_no_length_is_told(value):
     assert "small_deflection is " in _told(small_deflection=value)

@@ -39,6 +39,15 @@ def test_it_loads_where_the_file_was_given(saved, crane_file, tmp_path):
     assert Plan.load(path) == plan
 
 
+def test_an_answer_of_a_scripts_own_plant_is_read_with_its_file(saved):
+    # A class of __main__ has no file to record; the same lines given as a file are its plant.
+    path, plan = saved
+    document = json.loads(path.read_text())
+    del document["task"]["plant"]["plant_file"]
+    path.write_text(json.dumps(document))
+    assert Plan.load(path) == plan
+
+
 def test_nothing_is_run_that_the_user_did_not_name(saved, crane_file):
     del Plant._known["crane"]  # as in another process
     told = _refused(saved[0])
@@ -66,15 +75,6 @@ def test_a_plant_of_that_name_from_elsewhere_is_refused(saved):
 def test_a_damaged_record_is_refused(saved, entry):
     path = saved[0]
     document = json.loads(path.read_text())
-    _put(document, entry)
+    document["task"]["plant"]["plant_file"] = entry
     path.write_text(json.dumps(document))
     assert "plant_file" in _refused(path)
-
-
-def _put(document, entry):
-    """Replace the record, wherever in the document it is."""
-    for name, value in document.items():
-        if name == "plant_file":
-            document[name] = entry
-        elif isinstance(value, dict):
-            _put(value, entry)
