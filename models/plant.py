@@ -65,8 +65,8 @@ class Plant(ABC):
     A subclass sets `name` and `modes`, declares its parameters as float fields (with `parameter`)
     and gives three equations: `modal_accelerations`, `torque` and `tip_displacements`. For a given
     joint motion the modal accelerations must be affine in the modal amplitudes and their rates, and
-    the tip displacements linear in the amplitudes; the structure at rest must stay at rest.
-    `validate` checks all of it.
+    the tip displacements linear in the amplitudes; with the joint at rest the structure must stay
+    at rest, and no mode may grow. `validate` checks all of it.
 
     Raises
     ------
