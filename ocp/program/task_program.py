@@ -297,6 +297,10 @@ class _Run:
 
     def corrected(self, found: Solution) -> Solution:
         """Solve on from a solution for what is asked now, by the program that it is of."""
+        if found.form != self.form:  # of a weighted sum: its unknowns are others
+            again = self.solution(self.form, self.stop(self.form, self.start(found.coefficients)))
+            again = self.finished(again, REACHES) if again.status.solved else again
+            return replace(again, iterations=found.iterations + again.iterations)
         if found.finish is not None:
             stop = self.stop(self.resolved, found.finish, REACHES[0])
             after = self._after(replace(found, iterations=found.iterations + stop.iterations), stop)
