@@ -1,8 +1,13 @@
-"""Words on the screen: lines that stay whole, lengths in millimetres."""
+"""Words on the screen: lines that stay whole, lengths in millimetres, moves and tasks."""
 
 from __future__ import annotations
 
+from math import degrees
+
 from rich.console import Console
+
+from ocp import PointToPoint
+from ocp.task.point_to_point import LIMITS
 
 
 def print_lines(console: Console, *lines: str) -> None:
@@ -18,3 +23,16 @@ def counted(number: int, what: str) -> str:
 def millimetres(length: float) -> str:
     """A length [m] in millimetres."""
     return f"{length * 1e3:.3g} mm"
+
+
+def move_of(task: PointToPoint) -> str:
+    """The move of a task: "0 to 30 deg in 0.8 s"."""
+    return f"{degrees(task.start):.6g} to {degrees(task.target):.6g} deg in {task.duration:g} s"
+
+
+def title_of(task: PointToPoint) -> str:
+    """A task in a line: its plant and move; its limits where it has any."""
+    limits = [
+        f"{name} within {value:g} {LIMITS[f'{name}_limit']}" for name, value in task.limits.items()
+    ]
+    return ", ".join([task.plant.name, move_of(task), *limits])

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from rich.console import Console
 
 from ocp import Motion, Plan, PointToPoint
 from ocp.task.point_to_point import LIMITS
 from studies.display.tables import print_rows
-from studies.display.words import millimetres
+from studies.display.words import millimetres, move_of
 
 Row = tuple[str, str]
 
@@ -45,12 +43,14 @@ def print_plan(console: Console, plan: Plan) -> None:
 
 def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     """The move and its limits, and where the motion breaks one."""
-    move = f"{_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s"
     limits = ", ".join(
         f"{name} {_quantity(name, value)}{_broken(name, motion.peak(name), value)}"
         for name, value in task.limits.items()
     )
-    return [("move", f"{task.plant.name}, {move}"), *([("limits", limits)] if limits else [])]
+    return [
+        ("move", f"{task.plant.name}, {move_of(task)}"),
+        *([("limits", limits)] if limits else []),
+    ]
 
 
 def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
@@ -77,10 +77,6 @@ def _large(task: PointToPoint, motion: Motion) -> str:
         f"  (warning: beyond {millimetres(limit)}, up to which the plant's deflections count as "
         "small; its equations are less exact there)"
     )
-
-
-def _angle(value: float) -> str:
-    return f"{math.degrees(value):.6g}deg"
 
 
 def _quantity(name: str, value: float) -> str:

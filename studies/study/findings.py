@@ -9,9 +9,8 @@ import numpy as np
 
 from studies.comparison.measures import Comparison, Group
 from studies.comparison.staircase import within
-from studies.display.words import millimetres
+from studies.display.words import millimetres, title_of
 from studies.methods import WEIGHTED, Kind, Method, methods_of
-from studies.paper.tasks import title_of
 from studies.study.work import CaseStudy, Study
 
 SEARCHES = methods_of(Kind.METAHEURISTIC)
@@ -63,7 +62,11 @@ def case_findings(found: CaseStudy) -> list[str]:
 def _best(comparison: Comparison) -> str:
     level, best = comparison.levels[STILL_LEVEL], comparison.best[STILL_LEVEL]
     if not isfinite(best):
-        return f"No method arrives within {millimetres(level)}."
+        residual, energy = comparison.best_front[0]
+        return (
+            f"No method arrives within {millimetres(level)}: the stillest motion leaves "
+            f"{millimetres(residual)} and takes {energy:.4g} J."
+        )
     labels = [
         g.label for g in comparison.groups if g.spread("gaps_between", STILL_LEVEL).lower <= _ALIKE
     ]
@@ -78,6 +81,9 @@ def _search(found: CaseStudy, method: Method) -> str:
     group = group_of(comparison, method)
     if group is None:
         return ""
+    if not any(group.reached(i) for i in range(len(comparison.levels))):
+        least = min(run.front.stillest().residual for run in group.runs)
+        return f"The stillest motion of {method.label} leaves {millimetres(least)}."
     words: list[str] = []
     for i, level in enumerate(comparison.levels):
         reached, runs = group.reached(i), len(group.runs)
@@ -144,9 +150,14 @@ def at_rest(found: CaseStudy) -> float:
 
 def _floor(found: CaseStudy) -> str:
     best = at_rest(found)
-    if found.floor is None or not isfinite(best):
+    if found.floor is None:
         return ""
     terms = found.comparison.runs[0].front.profile.size
+    if not isfinite(best):
+        return (
+            f"No motion of {terms} coefficients was found that arrives at rest; the floor, the "
+            f"least energy of any joint motion that does, is {found.floor.energy:.4g} J."
+        )
     return (
         f"At rest on arrival, the best motion of {terms} coefficients takes {best:.4g} J, "
         f"{best / found.floor.energy:.3g} times the floor of any joint motion, "

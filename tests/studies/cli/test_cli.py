@@ -19,7 +19,7 @@ import pytest
 import studies.cli.commands.evaluate
 import studies.cli.commands.floor
 import studies.cli.commands.plan
-import studies.comparison.report
+import studies.reports.comparison
 import studies.reproduction.recompute
 import studies.runs.polishing
 import studies.runs.searching
@@ -280,7 +280,7 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.cli.commands.evaluate, "evaluate_coefficients", note)
     monkeypatch.setattr(studies.runs.searching, "search", note)
     monkeypatch.setattr(studies.runs.searching, "search_many", note)
-    monkeypatch.setattr(studies.comparison.report, "load_fronts", note)
+    monkeypatch.setattr(studies.reports.comparison, "load_fronts", note)
     monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
     monkeypatch.setattr(studies.study.work, "run_study", note)
     monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)

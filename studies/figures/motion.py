@@ -1,0 +1,235 @@
+"""Motions as a picture: what the joint does, what the tip does, what the motor does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ocp import Floor, Plan, Trajectory, evaluate_coefficients
+from studies.display.words import title_of
+from studies.figures.axes import TITLE, axes_or_new, legend_of, new_figure
+from studies.figures.looks import BLUE, GREY, RED, Dash, look
+
+_SAMPLES = 1500
+_SHOWN, _ABOVE = 0.99, 1.15
+"""A panel with jolts ends at this multiple of what is not exceeded 99 % of the time."""
+_IN_SIGHT = 0.4
+"""A limit is drawn where a motion comes to this share of it; else it would flatten the motion."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity that can be drawn: its name, unit, and values of shape (samples, lines)."""
+
+    name: str
+    unit: str
+    values: Callable[[Trajectory], NDArray[np.float64]]
+    scale: float = 1.0
+    """What its limit [SI] is multiplied by, to be in that unit."""
+
+
+QUANTITIES: Mapping[str, Quantity] = {
+    "angle": Quantity("joint angle", "rad", lambda sampled: sampled.joint[:, :1]),
+    "speed": Quantity("angular velocity", "rad/s", lambda sampled: sampled.joint[:, 1:2]),
+    "acceleration": Quantity(
+        "angular acceleration", "rad/s^2", lambda sampled: sampled.joint[:, 2:3]
+    ),
+    "deflection": Quantity("tip displacement", "mm", lambda sampled: sampled.tips * 1e3, 1e3),
+    "torque": Quantity("motor torque", "N m", lambda sampled: sampled.torque[:, None]),
+}
+"""What can be drawn, by the name that its limit has in a task."""
+PAPER_PANELS = ("angle", "speed", "deflection", "torque")
+"""The panels of the paper's Figs 2 and 5, in their order."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """One motion in a picture.
+
+    Parameters
+    ----------
+    plan : Plan or Floor
+        The motion.
+    label : str
+        What the legend calls it.
+    colour : str, optional
+        Any of matplotlib's; by default one of `COLOURS`, with dashes to match.
+    style : str or tuple
+        Its dashes, where there is a colour.
+    """
+
+    plan: Plan | Floor
+    label: str
+    colour: str = ""
+    style: Dash = "-"
+
+    @cached_property
+    def sampled(self) -> Trajectory:
+        """The motion in time, through the residual window after arrival."""
+        if isinstance(self.plan, Floor):
+            return self.plan.trajectory
+        task = self.plan.task
+        end = task.duration + task.residual_window
+        return self.plan.trajectory(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
+
+
+Motions = Sequence[Line] | Plan | Floor
+
+
+def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Axes:
+    """Draw one quantity of motions against time, with its limits and the moment of arrival.
+
+    Parameters
+    ----------
+    motions : sequence of Line, Plan or Floor
+        The motions, all of one duration; a plan alone is drawn over the plain cycloid of its
+        task.
+    quantity : str
+        A name in `QUANTITIES`: angle, speed, acceleration, deflection or torque.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, titled with the quantity and its unit; every line has a label for a legend. A
+        limit too far off to be drawn is named in the title.
+
+    Raises
+    ------
+    ValueError
+        When there is no motion, their durations differ, or there is no such quantity.
+    """
+    if quantity not in QUANTITIES:
+        raise ValueError(f"no quantity is called {quantity!r}; give {', '.join(QUANTITIES)}")
+    lines, drawn = lines_of(motions), QUANTITIES[quantity]
+    ax = axes_or_new(ax)
+    for line in lines:
+        values = drawn.values(line.sampled)
+        for i, column in enumerate(values.T):
+            label = line.label if values.shape[1] == 1 else f"{line.label}, tip {i + 1}"
+            style = line.style if i == 0 else ":"
+            ax.plot(
+                line.sampled.time, column, color=line.colour, linestyle=style, linewidth=1.6,
+                label=label,
+            )  # fmt: skip
+    ax.axvline(lines[0].plan.task.duration, color="0.6", linewidth=0.8, linestyle="--")
+    words = [f"{drawn.name} [{drawn.unit}]", *_draw_limits(ax, quantity, lines)]
+    words += _leave_out_jolts(ax, drawn, lines)
+    ax.set_title(", ".join(words), **TITLE)
+    ax.set_xlabel("time [s]  (dashed: arrival)")
+    ax.margins(x=0)
+    return ax
+
+
+def motion_figure(
+    motions: Motions, title: str | None = None, quantities: Sequence[str] = tuple(QUANTITIES)
+) -> Figure:
+    """Draw several quantities of motions, one panel for each.
+
+    Parameters
+    ----------
+    motions : sequence of Line, Plan or Floor
+        As for `draw_quantity`.
+    title : str, optional
+        Title of the picture; by default the plant, the move and its limits.
+    quantities : sequence of str
+        Names in `QUANTITIES`, all by default; `PAPER_PANELS` are those of the paper.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The panels, lettered, with one legend.
+
+    Raises
+    ------
+    ValueError
+        As `draw_quantity`.
+    """
+    lines, count = lines_of(motions), len(quantities)
+    columns = min(count, 2) if count <= 4 else 3
+    rows = -(-count // columns)
+    figure = new_figure(1.0 + 4.4 * columns, 0.8 + 2.9 * rows)
+    axes: list[Axes] = list(figure.subplots(rows, columns, sharex=True, squeeze=False).flat)
+    for i, quantity in enumerate(quantities):
+        ax = draw_quantity(lines, quantity, axes[i])
+        ax.set_title(f"({'abcdefghi'[i]}) {ax.get_title(loc='left')}", **TITLE)
+        ax.tick_params(labelbottom=True)
+        if i + columns < count:  # another stands below it
+            ax.set_xlabel("")
+    spare = axes[count:]
+    for ax in spare:
+        ax.axis("off")
+        ax.margins(x=0)  # time is shared
+    if spare:
+        spare[0].legend(*legend_of(axes[:count]), loc="center left", fontsize=10, frameon=False)
+    else:
+        figure.legend(
+            *legend_of(axes), loc="outside lower center", ncols=3, fontsize=9, frameon=False
+        )
+    title = title_of(lines[0].plan.task) if title is None else title
+    if title:
+        figure.suptitle(title, fontsize=12)
+    return figure
+
+
+def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
+    """The panels of a floor, over the plan where there is one."""
+    lines = [Line(floor, f"floor, {floor.energy:.4g} J", BLUE)]
+    if plan is not None:
+        label = f"plan of {plan.profile.size} terms, {plan.energy:.4g} J"
+        lines.insert(0, Line(plan, label, RED, "--"))
+    return motion_figure(lines)
+
+
+def lines_of(motions: Motions) -> list[Line]:
+    """The lines of a picture, each with a colour; ValueError where they do not fit together."""
+    if isinstance(motions, Plan):
+        cycloid = evaluate_coefficients(motions.task, [])
+        motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
+    elif isinstance(motions, Floor):
+        motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
+    if len({line.plan.task.duration for line in motions}) != 1:
+        raise ValueError("give one motion or more, all of one duration")
+    looks = [look(i) for i in range(len(motions))]
+    return [
+        line if line.colour else replace(line, colour=own.colour, style=own.dash)
+        for line, own in zip(motions, looks, strict=True)
+    ]
+
+
+def _draw_limits(ax: Axes, quantity: str, lines: Sequence[Line]) -> list[str]:
+    """Draw the limits that a motion comes near; the others in words."""
+    drawn = QUANTITIES[quantity]
+    values = np.concatenate([drawn.values(line.sampled).ravel() for line in lines])
+    every = [line.plan.task.limits.get(quantity) for line in lines]
+    words, label = list[str](), "limit"
+    for limit in sorted({drawn.scale * limit for limit in every if limit is not None}):
+        sides = [side for side in (1, -1) if (side * values).max() >= _IN_SIGHT * limit]
+        for side in sides:
+            ax.axhline(side * limit, color="black", linewidth=1.1, linestyle=":", label=label)
+            label = "_"  # once in the legend
+        words += [] if sides else [f"limit {limit:g} far off"]
+    return words
+
+
+def _leave_out_jolts(ax: Axes, drawn: Quantity, lines: Sequence[Line]) -> list[str]:
+    """Cut off a floor's jolts, in which it is for a moment a thousand times the rest; in words."""
+    peaks, usual = [0.0], [0.0]
+    for line in lines:
+        sizes = np.abs(drawn.values(line.sampled)).max(axis=1)
+        held, order = np.gradient(line.sampled.time), np.argsort(sizes)
+        most_of_the_time = np.searchsorted(np.cumsum(held[order]), _SHOWN * held.sum())
+        peaks.append(float(sizes.max()))
+        usual.append(float(sizes[order][min(most_of_the_time, len(order) - 1)]))
+    highest = _ABOVE * max(usual)
+    if max(peaks) <= highest or not any(isinstance(line.plan, Floor) for line in lines):
+        return []
+    ax.set_ylim(-highest, highest)
+    return ["jolts left out"]
