@@ -52,6 +52,7 @@ from rockit.sampling_method import FunctionGrid
 
 from ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from ocp.program.ipopt import OPTIONS
+from ocp.program.problem import Problem
 from ocp.program.solution import Solution
 from ocp.program.task_program import TaskProgram
 from ocp.simulation.collocation import NODES, mesh
@@ -91,7 +92,7 @@ class Move:
     def solve(self, steps: int) -> Solution:
         """Solve by quietarm, without the verification."""
         program = TaskProgram(self.task, PROFILE, steps)
-        return program.solve(np.zeros(PROFILE.size), {"residual": 0.0}, self.bound)
+        return Problem(program, {"residual": 0.0}, self.bound).solve(np.zeros(PROFILE.size))
 
 
 class RockitMove:

@@ -9,7 +9,7 @@ then 100 to 1600 steps at six terms. Every repetition begins cold, with nothing 
 
 - build: what a first solve takes longer than a second: making the solvers (states, their
   derivatives by recursion, IPOPT's set-up) of the sampled and of the resolved energy;
-- solve: one call of `TaskProgram.solve` with all built, how many iterations IPOPT took in it, and
+- solve: one call of `Problem.solve` with all built, how many iterations IPOPT took in it, and
   the time of one of them;
 - plan: the whole of `plan_move`, cold: build, solve, verification by CVODES, and where that asks
   for them more steps and another solve. `steps used` tells how far it went;
@@ -38,6 +38,7 @@ from rich.table import Table
 
 from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
+from ocp.program.problem import Problem
 from ocp.program.solution import Solution
 from ocp.program.task_program import TaskProgram
 
@@ -74,7 +75,8 @@ def measure(case: Case) -> Timing:
     forget_compiled()
 
     def solved() -> Solution:
-        return TaskProgram(TASK, profile, case.steps).solve(guess, {"residual": 0.0}, case.bound)
+        program = TaskProgram(TASK, profile, case.steps)
+        return Problem(program, {"residual": 0.0}, case.bound).solve(guess)
 
     first, _ = timed(solved, process_time)
     solve, solution = timed(solved, process_time)

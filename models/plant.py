@@ -21,7 +21,7 @@ Expression = Any
 
 
 class JointMotion(NamedTuple):
-    """Angle, speed and acceleration of the joint: three entries of the same shape.
+    """Angle, speed, acceleration and jerk of the joint: entries of the same shape.
 
     Attributes
     ----------
@@ -31,11 +31,14 @@ class JointMotion(NamedTuple):
         theta' [rad/s].
     acceleration : Expression
         theta'' [rad/s^2].
+    jerk : Expression or None
+        theta''' [rad/s^3]; None where it is not asked for. No plant's equations may use it.
     """
 
     angle: Expression
     speed: Expression
     acceleration: Expression
+    jerk: Expression = None
 
 
 def parameter(default: float, unit: str, source: str) -> Any:

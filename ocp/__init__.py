@@ -21,9 +21,11 @@ from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
 from ocp.front.polish import Gain, Polish, polish_front
 from ocp.front.weighted import weighted_front
 from ocp.plan.answer import Plan, evaluate_coefficients
+from ocp.plan.shaping import shaped_cycloid
 from ocp.plan.solver import plan_move
 from ocp.profiles.joint_profile import JointPath, JointProfile
 from ocp.profiles.polynomial import MAX_TERMS, CycloidPolynomial
+from ocp.profiles.shaped_cycloid import ShapedCycloid
 from ocp.simulation.cvodes import Trajectory
 from ocp.simulation.objective import Motion
 from ocp.simulation.residual import residual_matrix
@@ -50,6 +52,7 @@ __all__ = [
     "Polish",
     "QuietarmError",
     "Rollout",
+    "ShapedCycloid",
     "SolveSettings",
     "SolveStatus",
     "SolverFailedError",
@@ -66,6 +69,7 @@ __all__ = [
     "resimulate",
     "rollout",
     "sample_trajectory",
+    "shaped_cycloid",
     "symbolic_rollout",
     "weighted_front",
 ]

@@ -1,12 +1,9 @@
 """What the tests of every package share."""
 
-import importlib.util
-from pathlib import Path
-
 import pytest
 from hypothesis import Phase, settings
 
-from models import Plant
+from models import DualLinkManipulator, Plant
 
 # Derandomised, so that a run on another day gives the same answer; `--hypothesis-profile=search`
 # looks further. No deadline: the first example of a kind compiles.
@@ -28,12 +25,8 @@ def pytest_collection_modifyitems(items):
 
 @pytest.fixture(scope="session")
 def two_links():
-    """A user's own plant of two modes, from its file beside these tests."""
-    path = Path(__file__).parent / "ocp" / "two_links.py"
-    spec = importlib.util.spec_from_file_location("two_links", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.TwoLinksOnOneHub()
+    """The plant of two modes."""
+    return DualLinkManipulator()
 
 
 @pytest.fixture

@@ -41,6 +41,7 @@ sys.path.insert(0, str(ROOT))  # this checkout's packages, also where quietarm i
 TESTS = {
     "models/plant.py": ["models/test_plants.py", "ocp/task/test_point_to_point.py"],
     "models/single_link.py": ["models/test_plants.py"],
+    "models/dual_link.py": ["models/test_dual_link.py"],
     "models/arm_on_flexible_link.py": ["models/test_plants.py"],
     "ocp/simulation/collocation.py": [
         "ocp/simulation/test_collocation.py",

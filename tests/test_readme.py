@@ -153,7 +153,7 @@ def test_the_example_of_a_front_finds_and_saves_it(tmp_path):
 def test_the_example_of_a_picture_draws_it(tmp_path):
     more = """
 assert [ax.get_title(loc="left") for ax in (left, middle)] == [
-    "motor torque [N m]", "tip displacement [mm]"
+    "joint torque [N m]", "tip displacement [mm]"
 ]
 assert all(ax.figure is figure and ax.get_lines() for ax in (left, middle, right))
 """

@@ -23,6 +23,7 @@ from ocp.base.checks import whole
 from ocp.base.interrupts import keep_interrupts
 from ocp.simulation.residual import residual_rows
 from ocp.simulation.rollout import SymbolicRollout, default_steps
+from ocp.task.quantities import QUANTITIES, ask_for_jerk
 
 LEAST_STEPS = 24
 """Steps that keep the energy of nine in ten random candidates of the paper's boxes within 1e-4, and
@@ -180,22 +181,23 @@ def _compiled(
     population = ca.MX.sym("a", BLOCK, profile.size)
     move, limits = ca.MX.sym("move", 3), ca.MX.sym("limits", len(limited))
     columns = [ca.repmat(column, 1, steps) for column in ca.horzsplit(population, 1)]
-    rollout = symbolic_rollout(plant, profile, columns, ca.vertsplit(move), steps, candidates=BLOCK)
-    peaks = _peaks(plant, rollout)
-    violations = [_row_peak(peaks[name]) / limits[i] - 1 for i, name in enumerate(limited)]
+    rollout = symbolic_rollout(
+        plant, profile, columns, ca.vertsplit(move), steps, BLOCK, ask_for_jerk(limited)
+    )
+    at_nodes = [_at_nodes(plant, rollout, name) for name in limited]
+    violations = [_row_peak(values) / limits[i] - 1 for i, values in enumerate(at_nodes)]
     outputs = [rollout.arrival, ca.horzcat(rollout.energy, *violations)]
     return ca.Function("population", [population, move, limits], outputs, {"cse": True})
 
 
-def _peaks(plant: Plant, rollout: SymbolicRollout) -> dict[str, list[Expression]]:
-    """The quantities that a task may limit, at the nodes."""
-    tips = [tip for state in rollout.states for tip in plant.tip_displacements(state.W)]
-    return {
-        "torque": rollout.torque,
-        "speed": [joint.speed for joint in rollout.joints],
-        "acceleration": [joint.acceleration for joint in rollout.joints],
-        "deflection": tips,
-    }
+def _at_nodes(plant: Plant, rollout: SymbolicRollout, name: str) -> list[Expression]:
+    """A quantity that a task may limit, at the nodes."""
+    nodes = zip(rollout.joints, rollout.states, rollout.torque, strict=True)
+    return [
+        value
+        for joint, state, torque in nodes
+        for value in QUANTITIES[name].of(joint, plant.tip_displacements(state.W), torque)
+    ]
 
 
 def _row_peak(values: Sequence[Expression]) -> Expression:

@@ -18,6 +18,7 @@ from ocp.base.checks import finite
 from ocp.base.errors import FileFormatError
 from ocp.base.files import write_whole
 from ocp.profiles.joint_profile import JointProfile, known_profiles
+from ocp.simulation.objective import Motion
 from ocp.task.point_to_point import LIMITS, PointToPoint
 
 Document = dict[str, Any]
@@ -223,6 +224,15 @@ def _table(document: Document, name: str) -> Mapping[str, Any]:
     if not isinstance(document[name], dict):
         raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
     return document[name]
+
+
+def motion_of(figures: Document) -> Motion:
+    """The figures of a motion, with a jerk or none; KeyError or ValueError where one is wrong."""
+    optional = {entry.name for entry in fields(Motion) if entry.default is None}
+    absent = {name for name in optional if figures.get(name) is None}
+    return Motion(
+        **numbers_of(figures, [entry.name for entry in fields(Motion) if entry.name not in absent])
+    )
 
 
 def numbers_of(document: Document, names: Iterable[str]) -> dict[str, float]:

@@ -101,7 +101,8 @@ class Provenance:
     Attributes
     ----------
     method : str
-        ``"ipopt"``, ``"given coefficients"`` or the name of a metaheuristic.
+        ``"ipopt"``, ``"given coefficients"``, ``"evaluated"`` (the only motion of a profile) or
+        the name of a metaheuristic.
     settings : dict
         What was asked of the method, the seed included.
     versions : dict of str to str

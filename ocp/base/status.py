@@ -59,7 +59,7 @@ _TEXTS = {
     "bound on the coefficients.",
     SolveStatus.NUMERICAL_TROUBLE: "IPOPT lost its way; try another seed, fewer terms or a bound "
     "on the coefficients.",
-    SolveStatus.NOT_OPTIMISED: "The coefficients were given, not optimised.",
+    SolveStatus.NOT_OPTIMISED: "The motion was given, not optimised.",
 }
 
 _FROM_IPOPT = {

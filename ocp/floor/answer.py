@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import ClassVar
 
-from ocp.answers.documents import Document, numbers_of, task_from_document, task_to_document
+from ocp.answers.documents import Document, motion_of, task_from_document, task_to_document
 from ocp.answers.provenance import Provenance, Verification, provenance_of, verification_of
 from ocp.answers.saved import Saved
 from ocp.base.checks import finite, positive, whole
@@ -180,9 +180,7 @@ class Floor(Saved):
         return cls(
             task=task,
             free=free,
-            motion=Motion(
-                **numbers_of(document["figures"], [entry.name for entry in fields(Motion)])
-            ),
+            motion=motion_of(document["figures"]),
             levels=levels,
             starts=starts,
             status=SolveStatus(document["status"]),

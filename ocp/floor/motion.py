@@ -46,6 +46,7 @@ def joint_after(derivatives: Sequence[Expression], t: Expression) -> JointMotion
         angle + t * (speed + t * (acceleration / 2 + t * (jerk / 6))),
         speed + t * (acceleration + t * (jerk / 2)),
         acceleration + t * jerk,
+        jerk,
     )
 
 
@@ -95,6 +96,11 @@ class FreeMotion:
     def steps(self) -> int:
         """How many intervals the grid has."""
         return len(self.acceleration)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether the motion has a jerk; else its acceleration is constant on every interval."""
+        return bool(np.any(self.jerk))
 
     @property
     def lengths(self) -> NDArray[np.float64]:
@@ -201,7 +207,7 @@ def simulate(task: PointToPoint, free: FreeMotion) -> FreeSimulation:
     resting = rest_of(task, ends[:-1, -1])
     motion = Motion.from_samples(
         task,
-        moving.joint,
+        moving.motion if free.smooth else moving.motion._replace(jerk=None),
         moving.tips,
         moving.torque,
         residual=float(np.abs(resting.tips).max()),

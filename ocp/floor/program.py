@@ -21,6 +21,7 @@ from ocp.program.ipopt import OPTIONS
 from ocp.program.solution import ENERGY
 from ocp.simulation.collocation import GAUSS_WEIGHTS
 from ocp.task.point_to_point import PointToPoint
+from ocp.task.quantities import ask_for_jerk
 
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400}
 _WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
@@ -71,10 +72,20 @@ class FloorProgram:
         The move.
     smooth : bool
         Whether the acceleration is continuous (and the jerk free) or free itself.
+
+    Raises
+    ------
+    ValueError
+        When the jerk is limited and the motion has none.
     """
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, task: PointToPoint, smooth: bool) -> None:
+        if ask_for_jerk(task.limits) and not smooth:
+            raise ValueError(
+                f"jerk limit is {task.jerk_limit:g} rad/s^3 and the acceleration of this floor "
+                "jumps; ask for a smooth floor (smooth=True, or --smooth)"
+            )
         self.task, self.smooth = task, smooth
         self._scale = self._measures()
 
@@ -158,8 +169,8 @@ class FloorProgram:
         return measures
 
     def _reference(self, program: FreeProgram) -> dict[str, float]:
-        """Scale of each output and of the joint's speed and acceleration, by name."""
-        of_joint = {"speed": self._scale[1], "acceleration": self._scale[2]}
+        """Scale of each output and of each limited derivative of the joint, by name."""
+        of_joint = {name: self._scale[row] for name, row in program.of_joint.items()}
         outputs = self._scale[program.model.unknowns :]
         return of_joint | dict(zip(program.model.outputs, outputs, strict=True))
 
@@ -182,7 +193,7 @@ class FloorProgram:
         unknowns, outputs = self._simulate(program, free, self._scale)
         counts = np.cumsum(list(program.model.outputs.values()))
         values = dict(zip(program.model.outputs, np.split(outputs, counts[:-1]), strict=True))
-        values |= {"speed": unknowns[1], "acceleration": unknowns[2]}
+        values |= {name: unknowns[row] for name, row in program.of_joint.items()}
         return FreePoint(
             peaks=np.array([np.abs(values[name]).max() for name in program.peaks]),
             intervals=unknowns,

@@ -21,13 +21,10 @@ from numpy.typing import NDArray
 from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.floor.motion import joint_after
-from ocp.program.step_model import LiftedStep, groups_of
+from ocp.program.step_model import JOINT, LiftedStep, groups_of
 from ocp.program.symbols import split
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
-
-_AT_NODES = ("torque", "deflection")
-_OF_JOINT = {"speed": 1, "acceleration": 2}
-"""Limited quantities that are themselves unknowns, with their place among those of an interval."""
+from ocp.task.quantities import QUANTITIES
 
 
 class FreeStep:
@@ -53,7 +50,7 @@ class FreeStep:
         scale = ca.SX.sym("scale", self.scales)
         c, modal_state = w[: self.joint], w[self.joint :]
         entries = ca.vertsplit(c * scale[: self.joint])
-        q = ca.vertcat(*(ca.vertcat(*joint_after(entries, x * h)) for x in GAUSS_NODES))
+        q = ca.vertcat(*(ca.vertcat(*joint_after(entries, x * h)[:JOINT]) for x in GAUSS_NODES))
         lifted = LiftedStep(plant, groups, modal_state, h, scale[self.joint :])
         multipliers = ca.SX.sym("lam", lifted.outputs.numel())
         first, second = lifted.derivatives(q, c, modal_state, multipliers)
@@ -111,8 +108,11 @@ class FreeProgram:
         options: Mapping[str, str | int | float],
     ) -> None:
         self.steps, self.peaks = steps, quantities
-        self.at_nodes = tuple(name for name in quantities if name in _AT_NODES)
-        self.model = model = FreeStep(plant, smooth, self.at_nodes)
+        derivatives = {name: QUANTITIES[name].derivative for name in quantities}
+        at_nodes = tuple(name for name, order in derivatives.items() if order is None)
+        self.of_joint = {name: order for name, order in derivatives.items() if order is not None}
+        """Limited quantities that are unknowns, with their place among those of an interval."""
+        self.model = model = FreeStep(plant, smooth, at_nodes)
         sizes = [len(quantities), model.unknowns * (steps + 1), NODES * steps]
         x = ca.MX.sym("x", sum(sizes))
         p = ca.MX.sym("p", steps + model.scales + 1 + len(quantities))
@@ -214,14 +214,11 @@ class FreeProgram:
             ceiling = slack if name == "power" else peak[self.peaks.index(name)]
             rows += [ceiling - value, ceiling + value]
             first += count
-        for name, row in self._of_joint():
+        for name, row in self.of_joint.items():
             value = unknowns[row, :].T
             ceiling = peak[self.peaks.index(name)]
             rows += [ceiling - value, ceiling + value]
         return ca.vertcat(*rows)
-
-    def _of_joint(self) -> list[tuple[str, int]]:
-        return [(name, row) for name, row in _OF_JOINT.items() if name in self.peaks]
 
     def _jacobian(self, arguments: tuple[ca.MX, ...]) -> ca.MX:
         model, steps = self.model, self.steps
@@ -255,7 +252,7 @@ class FreeProgram:
         for name, count in model.outputs.items():
             two_sided(name, along(slice(first, first + count), count))
             first += count
-        for name, row in self._of_joint():
+        for name, row in self.of_joint.items():
             places = [row + k * model.unknowns for k in range(steps + 1)]
             two_sided(name, ca.MX(ca.DM.eye(columns)[places, :]))
         return ca.vertcat(*rows)

@@ -14,8 +14,11 @@ from ocp.answers.provenance import SolveSettings, number_of_points
 from ocp.base.checks import positive
 from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
 from ocp.front.answer import Front
+from ocp.front.assembly import front_of
+from ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
+from ocp.front.ends import Ends, find_ends
 from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, better, no_report
+from ocp.front.sweep import Guess, Report, Sweep, better, no_report
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.solution import Solution
@@ -101,10 +104,10 @@ def epsilon_front(
     points, workers = number_of_points(points), number_of_workers(workers)
     at = [positive("residual", residual, "m") for residual in at]
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
-    ends = sweep.ends()
+    ends = find_ends(sweep)
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
-    found.append(sweep.checked(ends.cheapest, asked, free=True))
+    found.append(checked(sweep, ends.cheapest, asked, free=True))
     also = _between(ends, at)
     report(2, points + len(also))
     heard = _Heard(report, points + len(also))
@@ -123,7 +126,7 @@ def epsilon_front(
             found += shared
     except KeyboardInterrupt:
         complete = False
-    front = sweep.front("epsilon", found, points, iterations=iterations, complete=complete)
+    front = front_of(sweep, "epsilon", found, points, iterations=iterations, complete=complete)
     extra = {"at": ", ".join(f"{residual:g}" for residual in at)} if at else {}
     return replace(front, settings={**front.settings, **extra})
 
@@ -202,8 +205,8 @@ class _Stretch:
             self._sweep(above, below)
         except KeyboardInterrupt:
             complete = False
-        points, all_checked = self._points(interrupted=not complete)
-        return points, complete and all_checked
+        points, whole = self._points(interrupted=not complete)
+        return points, complete and whole
 
     def _sweep(self, above: Guess, below: Guess) -> None:
         order, before_sweeps = range(len(self.limits)), self.sweep.iterations
@@ -244,7 +247,7 @@ class _Stretch:
 
     def _try(self, i: int, guess: Guess, done: int | None = None) -> Solution:
         best = self.best[i]
-        found = self.sweep.solve(guess, self.limits[i], known=best)
+        found = self.sweep.solve(guess, self.limits[i])
         if best is None or better(found, best):
             self.best[i] = found
         self.done = self.done if done is None else done
@@ -274,10 +277,10 @@ class _Stretch:
             FailedPoint(asked, best.status.text) for best, asked in tried if not best.status.solved
         ]
         solved = [(best, asked) for best, asked in tried if best.status.solved]
-        points, all_checked = self.sweep.all_checked(
-            solved, interrupted=interrupted, heed=lambda: self.report(self.done)
+        points, whole = all_checked(
+            self.sweep, solved, interrupted=interrupted, heed=lambda: self.report(self.done)
         )
-        return [*points, *failed], all_checked
+        return [*points, *failed], whole
 
 
 def _in_processes(

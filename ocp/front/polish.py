@@ -14,8 +14,10 @@ from ocp.answers.provenance import SolveSettings
 from ocp.base.checks import finite
 from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
 from ocp.front.answer import Front
+from ocp.front.assembly import front_of
+from ocp.front.checking import RESIDUAL_LIMIT, checked
 from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.sweep import RESIDUAL_LIMIT, Report, Sweep, no_report
+from ocp.front.sweep import Report, Sweep, no_report
 from ocp.profiles.joint_profile import JointProfile
 from ocp.task.point_to_point import PointToPoint
 
@@ -170,11 +172,11 @@ def _one_polished(sweep: Sweep, point: FrontPoint) -> _Tried:
     solved = sweep.solve(np.array(point.coefficients), point.residual)
     if not solved.status.solved:
         return _failed(point, solved.status.text)
-    checked = sweep.checked(solved, {RESIDUAL_LIMIT: point.residual}, point.residual)
-    if isinstance(checked, FailedPoint):
-        return _failed(point, checked.reason)
-    if checked.energy < point.energy:
-        return _Tried([checked], Gain(point.residual, point.energy, checked.energy))
+    found = checked(sweep, solved, {RESIDUAL_LIMIT: point.residual}, point.residual)
+    if isinstance(found, FailedPoint):
+        return _failed(point, found.reason)
+    if found.energy < point.energy:
+        return _Tried([found], Gain(point.residual, point.energy, found.energy))
     return _Tried([point], _no_gain(point))
 
 
@@ -190,7 +192,8 @@ def _no_gain(point: FrontPoint, tried: bool = True) -> Gain:
 def _together(front: Front, sweep: Sweep, tried: Mapping[int, _Tried], complete: bool) -> Polish:
     """The improved front, by its points' places along the given one."""
     in_order = [tried[i] for i in range(len(front.points))]
-    polished = sweep.front(
+    polished = front_of(
+        sweep,
         f"{front.method}, polished",
         [found for one in in_order for found in one.found],
         len(front.points),

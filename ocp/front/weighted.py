@@ -9,8 +9,11 @@ import numpy as np
 from ocp.answers.provenance import SolveSettings, number_of_points
 from ocp.base.checks import finite
 from ocp.front.answer import Front
+from ocp.front.assembly import front_of
+from ocp.front.checking import RESIDUAL_LIMIT, all_checked
+from ocp.front.ends import Ends, find_ends
 from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.sweep import RESIDUAL_LIMIT, Ends, Guess, Report, Sweep, no_report
+from ocp.front.sweep import Guess, Report, Sweep, no_report
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.solution import ENERGY, Solution
@@ -84,7 +87,7 @@ def weighted_front(
     if chosen == []:
         raise ValueError("no weights are given; give a pair of residual and energy, or none at all")
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
-    sums = _Sums(sweep, sweep.ends())
+    sums = _Sums(sweep, find_ends(sweep))
     complete = True
     try:
         if chosen is None:
@@ -93,9 +96,9 @@ def weighted_front(
             sums.by_weights(chosen, report)
     except KeyboardInterrupt:
         complete = False
-    found, all_checked = sums.checked(interrupted=not complete)
-    complete = complete and all_checked
-    return sweep.front("weighted", found, points, gaps=sums.gaps, complete=complete)
+    found, whole = sums.checked(interrupted=not complete)
+    complete = complete and whole
+    return front_of(sweep, "weighted", found, points, gaps=sums.gaps, complete=complete)
 
 
 def _checked(pair: tuple[float, float]) -> tuple[float, float]:
@@ -170,8 +173,8 @@ class _Sums:
     def checked(self, interrupted: bool) -> tuple[list[FrontPoint | FailedPoint], bool]:
         """Every point by the independent integrator, and what failed; whether these are all."""
         asked = [(one, {RESIDUAL_LIMIT: one.residual}) for one in (self.ends.cheapest, *self.found)]
-        points, whole_front = self.sweep.all_checked(asked, interrupted=interrupted)
-        return [self.ends.still_point, *points, *self.failures], whole_front
+        points, whole = all_checked(self.sweep, asked, interrupted=interrupted)
+        return [self.ends.still_point, *points, *self.failures], whole
 
     def _sides(self, still: Solution, cheap: Solution) -> tuple[float, float]:
         return (

@@ -6,7 +6,7 @@ import io
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import ClassVar
 
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from ocp.answers.documents import (
     Document,
-    numbers_of,
+    motion_of,
     profile_from_document,
     profile_to_document,
     task_from_document,
@@ -116,7 +116,7 @@ class Plan(Saved):
             task=task_from_document(document),
             profile=profile,
             coefficients=profile.checked(document["coefficients"]),
-            motion=Motion(**numbers_of(figures, [entry.name for entry in fields(Motion)])),
+            motion=motion_of(figures),
             status=SolveStatus(document["status"]),
             verification=verification_of(document["verification"]),
             provenance=provenance_of(document["provenance"]),
@@ -156,17 +156,22 @@ def evaluate_coefficients(
     task: PointToPoint,
     coefficients: ArrayLike,
     *,
+    profile: JointProfile | None = None,
     method: str = "given coefficients",
     settings: Mapping[str, str | int | float | None] | None = None,
 ) -> Plan:
-    """The figures of given coefficients of the cycloid of a polynomial.
+    """The figures of one motion of a profile.
 
     Parameters
     ----------
     task : PointToPoint
         The move.
-    coefficients : array_like, shape (terms,)
-        a_1 to a_N of eq (6); none for the plain cycloid.
+    coefficients : array_like, shape (profile.size,)
+        The profile's coefficients; for the cycloid of a polynomial a_1 to a_N of eq (6), none for
+        the plain cycloid.
+    profile : JointProfile, optional
+        How the joint moves; by default the cycloid of a polynomial with as many terms as there are
+        coefficients.
     method : str
         Where the coefficients come from, for the plan's provenance.
     settings : mapping, optional
@@ -180,12 +185,14 @@ def evaluate_coefficients(
     Raises
     ------
     ValueError
-        When there are too many coefficients or one is not finite.
+        When the coefficients or the duration do not fit the profile.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
     began = time.perf_counter()
-    profile = CycloidPolynomial(int(np.atleast_1d(np.asarray(coefficients, dtype=float)).size))
+    if profile is None:
+        terms = np.atleast_1d(np.asarray(coefficients, dtype=float)).size
+        profile = CycloidPolynomial(int(terms))
     checked = profile.checked(coefficients)
     motion = resimulate(task, profile, checked)
     fixed = rollout(task, profile, checked)

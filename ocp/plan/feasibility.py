@@ -5,42 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ocp.base.errors import InfeasibleTaskError, SolverFailedError
 from ocp.base.status import SolveStatus
-from ocp.profiles.joint_profile import JointProfile
+from ocp.program.problem import Problem
 from ocp.program.solution import Solution
-from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
-from ocp.task.point_to_point import LIMITS
+from ocp.task.quantities import QUANTITIES
 
-_UNITS = {RESIDUAL: "m", **{name.removesuffix("_limit"): unit for name, unit in LIMITS.items()}}
+_UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
 _ROOM = 1.001
 """A found least value is quoted with this room, so that asking for it is feasible."""
 
 
-def least_peaks(
-    program: TaskProgram,
-    profile: JointProfile,
-    limits: Mapping[str, float],
-    bound: float | None,
-    guesses: Sequence[NDArray[np.float64]],
-) -> dict[str, Solution]:
+def least_peaks(problem: Problem, starts: int | None = None) -> dict[str, Solution]:
     """Make each limited quantity in turn as small as it can be while the other limits are kept.
 
     Parameters
     ----------
-    program : TaskProgram
-        The task's program that was not solved.
-    profile : JointProfile
-        How the joint moves.
-    limits : mapping of str to float
-        Residual [m] and peaks [SI units] that were asked for.
-    bound : float or None
-        Largest absolute coefficient.
-    guesses : sequence of ndarray
-        Vectors of coefficients to start from.
+    problem : Problem
+        What was not solved.
+    starts : int, optional
+        How many of its starts; all by default.
 
     Returns
     -------
@@ -48,9 +34,10 @@ def least_peaks(
         The best solution found for each quantity; a quantity without any is left out.
     """
     best: dict[str, Solution] = {}
-    for name in limits:
-        others = {key: value for key, value in limits.items() if key != name}
-        found = [program.solve(guess, others, bound, minimise={name: 1.0}) for guess in guesses]
+    for name in problem.limits:
+        others = {key: value for key, value in problem.limits.items() if key != name}
+        rest = problem.within(others)
+        found = [rest.solve(guess, {name: 1.0}) for guess in problem.guesses[:starts]]
         solved = [solution for solution in found if solution.status.solved]
         if solved:
             best[name] = min(solved, key=lambda solution: solution.peaks[name])
@@ -58,22 +45,14 @@ def least_peaks(
 
 
 def explain(
-    profile: JointProfile,
-    limits: Mapping[str, float],
-    bound: float | None,
-    solutions: Sequence[Solution],
-    least: Mapping[str, Solution],
+    problem: Problem, solutions: Sequence[Solution], least: Mapping[str, Solution]
 ) -> SolverFailedError:
-    """The error for a task that no start solved, to be raised by the caller.
+    """The error for a problem that no start solved, to be raised by the caller.
 
     Parameters
     ----------
-    profile : JointProfile
-        How the joint moves.
-    limits : mapping of str to float
-        Residual [m] and peaks [SI units] that were asked for.
-    bound : float or None
-        Largest absolute coefficient.
+    problem : Problem
+        What was not solved.
     solutions : sequence of Solution
         The runs that failed.
     least : mapping of str to Solution
@@ -84,10 +63,11 @@ def explain(
     SolverFailedError
         An InfeasibleTaskError where the runs ended at infeasible motions.
     """
-    terms = f"{profile.size} term{'s' if profile.size > 1 else ''}"
+    size, bound = problem.program.profile.size, problem.bound
+    terms = f"{size} term{'s' if size > 1 else ''}"
     return unmet(
         f"motion of {terms}",
-        limits,
+        problem.limits,
         [solution.status for solution in solutions],
         {name: found.peaks[name] for name, found in least.items()},
         "more terms or a longer duration",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
 import numpy as np
@@ -12,16 +11,18 @@ from numpy.typing import ArrayLike, NDArray
 from ocp.answers.provenance import Provenance, SolveSettings, Verification
 from ocp.plan.answer import Plan
 from ocp.plan.feasibility import explain, least_peaks
+from ocp.plan.only_motion import only_motion
 from ocp.plan.verification import MOST_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.program.problem import Problem
 from ocp.program.solution import Solution, same_minimum
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 32, 80, 80, 8
+LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
 """Steps that a profile needs: more where more terms let the power change sign more often, and where
 limits hold only at the nodes."""
 _HIDDEN = 2e-3
@@ -48,9 +49,10 @@ def plan_move(
     task : PointToPoint
         The move and its limits.
     profile : JointProfile, optional
-        How the joint moves; by default the cycloid of a polynomial of six terms.
+        How the joint moves; by default the cycloid of a polynomial of six terms. The only motion
+        of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
     residual_limit : float
-        Largest F1 [m]; 0 asks for rest on arrival.
+        Largest F1 [m]; 0 asks for rest on arrival, where there are coefficients to choose.
     bound : float, optional
         Largest absolute coefficient; none by default.
     starts : int
@@ -80,16 +82,15 @@ def plan_move(
     profile = CycloidPolynomial() if profile is None else profile
     settings = SolveSettings(residual_limit, bound, starts, seed, steps)
     if profile.size == 0:
-        raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+        return only_motion(task, profile, residual_limit)
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
     guesses, asked = start_coefficients(profile.size, settings), asdict(settings)
     if guess is not None:
         guesses[0] = np.array(profile.checked(guess))
         asked["guess"] = ", ".join(repr(value) for value in profile.checked(guess))
-    limits = {RESIDUAL: residual_limit, **task.limits}
-    best = least_energy(program, profile, limits, bound, guesses)
-    best, motion, steps_used = verified(program, best, limits, bound)
+    problem = Problem(program, {RESIDUAL: residual_limit, **task.limits}, bound, guesses)
+    best, motion, steps_used = verified(problem, least_energy(problem))
     return Plan(
         task=task,
         profile=profile,
@@ -142,27 +143,13 @@ def start_coefficients(size: int, settings: SolveSettings) -> list[NDArray[np.fl
     return [np.zeros(size), *others]
 
 
-def least_energy(
-    program: TaskProgram,
-    profile: JointProfile,
-    limits: Mapping[str, float],
-    bound: float | None,
-    guesses: Sequence[NDArray[np.float64]],
-) -> Solution:
+def least_energy(problem: Problem) -> Solution:
     """The best of the solutions from several starts.
 
     Parameters
     ----------
-    program : TaskProgram
-        The task's program.
-    profile : JointProfile
-        How the joint moves.
-    limits : mapping of str to float
-        Largest residual [m] (infinite where it is free) and peaks [SI units].
-    bound : float or None
-        Largest absolute coefficient.
-    guesses : sequence of ndarray
-        Vectors of coefficients to start from.
+    problem : Problem
+        What is asked.
 
     Returns
     -------
@@ -176,22 +163,22 @@ def least_energy(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    solutions = [program.solve(guess, limits, bound, reaches=()) for guess in guesses]
+    solutions = [problem.solve(guess, finish=False) for guess in problem.guesses]
     solved = [solution for solution in solutions if solution.status.solved]
     if not solved:
-        least = least_peaks(program, profile, limits, bound, guesses[:2])
+        least = least_peaks(problem, starts=2)
         rescues = [found.coefficients for name, found in least.items()
-                   if found.peaks[name] <= limits[name]]  # fmt: skip
-        solutions += [program.solve(guess, limits, bound, reaches=()) for guess in rescues]
+                   if found.peaks[name] <= problem.limits[name]]  # fmt: skip
+        solutions += [problem.solve(guess, finish=False) for guess in rescues]
         solved = [solution for solution in solutions if solution.status.solved]
         if not solved:
-            raise explain(profile, limits, bound, solutions, least)
+            raise explain(problem, solutions, least)
     before = sum(solution.iterations for solution in solutions)
     least, finished = min(map(_energy, solved)), list[Solution]()
     for found in sorted(solved, key=_energy):
         near = found.energy <= least * (1 + _HIDDEN)
         if near and not any(same_minimum(found, other) for other in finished):
-            finished.append(program.finished(replace(found, iterations=0), limits, bound))
+            finished.append(problem.finished(replace(found, iterations=0)))
     best = min(finished, key=_energy)
     return replace(best, iterations=before + sum(found.iterations for found in finished))
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from ocp.base.errors import SolverFailedError
+from ocp.program.problem import Problem
 from ocp.program.solution import Solution
-from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
 from ocp.simulation.objective import Motion
 from ocp.simulation.resimulation import resimulated
@@ -17,25 +18,42 @@ MOST_STEPS = 3200
 STILL, STILL_SHARE = 1e-8, 1e-7
 """Verified residual up to which 'at rest on arrival' counts as kept: in metres, or as a share of
 what the plain cycloid leaves, whichever is more."""
-_ENERGY_AGREEMENT = 1e-3
 _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
 """Share of that which the residual at rest is brought below."""
-ENOUGH_STEPS = 150
-"""Steps with which a minimum counts though the solver did not settle there."""
 _ROUNDS = 12
-_OVERRUN = 1e-3
+OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
 
 
+@dataclass(frozen=True)
+class Care:
+    """How far to go for a solution that both integrators agree on.
+
+    Attributes
+    ----------
+    agreement : float
+        Share of the energy by which they may differ.
+    enough_steps : int
+        Steps with which a minimum counts though the solver did not settle there.
+    most_steps : int
+        Steps up to which they are doubled.
+    """
+
+    agreement: float = 1e-5
+    enough_steps: int = 150
+    most_steps: int = MOST_STEPS
+
+
+OF_A_PLAN = Care()
+"""The cheapest motion for the solver is the cheapest for the independent integrator to 1e-6."""
+
+
 def verified(
-    program: TaskProgram,
+    problem: Problem,
     best: Solution,
-    limits: Mapping[str, float],
-    bound: float | None,
     *,
-    most_steps: int = MOST_STEPS,
-    enough_steps: int = ENOUGH_STEPS,
+    care: Care = OF_A_PLAN,
     kept: Mapping[str, float] | None = None,
 ) -> tuple[Solution, Motion, int]:
     """Verify; mend the arrival, double the steps while energies disagree, tighten passed limits.
@@ -46,18 +64,12 @@ def verified(
 
     Parameters
     ----------
-    program : TaskProgram
-        The program that was solved.
+    problem : Problem
+        What was solved.
     best : Solution
         Its solution.
-    limits : mapping of str to float
-        Largest residual [m] and peaks [SI units].
-    bound : float or None
-        Largest absolute coefficient.
-    most_steps : int
-        Steps up to which they are doubled.
-    enough_steps : int
-        Steps with which a minimum counts though the solver did not settle there.
+    care : Care
+        How far to go.
     kept : mapping of str to float, optional
         The limits that the verified figures must keep; all of them by default.
 
@@ -71,37 +83,40 @@ def verified(
     SolverFailedError
         When a limit stays passed.
     """
-    motion, arrival = resimulated(program.task, program.profile, best.coefficients)
+    program, limits = problem.program, problem.limits
+    task, profile = program.task, program.profile
+    motion, arrival = resimulated(task, profile, best.coefficients)
     kept, used = limits if kept is None else kept, dict(limits)
     still = max(STILL, STILL_SHARE * program.of_cycloid)
     tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
     tried: list[tuple[Solution, Motion, int]] = []
     for _ in range(_ROUNDS):
-        tried.append((best, motion, program.steps))
+        steps = problem.program.steps
+        tried.append((best, motion, steps))
         overrun = {name: motion.peak(name) / limit for name, limit in kept.items() if limit > 0}
         used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
-        rough = abs(best.energy - motion.energy) > _ENERGY_AGREEMENT * motion.energy
-        unsettled = not best.settled and program.steps < enough_steps
+        rough = abs(best.energy - motion.energy) > care.agreement * motion.energy
+        unsettled = not best.settled and steps < care.enough_steps
         missed = abs(best.residual - motion.residual) > tolerated
         again = None
         if not rough and (missed or any(ratio > 1 for ratio in overrun.values())):
-            again = program.corrected(best, arrival, used, bound)
+            again = problem.within(used).corrected(best, arrival)
         elif not (rough or unsettled):
             break
         if again is None or not again.status.solved:
-            if 2 * program.steps > most_steps:
+            if 2 * steps > care.most_steps:
                 break
-            program = TaskProgram(program.task, program.profile, 2 * program.steps)
-            again, used = program.solve(best.coefficients, limits, bound), dict(limits)
+            problem = problem.finer()
+            again, used = problem.refined(best), dict(limits)
             if not again.status.solved:
                 break
         best = again
-        motion, arrival = resimulated(program.task, program.profile, best.coefficients)
+        motion, arrival = resimulated(task, profile, best.coefficients)
     else:
-        tried.append((best, motion, program.steps))
+        tried.append((best, motion, problem.program.steps))
     best, motion, steps = _cheapest_kept(tried, kept, still)
     for name, limit in kept.items():
-        if motion.peak(name) > max(limit * (1 + _OVERRUN), still):
+        if motion.peak(name) > max(limit * (1 + OVERRUN), still):
             raise SolverFailedError(
                 f"the verified {name} is {motion.peak(name):.4g}, above its limit of {limit:g}: "
                 "the solver's steps are too coarse for this motion; bound the coefficients or use "

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from numbers import Integral
 from typing import Any, ClassVar
@@ -20,7 +21,7 @@ class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
     A new family is one subclass: it says how many coefficients it has and gives theta and its
-    first three time derivatives, in operations that work element by element.
+    first two time derivatives, in operations that work element by element. casadi derives the jerk.
     """
 
     name: ClassVar[str]
@@ -38,6 +39,16 @@ class JointProfile(ABC):
     def size(self) -> int:
         """How many coefficients the profile has."""
 
+    @property
+    def label(self) -> str:
+        """What the profile is called in a message."""
+        return f"{self.name} profile"
+
+    @property
+    def least_duration(self) -> float:
+        """The shortest duration for which the profile has a motion [s]; 0 where all will do."""
+        return 0.0
+
     @abstractmethod
     def derivatives(
         self,
@@ -46,8 +57,8 @@ class JointProfile(ABC):
         start: Expression,
         target: Expression,
         duration: Expression,
-    ) -> tuple[Expression, Expression, Expression, Expression]:
-        """Joint angle and its first three time derivatives.
+    ) -> tuple[Expression, ...]:
+        """Joint angle and its first two time derivatives.
 
         Parameters
         ----------
@@ -63,7 +74,7 @@ class JointProfile(ABC):
         Returns
         -------
         tuple of Expression
-            theta [rad], theta' [rad/s], theta'' [rad/s^2], theta''' [rad/s^3].
+            theta [rad], theta' [rad/s], theta'' [rad/s^2]; what follows them is not read.
         """
 
     def inner(
@@ -100,9 +111,30 @@ class JointProfile(ABC):
         start: Expression,
         target: Expression,
         duration: Expression,
+        jerk: bool = False,
     ) -> JointMotion:
-        """Angle, speed and acceleration of the joint; arguments as in `derivatives`."""
-        return JointMotion(*self.derivatives(coefficients, fraction, start, target, duration)[:3])
+        """Angle, speed and acceleration of the joint, and its jerk where it is asked for.
+
+        Other arguments as in `derivatives`.
+        """
+        arguments = coefficients, fraction, start, target, duration
+        if not jerk:
+            angle, speed, acceleration = self.derivatives(*arguments)[:3]
+            return JointMotion(angle, speed, acceleration)
+        values, rates = _with_rates(self.derivatives, arguments, slice(2, 3))
+        return JointMotion(*values[:3], *rates)
+
+    def inner_with_rates(
+        self,
+        coefficients: Sequence[Expression],
+        fraction: Expression,
+        start: Expression,
+        target: Expression,
+        duration: Expression,
+    ) -> Sequence[Expression]:
+        """The values of `inner`, then their time derivatives; arguments as in `derivatives`."""
+        values, rates = _with_rates(self.inner, (coefficients, fraction, start, target, duration))
+        return *values, *rates
 
     def path(
         self, coefficients: ArrayLike, start: float, target: float, duration: float
@@ -126,12 +158,21 @@ class JointProfile(ABC):
         Raises
         ------
         ValueError
-            When a coefficient is missing, superfluous or not finite.
+            When a coefficient is missing, superfluous or not finite, or the duration is below
+            `least_duration`.
         """
-        return JointPath(self, self.checked(coefficients), start, target, duration)
+        return JointPath(self, self.checked(coefficients, duration), start, target, duration)
 
-    def checked(self, coefficients: ArrayLike) -> tuple[float, ...]:
-        """The coefficients as a tuple of `size` finite floats; ValueError otherwise."""
+    def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
+        """The coefficients as a tuple of `size` finite floats; ValueError otherwise.
+
+        ValueError, too, where a duration [s] is given that is below `least_duration`.
+        """
+        if duration is not None and duration < self.least_duration:
+            raise ValueError(
+                f"duration is {duration:g} s, too short for the {self.label}; give "
+                f"{_rounded_up(self.least_duration):.4g} s or more"
+            )
         try:
             values = np.atleast_1d(np.asarray(coefficients, dtype=float))
         except (TypeError, ValueError, OverflowError):
@@ -147,6 +188,37 @@ class JointProfile(ABC):
             bad = int(np.flatnonzero(~np.isfinite(values))[0])
             raise ValueError(f"coefficient {bad + 1} is {values[bad]}; give a finite number")
         return tuple(float(value) for value in values)
+
+
+def _rounded_up(value: float, digits: int = 4) -> float:
+    """The least number of so many digits that is not below a positive value."""
+    unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return math.ceil(value / unit) * unit
+
+
+def _with_rates(
+    of: Callable[..., Sequence[Expression]],
+    arguments: tuple[Sequence[Expression], Expression, Expression, Expression, Expression],
+    rates_of: slice = slice(None),
+) -> tuple[list[Expression], list[Expression]]:
+    """What a method of a profile gives, and time derivatives of some of it by casadi.
+
+    casadi differentiates by symbols only: another fraction is put in the place of one afterwards.
+    """
+    coefficients, fraction, *move = arguments
+    kinds = {type(one) for one in (*coefficients, fraction, *move)}
+    kind: Any = ca.SX if ca.SX in kinds else ca.MX
+    place = fraction if type(fraction) is kind else kind(ca.DM(fraction))
+    at = place if place.is_symbolic() else kind.sym("t", *place.shape)
+    ones = kind.ones(*at.shape)
+    values = [kind(value) for value in of(coefficients, at, *move)]
+    rates = [ca.jtimes(value, at, ones) * ones / move[-1] for value in values[rates_of]]
+    both: Any = [*values, *rates]
+    if at is not place:
+        both = ca.substitute(both, [at], [place])
+    if kinds.isdisjoint({ca.SX, ca.MX}):
+        both = [ca.evalf(value) for value in both]
+    return both[: len(values)], both[len(values) :]
 
 
 def known_profiles() -> dict[str, type[JointProfile]]:
@@ -202,9 +274,8 @@ class JointPath:
         if not np.all(np.isfinite(t)):
             raise ValueError("a time is not finite; give times in seconds")
         fraction: Any = ca.DM(np.clip(t.ravel() / self.duration, 0.0, 1.0))
-        values = self.profile.derivatives(
-            self.coefficients, fraction, self.start, self.target, self.duration
-        )
-        result = values[order].full().reshape(t.shape)
+        arguments = self.coefficients, fraction, self.start, self.target, self.duration
+        motion = self.profile.motion(*arguments, jerk=order == 3)
+        result = motion[order].full().reshape(t.shape)
         outside = (t < 0) | (t > self.duration)
         return np.where(outside, 0.0, result) if order else result

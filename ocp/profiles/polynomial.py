@@ -60,18 +60,10 @@ class CycloidPolynomial(JointProfile):
         start: Expression,
         target: Expression,
         duration: Expression,
-    ) -> tuple[Expression, Expression, Expression, Expression]:
-        """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended, theta''' from it."""
-        inputs = self._input(coefficients, fraction, duration)
-        _, dU, ddU, dddU = inputs
-        sine, cosine = ca.sin(math.pi * inputs[0]), ca.cos(math.pi * inputs[0])
-        pi, speed_shape = math.pi, sine * sine
-        jerk = (
-            2 * pi * pi * (cosine * cosine - speed_shape) * dU * dU * dU
-            + 6 * pi * sine * cosine * dU * ddU
-            + speed_shape * dddU
-        )
-        return (*self.outer(inputs[:3], start, target, duration), 2 * (target - start) * jerk)
+    ) -> tuple[Expression, ...]:
+        """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended."""
+        inputs = self.inner(coefficients, fraction, start, target, duration)
+        return self.outer(inputs, start, target, duration)[:3]
 
     def inner(
         self,
@@ -83,7 +75,19 @@ class CycloidPolynomial(JointProfile):
     ) -> Sequence[Expression]:
         """U of eq (6), U', U'': linear in the coefficients."""
         del start, target
-        return self._input(coefficients, fraction, duration)[:3]
+        T = 2 * fraction - 1  # eq (7)
+        p = dp = ddp = 0 * T
+        for a in reversed(coefficients):  # Horner's rule, differentiated as it goes
+            ddp = ddp * T + 2 * dp
+            dp = dp * T + p
+            p = p * T + a
+        bump = 1 - T * T
+        rate = 2 / duration  # dT/dt
+        return (
+            fraction + bump * p,
+            1 / duration + rate * (bump * dp - 2 * T * p),
+            rate**2 * (bump * ddp - 4 * T * dp - 2 * p),
+        )
 
     def outer(
         self,
@@ -101,25 +105,4 @@ class CycloidPolynomial(JointProfile):
             start + span * (U - sine * cosine / pi),
             2 * span * (sine * sine) * dU,
             2 * span * sine * (2 * pi * cosine * dU * dU + sine * ddU),
-        )
-
-    @staticmethod
-    def _input(
-        coefficients: Sequence[Expression], fraction: Expression, duration: Expression
-    ) -> tuple[Expression, Expression, Expression, Expression]:
-        """U of eq (6) and its first three time derivatives."""
-        T = 2 * fraction - 1  # eq (7)
-        p = dp = ddp = dddp = 0 * T
-        for a in reversed(coefficients):  # Horner's rule, differentiated as it goes
-            dddp = dddp * T + 3 * ddp
-            ddp = ddp * T + 2 * dp
-            dp = dp * T + p
-            p = p * T + a
-        bump = 1 - T * T
-        rate = 2 / duration  # dT/dt
-        return (
-            fraction + bump * p,
-            1 / duration + rate * (bump * dp - 2 * T * p),
-            rate**2 * (bump * ddp - 4 * T * dp - 2 * p),
-            rate**3 * (bump * dddp - 6 * T * ddp - 6 * dp),
         )

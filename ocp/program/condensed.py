@@ -21,10 +21,11 @@ from numpy.typing import NDArray
 from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
-from ocp.program.pieces import INNER, EnergyPieces, NodePieces, ProfilePieces, linear_steps
-from ocp.program.step_model import Group
+from ocp.program.pieces import EnergyPieces, NodePieces, ProfilePieces, linear_steps
+from ocp.program.step_model import grouped
 from ocp.program.symbols import split
 from ocp.simulation.collocation import NODES, mesh
+from ocp.task.quantities import ask_for_jerk
 
 
 class Inputs(NamedTuple):
@@ -53,8 +54,8 @@ class March(NamedTuple):
 
     Attributes
     ----------
-    inner, modes : MX, shapes (INNER, nodes) and (states, nodes)
-        What `JointProfile.inner` gives at the nodes, and W and W' there.
+    inner, modes : MX, shapes (inner, nodes) and (states, nodes)
+        What moves the joint at the nodes, as `ProfilePieces` has it, and W and W' there.
     after : MX, shape (states, steps)
         States after every step.
     arrival : MX, shape (states, 1)
@@ -83,7 +84,7 @@ class Sensitivities(NamedTuple):
 
     Attributes
     ----------
-    inner, modes : MX, shapes (coefficients, INNER * nodes) and (coefficients, states * nodes)
+    inner, modes : MX, shapes (coefficients, inner * nodes) and (coefficients, states * nodes)
         Of inner and modes at the nodes by the coefficients.
     arrival : MX, shape (coefficients, states)
         Of the scaled state on arrival by the coefficients.
@@ -143,17 +144,15 @@ class Condensed:
         self.nodes = NODES * steps
         lengths = mesh(ca.DM(np.arange(steps)).T, steps)[1]
         self.lengths = lengths.full().ravel()
-        self.groups = [Group("state", 0, self.states)]
-        for name in ("power", *quantities):
-            rows = plant.tips if name == "deflection" else 1
-            self.groups.append(Group(name, self.groups[-1].first + self.groups[-1].rows, rows))
+        self.groups = grouped(plant, quantities, times=1)
         self.rows = sum(group.rows for group in self.groups[1:])
         self.scales = self.states + len(self.groups) - 1
-        self._profile = ProfilePieces(profile, steps)
-        self._node = NodePieces(plant, profile, self.nodes, self.groups)
+        self._profile = ProfilePieces(profile, steps, ask_for_jerk(quantities))
+        self._inner = self._profile.inner
+        self._node = NodePieces(plant, self._profile, self.nodes, self.groups)
         self._step = linear_steps(plant.modes, self._node.by_modes, steps)
         self.energy = EnergyPieces(lengths)
-        self.basis_size = 0 if self._profile.second else self.nodes * INNER * (1 + self.size)
+        self.basis_size = 0 if self._profile.second else self.nodes * self._inner * (1 + self.size)
         a, move, scale = (ca.MX.sym("x", n) for n in (self.size, 3, self.scales))
         march = self._march(self._profile.value(a, self._profile.fractions, move), move, scale)
         after = march.after / ca.repmat(scale[: self.states], 1, steps)
@@ -183,7 +182,7 @@ class Condensed:
         if self._profile.second:
             return np.eye(self.size)
         weights = np.sqrt(np.repeat(self.lengths, NODES))
-        slopes: Any = self._linear_inner(move)[1][:, ::INNER]
+        slopes: Any = self._linear_inner(move)[1][:, :: self._inner]
         triangle: Any = np.linalg.qr((slopes * weights).T, mode="r")
         return np.linalg.inv(triangle) * triangle[0, 0]
 
@@ -198,10 +197,10 @@ class Condensed:
         if self._profile.second:
             arguments = inputs.a, self._profile.fractions, inputs.move
             return self._profile.value(*arguments), self._profile.first(*arguments)
-        count = INNER * self.nodes
+        count = self._inner * self.nodes
         constant, slopes = split(inputs.basis, [count, count * self.size])
         slopes = ca.reshape(slopes, self.size, count)
-        return ca.reshape(ca.mac(inputs.a.T, slopes, constant.T), INNER, self.nodes), slopes
+        return ca.reshape(ca.mac(inputs.a.T, slopes, constant.T), self._inner, self.nodes), slopes
 
     def _march(self, inner: ca.MX, move: ca.MX, scale: ca.MX) -> March:
         forcing, entries = self._node.linear(inner, move)
@@ -279,7 +278,7 @@ class Condensed:
             weights += first.forcing_by_inner @ of_forcing
             blocks = self._profile.second(
                 inputs.a, self._profile.fractions, inputs.move,
-                ca.reshape(weights, INNER, self.nodes),
+                ca.reshape(weights, self._inner, self.nodes),
             )  # fmt: skip
             flat = ca.reshape(blocks, self.size**2, self.nodes)
             hessian += ca.reshape(ca.sum2(flat), self.size, self.size)

@@ -19,31 +19,38 @@ OPTIONS: dict[str, str | int | float] = {
     "expect_infeasible_problem": "yes",
 }
 SAMPLED = {**OPTIONS, "tol": 1e-5}
-"""What remains of the sampled program's error is much less than its own distance to the truth."""
-
-
-def _warm_options(barrier: float) -> dict[str, str | int | float]:
-    pushes = ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac", "mult_bound_push")
-    return {
-        "warm_start_init_point": "yes",
-        "mu_init": barrier,
-        **{f"warm_start_{name}": barrier for name in pushes},
-    }
-
-
-BESIDE = _warm_options(1e-6)
-"""From the solution beside it a point of a front takes a third of the iterations with these."""
-RESOLVED = {**OPTIONS, "tol": 1e-8}
-FINISH = {
-    **_warm_options(1e-8),
+"""From coefficients in a box. What remains of the sampled program's error is much less than its own
+distance to the truth."""
+UNBOXED = {**SAMPLED, "mu_strategy": "monotone", "mu_init": 1e-3}
+"""Without a box the adaptive barrier loses its way with ten terms or more; with one it takes a
+fifth less iterations."""
+PEAK = OPTIONS
+"""The least peak, from coefficients alone."""
+_BARRIER = 2e-9
+RESOLVED = {
+    **OPTIONS,
+    "tol": 1e-7,
+    # IPOPT keeps the barrier above an eleventh of this; what the barrier is times the rows of a
+    # residual limit is energy that is not saved.
+    "compl_inf_tol": 10 * _BARRIER,
     "mu_strategy": "monotone",
-    "max_iter": 15,
+    "mu_init": _BARRIER,
+    "warm_start_init_point": "yes",
+    **{
+        f"warm_start_{name}": _BARRIER
+        for name in ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac",
+                     "mult_bound_push")
+    },
+    "max_iter": 30,
+    # Else a constraint that is kept a little better pays for more energy.
+    "delta": 1e-12,
     "acceptable_tol": 1e3,
     "acceptable_dual_inf_tol": 1e10,
     "acceptable_constr_viol_tol": 1e-8,
     "acceptable_compl_inf_tol": 1e-5,
     "acceptable_obj_change_tol": 1e-9,
     "acceptable_iter": 3,
-}
-"""From the sampled minimum. Where zeros of the power meet, second derivatives are of no more use:
-the iterations end when the energy has hardly changed three times."""
+}  # fmt: skip
+"""From the minimum beside it, with its multipliers. Where zeros of the power meet, second
+derivatives are of no more use: the iterations end when the energy has hardly changed three times.
+"""

@@ -15,45 +15,66 @@ from models import JointMotion, Plant
 from ocp.profiles.joint_profile import JointProfile
 from ocp.program.step_model import Group, quantities_at, solve
 from ocp.program.symbols import over_columns
-from ocp.simulation.collocation import GAUSS_NODES, NODES, NodeState, Step, mesh
-from ocp.simulation.objective import beyond_quadratic, energy_derivatives, resolved_energy
+from ocp.simulation.collocation import GAUSS_NODES, NODES, NodeState, Step, end_to_end, mesh
+from ocp.simulation.objective import energy_derivatives, resolved_energy
 
-INNER = len(JointMotion._fields)
+_INNER = 3
 """Values by `JointProfile.inner` at a node."""
-_LEAST_SLOPE = 0.1
+_LEAST_SLOPE = 1e-3
 """Least slope of the power that its zeros' curvature counts with, in peak powers a duration."""
 
 
 class ProfilePieces:
     """What `JointProfile.inner` gives at the nodes.
 
+    Where the jerk is asked for, also what it gives at the times of `end_to_end`, and its rates.
+
     Attributes
     ----------
+    inner : int
+        How many values that are at a node.
     fractions : DM, shape (1, nodes)
         When the nodes come, as shares of the duration.
     value, first : Function
-        (coefficients, fractions, move) -> inner (INNER, nodes); its derivatives (coefficients,
-        INNER * nodes).
+        (coefficients, fractions, move) -> inner (inner, nodes); its derivatives (coefficients,
+        inner * nodes).
     second : Function or None
         (coefficients, fractions, move, multipliers of inner) -> second derivatives (coefficients,
         coefficients * nodes); None where inner is linear.
     """
 
-    def __init__(self, profile: JointProfile, steps: int) -> None:
+    def __init__(self, profile: JointProfile, steps: int, jerk: bool = False) -> None:
         begin, length = (x.full().ravel() for x in mesh(ca.DM(np.arange(steps)), steps))
         fractions = begin[:, None] + length[:, None] * np.array(GAUSS_NODES)
         self.fractions = ca.DM(fractions.ravel()).T
         a, fraction, move = ca.SX.sym("a", profile.size), ca.SX.sym("t"), ca.SX.sym("move", 3)
-        inner = ca.vertcat(*profile.inner(ca.vertsplit(a), fraction, *ca.vertsplit(move)))
+        of, moves = ca.vertsplit(a), ca.vertsplit(move)
+        inner = ca.vertcat(*profile.inner(of, fraction, *moves))
+        if jerk:
+            at = end_to_end(fraction, steps)
+            inner = ca.vertcat(inner, *profile.inner_with_rates(of, at, *moves))
+        self.inner = inner.numel()
         first = ca.densify(ca.jacobian(inner, a)).T
         inputs, nodes = [a, fraction, move], NODES * steps
         self.value = _over("inner", inputs, [inner], nodes, [0, 2])
         self.first = _over("inner_first", inputs, [first], nodes, [0, 2])
         self.second = None
         if not ca.is_linear(inner, a):
-            weights = ca.SX.sym("w", INNER)
+            weights = ca.SX.sym("w", self.inner)
             second = ca.densify(ca.hessian(ca.dot(weights, inner), a)[0])
             self.second = _over("inner_second", [*inputs, weights], [second], nodes, [0, 2])
+        self._profile = profile
+
+    def joint(self, inner: ca.SX, move: ca.SX) -> JointMotion:
+        """The joint's motion at a node, with its jerk where that is asked for."""
+
+        def outer(values: ca.SX) -> JointMotion:
+            return self._profile.outer(ca.vertsplit(values), *ca.vertsplit(move))
+
+        joint, values, rates = outer(inner[:_INNER]), inner[_INNER:-_INNER], inner[-_INNER:]
+        if not values.numel():
+            return joint
+        return joint._replace(jerk=ca.jtimes(outer(values).acceleration, values, rates))
 
 
 class NodePieces:
@@ -78,12 +99,12 @@ class NodePieces:
     """
 
     def __init__(
-        self, plant: Plant, profile: JointProfile, nodes: int, groups: Sequence[Group]
+        self, plant: Plant, profile: ProfilePieces, nodes: int, groups: Sequence[Group]
     ) -> None:
         states, rows = 2 * plant.modes, sum(group.rows for group in groups[1:])
-        inner, modes = ca.SX.sym("inner", INNER), ca.SX.sym("modes", states)
+        inner, modes = ca.SX.sym("inner", profile.inner), ca.SX.sym("modes", states)
         move, scale = ca.SX.sym("move", 3), ca.SX.sym("scale", states + len(groups) - 1)
-        joint = profile.outer(ca.vertsplit(inner), *ca.vertsplit(move))
+        joint = profile.joint(inner, move)
         W, dW = (ca.vertsplit(part) for part in ca.vertsplit(modes, plant.modes))
         ddW = list(plant.modal_accelerations(joint, W, dW))
         still = [0.0] * plant.modes
@@ -109,9 +130,9 @@ class NodePieces:
         self.first = _over("node_first", inputs, first, nodes, shared)
         of_forcing, of_outputs = ca.SX.sym("nu", plant.modes), ca.SX.sym("w", rows)
         lagrangian = ca.dot(of_forcing, forcing) + ca.dot(of_outputs, outputs)
-        hessian = ca.hessian(lagrangian, ca.vertcat(inner, modes))[0]
+        hessian, of = ca.hessian(lagrangian, ca.vertcat(inner, modes))[0], profile.inner
         second = [
-            hessian[:INNER, :INNER] / 2, hessian[INNER:, :INNER], hessian[INNER:, INNER:] / 2
+            hessian[:of, :of] / 2, hessian[of:, :of], hessian[of:, of:] / 2
         ]  # fmt: skip
         inputs += [of_forcing, of_outputs]
         self.second = _over("node_second", inputs, second, nodes, shared)
@@ -165,6 +186,10 @@ def linear_steps(modes: int, by_modes: ca.Sparsity, steps: int) -> ca.Function:
 class EnergyPieces:
     """F2 by `resolved_energy`, scaled by duration and power, and its derivatives by the power.
 
+    It leaves out what neighbouring steps tell beyond the quadratic: that makes the energy a little
+    more exact, but bends it sharply wherever a zero of the power leaves a step or meets another,
+    and the solver gets stuck there.
+
     Attributes
     ----------
     value : Function
@@ -177,19 +202,11 @@ class EnergyPieces:
     def __init__(self, lengths: ca.DM) -> None:
         steps = lengths.numel()
         at_nodes = ca.MX.sym("power", 1, NODES * steps)
-        to_cubic, to_quartic = beyond_quadratic(steps)
         by_step = ca.reshape(at_nodes, NODES, steps)
-        power = ca.vertsplit(by_step)
-        flat = ca.horzcat(*power)
-        cubic, quartic = flat @ to_cubic, flat @ to_quartic
-        value = resolved_energy(power, lengths, cubic, quartic)
+        value = resolved_energy(ca.vertsplit(by_step), lengths)
         self.value = ca.Function("energy", [at_nodes], [value])
-        _, gradients, bends = over_columns(energy_derivatives(), steps)(
-            by_step, cubic, quartic, _LEAST_SLOPE * lengths
-        )
-        gradients *= ca.repmat(lengths, NODES + 2, 1)
-        beyond = to_cubic @ gradients[NODES, :].T + to_quartic @ gradients[NODES + 1, :].T
-        gradient = gradients[:NODES, :] + ca.reshape(beyond, steps, NODES).T
+        gradient, bends = over_columns(energy_derivatives(), steps)(by_step, _LEAST_SLOPE * lengths)
+        gradient *= ca.repmat(lengths, NODES, 1)
         weights = ca.kron(lengths, ca.DM.ones(NODES, NODES))
         self.first = ca.Function("energy_first", [at_nodes], [ca.vec(gradient), bends * weights])
 

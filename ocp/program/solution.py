@@ -36,13 +36,11 @@ class Solution:
     arrival : ndarray, shape (2 * modes,)
         W (m) and then W' (m/s) on arrival, corrected as asked.
     form : Form
-        The program whose solution `point` is.
+        The program whose solution it is.
     point : Point
         Where the solver stopped, to start a neighbouring solve from.
-    finish : Point or None
-        Where the program of the resolved energy stopped after that.
     settled : bool
-        Whether that ended at its minimum.
+        Whether the program of the resolved energy ended at its minimum.
     """
 
     coefficients: NDArray[np.float64]
@@ -54,7 +52,6 @@ class Solution:
     arrival: NDArray[np.float64]
     form: Form
     point: Point
-    finish: Point | None = None
     settled: bool = False
 
     @property

@@ -9,9 +9,10 @@ import casadi as ca
 
 from models import Expression, JointMotion, Plant
 from ocp.simulation.collocation import NODES, NodeState, step
+from ocp.task.quantities import QUANTITIES
 
-JOINT = len(JointMotion._fields)
-"""Numbers that say how the joint moves at one time."""
+JOINT = 3
+"""Numbers that say how the joint moves at one time, to the plant: angle, speed, acceleration."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +31,14 @@ class Group:
 
 def groups_of(plant: Plant, quantities: Sequence[str]) -> list[Group]:
     """A step's outputs: the state after it, the power, each limited quantity at the nodes."""
-    at_nodes = dict.fromkeys(("power", *quantities), NODES)
-    if "deflection" in at_nodes:
-        at_nodes["deflection"] *= plant.tips
+    return grouped(plant, quantities, NODES)
+
+
+def grouped(plant: Plant, quantities: Sequence[str], times: int) -> list[Group]:
+    """Groups of the state, and of the power and each limited quantity at so many times."""
     groups = [Group("state", 0, 2 * plant.modes)]
-    for name, rows in at_nodes.items():
+    for name in ("power", *quantities):
+        rows = times * (QUANTITIES[name].rows(plant) if name in QUANTITIES else 1)
         groups.append(Group(name, groups[-1].first + groups[-1].rows, rows))
     return groups
 
@@ -44,13 +48,9 @@ def quantities_at(
 ) -> dict[str, Sequence[Expression]]:
     """The power and every quantity that can be limited, at one node [SI units]."""
     torque = plant.torque(joint, node.W, node.dW, node.ddW)
-    return {
-        "power": [torque * joint.speed],
-        "torque": [torque],
-        "speed": [joint.speed],
-        "acceleration": [joint.acceleration],
-        "deflection": plant.tip_displacements(node.W),
-    }
+    tips = plant.tip_displacements(node.W)
+    values = {name: quantity.of(joint, tips, torque) for name, quantity in QUANTITIES.items()}
+    return {"power": [torque * joint.speed], **values}
 
 
 class LiftedStep:

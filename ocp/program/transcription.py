@@ -1,16 +1,14 @@
 """From a task to a nonlinear program in the profile's coefficients.
 
-Unknowns are the coefficients, the least peak where one is asked for, the state on arrival where a
-residual is limited (its many rows then have few entries), and what the energy is made of. This
-comes in two forms of the same program:
+Unknowns are the coefficients, the least peak where one is asked for, and the state on arrival where
+a residual is limited (its many rows then have few entries). The energy comes in two forms:
 
 - sampled: the power at two samples of every step is the difference of two unknowns that are not
   negative, and their sum is |power| there. The solver decides sample by sample, as in a linear
-  program, and comes to the minimum from far away in 15 to 30 iterations; but between the samples a
+  program, and comes to the minimum from far away in 15 to 40 iterations; but between the samples a
   little energy can hide;
-- resolved: one unknown is the energy with its sign changes resolved. Its second derivatives are
-  exact where a solution is near, and unbounded where zeros of the power meet: a few iterations lead
-  from the sampled minimum to the true one.
+- resolved: the energy with its sign changes resolved, a smooth function of the coefficients. From
+  the sampled minimum, or from that of a neighbouring problem, a few iterations lead to its own.
 
 Limits are bounds on the quantities' values at the nodes.
 """
@@ -21,7 +19,7 @@ import io
 from collections.abc import Mapping, Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -42,17 +40,22 @@ class Form(NamedTuple):
 
     Attributes
     ----------
-    sampled : bool
-        Whether |power| is taken at samples, or the energy with its sign changes resolved.
+    energy : {"sampled", "resolved", "free"}
+        Whether |power| is taken at samples, or the energy with its sign changes resolved, or none.
     residual_rows : int
         Rows of the residual matrix; 0 asks for rest on arrival.
     least : str or None
         The quantity whose peak is an unknown that is minimised.
     """
 
-    sampled: bool
+    energy: Literal["sampled", "resolved", "free"]
     residual_rows: int
     least: str | None
+
+    @property
+    def sampled(self) -> bool:
+        """Whether |power| is taken at samples."""
+        return self.energy == "sampled"
 
 
 @dataclass(frozen=True)
@@ -93,14 +96,14 @@ class NonlinearProgram:
     """
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
-    def __init__(self, motion: Condensed, form: Form, options: Options, warm_options: Options):
+    def __init__(self, motion: Condensed, form: Form, options: Options) -> None:
         self.motion, self.form = motion, form
         self._samples, self._sampling = 2 * motion.steps, two_samples()
         self.sizes = {
             "coefficients": motion.size,
             "peak": 0 if form.least is None else 1,
             "arrival": motion.states if form.residual_rows else 0,
-            "power": 2 * self._samples if form.sampled else 1,
+            "power": 2 * self._samples if form.sampled else 0,
         }
         """How many unknowns of each kind, in their order."""
         x = ca.MX.sym("x", self.unknowns)
@@ -111,21 +114,20 @@ class NonlinearProgram:
         move, scale, weights, offset, residual, basis = split(p, sizes)
         residual = ca.reshape(residual, form.residual_rows, motion.states)
         inputs = Inputs(parts["coefficients"], move, scale, basis)
-        objective = weights[0] * self._energy(parts["power"]) + weights[1] * ca.sum1(parts["peak"])
         linearised = march, first = motion.linearised(inputs)
+        f, gradient = self._objective(march, first, parts, weights)
         g = self._constraints(march, parts, offset, residual)
         jacobian = self._jacobian(march, first, residual)
-        options_of_both = {
+        functions = {
+            "grad_f": ca.Function("nlp_grad_f", [x, p], [f, gradient], ["x", "p"],
+                                  ["f", "grad_f_x"]),
             "jac_g": ca.Function("nlp_jac_g", [x, p], [g, jacobian], ["x", "p"], ["g", "jac_g_x"]),
-            "hess_lag": self._hessian(x, p, inputs, linearised, g.numel()),
-            "calc_lam_p": False,
-            "no_nlp_grad": True,
-            "print_time": False,
-        }
-        problem = {"x": x, "p": p, "f": objective, "g": g}
-        self._cold, self._warm = (
-            ca.nlpsol(name, "ipopt", problem, {**options_of_both, "ipopt": dict(chosen)})
-            for name, chosen in (("cold", options), ("warm", {**options, **warm_options}))
+            "hess_lag": self._hessian(x, p, weights, inputs, linearised, g.numel()),
+        }  # fmt: skip
+        chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
+        problem = {"x": x, "p": p, "f": f, "g": g}
+        self._solver = ca.nlpsol(
+            "program", "ipopt", problem, {**functions, **chosen, "ipopt": dict(options)}
         )
 
     @property
@@ -166,38 +168,49 @@ class NonlinearProgram:
             Where and how it ended.
         """
         lower, upper = self._constraint_bounds(limits)
-        solver, known = self._cold, {}
+        known = {}
         if start.multipliers.size:
-            solver = self._warm
             known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
         with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
-            result = solver(
+            result = self._solver(
                 x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper,
                 p=parameters, **known,
             )  # fmt: skip
         point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
-        g, stats = result["g"].full().ravel(), solver.stats()
+        g, stats = result["g"].full().ravel(), self._solver.stats()
         passed = float(np.max([lower - g, g - upper]))
         return Stop(point, str(stats["return_status"]), int(stats["iter_count"]), passed)
 
-    # -- the constraints, in this order: energy, arrival, limited quantities, residual --
+    def _objective(
+        self, march: March, first: Sensitivities, parts: Mapping[str, ca.MX], weights: ca.MX
+    ) -> tuple[ca.MX, ca.MX]:
+        """The weighted sum of energy and least peak, and its gradient."""
+        motion, blocks = self.motion, dict[str, ca.MX]()
+        f = weights[1] * ca.sum1(parts["peak"])
+        if self.form.least is not None:
+            blocks["peak"] = weights[1]
+        if self.form.energy == "resolved":
+            power = march.outputs[0, :]
+            gradient = motion.of_group(first.outputs, "power") @ motion.energy.first(power)[0]
+            f += weights[0] * motion.energy.value(power)
+            blocks["coefficients"] = weights[0] * gradient.T
+        if self.form.sampled:
+            counts = np.tile(np.repeat(motion.lengths, 2) / 2, 2)
+            f += weights[0] * ca.dot(counts, parts["power"])
+            blocks["power"] = weights[0] * ca.DM(counts).T
+        return f, ca.densify(self._row(1, **blocks)).T
 
-    def _energy(self, power: ca.MX) -> ca.MX:
-        if not self.form.sampled:
-            return power
-        above, below = ca.vertsplit(power, self._samples)
-        return ca.dot(np.repeat(self.motion.lengths, 2) / 2, above + below)
+    # -- the constraints, in this order: samples, arrival, limited quantities, residual --
 
     def _constraints(
         self, march: March, parts: Mapping[str, ca.MX], offset: ca.MX, residual: ca.MX
     ) -> ca.MX:
         motion, power, arrival = self.motion, march.outputs[0, :], march.arrival + offset
+        rows: list[ca.MX] = []
         if self.form.sampled:
             above, below = ca.vertsplit(parts["power"], self._samples)
             sampled = self._sampling @ ca.reshape(power, NODES, motion.steps)
-            rows = [ca.vec(sampled) - above + below]
-        else:
-            rows = [motion.energy.value(power) - parts["power"]]
+            rows.append(ca.vec(sampled) - above + below)
         rows.append(arrival - parts["arrival"] if self.form.residual_rows else arrival)
         for group in self._limited:
             value = motion.of_group(ca.vec(march.outputs).T, group.name).T
@@ -217,7 +230,7 @@ class NonlinearProgram:
         self, limits: Mapping[str, float]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         motion, form = self.motion, self.form
-        zeros = (self._samples if form.sampled else 1) + motion.states
+        zeros = (self._samples if form.sampled else 0) + motion.states
         lower, upper = [np.zeros(zeros)], [np.zeros(zeros)]
         counts = {group.name: group.rows * motion.nodes for group in self._limited}
         if form.residual_rows:
@@ -242,16 +255,14 @@ class NonlinearProgram:
 
     def _jacobian(self, march: March, first: Sensitivities, residual: ca.MX) -> ca.MX:
         motion, form = self.motion, self.form
-        power_first = motion.of_group(first.outputs, "power")
+        rows: list[ca.MX] = []
         if form.sampled:
             count = self._samples
+            power_first = motion.of_group(first.outputs, "power")
             by_node = ca.reshape(power_first.T, NODES, motion.steps * motion.size)
             of_samples = ca.reshape(self._sampling @ by_node, count, motion.size)
             signs = ca.horzcat(-ca.DM.eye(count), ca.DM.eye(count))
-            rows = [self._row(count, coefficients=of_samples, power=signs)]
-        else:
-            gradient = power_first @ motion.energy.first(march.outputs[0, :])[0]
-            rows = [self._row(1, coefficients=gradient.T, power=ca.DM(-1))]
+            rows.append(self._row(count, coefficients=of_samples, power=signs))
         arrived = -ca.DM.eye(motion.states) if form.residual_rows else ca.DM(motion.states, 0)
         rows.append(self._row(motion.states, coefficients=first.arrival.T, arrival=arrived))
 
@@ -273,27 +284,30 @@ class NonlinearProgram:
         self,
         x: ca.MX,
         p: ca.MX,
+        weights: ca.MX,
         inputs: Inputs,
         linearised: tuple[March, Sensitivities],
         constraints: int,
     ) -> ca.Function:
         motion, form = self.motion, self.form
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
-        sizes = [self._samples if form.sampled else 1, motion.states]
+        sizes = [self._samples if form.sampled else 0, motion.states]
         for group in self._limited:
             sizes += [group.rows * motion.nodes] * (2 if group.name == form.least else 1)
-        of_energy, of_arrival, *of_values, _ = split(
+        of_samples, of_arrival, *of_values, _ = split(
             multipliers, [*sizes, constraints - sum(sizes)]
         )
         march, first = linearised
         by_energy = ca.MX(motion.size, motion.size)
+        of_power = ca.MX.zeros(1, motion.nodes)  # dense: `mac` keeps what it adds to as sparse
         if form.sampled:
-            of_samples = ca.reshape(of_energy, 2, motion.steps)
+            of_samples = ca.reshape(of_samples, 2, motion.steps)
             of_power = ca.vec(self._sampling.T @ of_samples).T
-        else:
+        if form.energy == "resolved":
             gradient, bends = motion.energy.first(march.outputs[0, :])
-            of_power = of_energy * gradient.T
-            by_energy = of_energy * motion.of_bends(motion.of_group(first.outputs, "power"), bends)
+            weight = of_objective * weights[0]
+            of_power = weight * gradient.T
+            by_energy = weight * motion.of_bends(motion.of_group(first.outputs, "power"), bends)
         of_outputs = [ca.MX(of_power)]
         for group in self._limited:
             weight = of_values.pop(0)

@@ -66,6 +66,27 @@ def mesh(index: Expression, steps: int) -> tuple[Expression, Expression]:
     return begin, boundary(index + 1) - begin
 
 
+def end_to_end(fraction: Expression, steps: int) -> Expression:
+    """The nodes' times stretched, so that the first is the start of the move and the last its end.
+
+    The jerk is sampled there: unlike all else it may be largest at the very ends, where it jumps.
+
+    Parameters
+    ----------
+    fraction : Expression
+        Times of nodes, as fractions of the duration.
+    steps : int
+        Number of steps of `mesh`.
+
+    Returns
+    -------
+    Expression
+        Fractions of the duration.
+    """
+    first = float(mesh(0, steps)[1]) * GAUSS_NODES[0]
+    return (fraction - first) / (1 - 2 * first)
+
+
 @dataclass(frozen=True)
 class ModalSystem:
     """The coefficients of W'' = g - D W' - K W at one time, read off the plant's own equations.

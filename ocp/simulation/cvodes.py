@@ -54,6 +54,9 @@ class Trajectory:
         Joint torque [N m]; after arrival, what holds the joint against the vibration.
     power : ndarray, shape (samples,)
         torque * speed [W].
+    jerk : ndarray, shape (samples,)
+        Rate of change of the joint's acceleration [rad/s^3]; where that jumps the jerk tells of
+        the time between.
     """
 
     time: NDArray[np.float64]
@@ -62,6 +65,7 @@ class Trajectory:
     tips: NDArray[np.float64]
     torque: NDArray[np.float64]
     power: NDArray[np.float64]
+    jerk: NDArray[np.float64]
 
     def __post_init__(self) -> None:
         for array in vars(self).values():
@@ -79,7 +83,7 @@ class Trajectory:
             What moves.
         time : ndarray, shape (samples,)
             Times [s].
-        outputs : ndarray, shape (3 + modes + tips + 1, samples)
+        outputs : ndarray, shape (4 + modes + tips + 1, samples)
             Values of `outputs_of` at these times.
 
         Returns
@@ -87,15 +91,22 @@ class Trajectory:
         Trajectory
             The samples.
         """
-        rows, m = outputs.T.copy(), 3 + plant.modes
+        rows, m = outputs.T.copy(), 4 + plant.modes
         return cls(
             time=time.copy(),
             joint=rows[:, :3],
-            modes=rows[:, 3:m],
+            modes=rows[:, 4:m],
             tips=rows[:, m:-1],
             torque=rows[:, -1],
             power=rows[:, -1] * rows[:, 1],
+            jerk=rows[:, 3],
         )
+
+    @property
+    def motion(self) -> JointMotion:
+        """Angle, speed, acceleration and jerk of the joint, each of shape (samples,)."""
+        angle, speed, acceleration = self.joint.T
+        return JointMotion(angle, speed, acceleration, self.jerk)
 
 
 def outputs_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression:
@@ -106,14 +117,14 @@ def outputs_of(plant: Plant, joint: JointMotion, states: Expression) -> Expressi
     plant : Plant
         What moves.
     joint : JointMotion
-        The joint, each entry a scalar or of shape (1, samples).
+        The joint with its jerk, each entry a scalar or of shape (1, samples).
     states : Expression, shape (2 * modes, samples)
         W (m) and then W' (m/s).
 
     Returns
     -------
-    Expression, shape (3 + modes + tips + 1, samples)
-        Rows angle, speed, acceleration, W, tips, torque.
+    Expression, shape (4 + modes + tips + 1, samples)
+        Rows angle, speed, acceleration, jerk, W, tips, torque.
     """
     W, dW, ddW = _modes(plant, joint, states)
     rows = (*joint, *W, *plant.tip_displacements(W), plant.torque(joint, W, dW, ddW))
@@ -230,4 +241,4 @@ def rest_of(task: PointToPoint, arrival: ArrayLike) -> Trajectory:
 
 def outputs_at_rest(task: PointToPoint, states: ca.DM) -> NDArray[np.float64]:
     """`outputs_of` the joint at rest at the target."""
-    return outputs_of(task.plant, JointMotion(task.target, 0.0, 0.0), states).full()
+    return outputs_of(task.plant, JointMotion(task.target, 0.0, 0.0, 0.0), states).full()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -10,16 +11,15 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Expression
+from models import Expression, JointMotion
 from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
 from ocp.task.point_to_point import PointToPoint
+from ocp.task.quantities import QUANTITIES
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
 ).tolist()
 _TINY = 1e-300
-_LEAST_SHARE = 1e-5
-"""The exact gradient trusts slopes down to this share of the least slope that curvature does."""
 
 
 def resolved_energy(
@@ -91,40 +91,34 @@ def _parted_energy(
 
 @lru_cache(maxsize=1)
 def energy_derivatives() -> ca.Function:
-    """One step's share of `resolved_energy` with its derivatives.
+    """One step's share of `resolved_energy` with its derivatives, nothing beyond the quadratic.
 
-    The gradient is exact: that with the breaks held fixed, and the little that the terms beyond the
-    quadratic add where the breaks move. Of second derivatives it gives what the moving zeros cause,
-    2 g g' / |slope| for each with g the gradient of the power there, never negative; the rest is
-    linear in the power. Where zeros meet, that curvature is without bound, though only there: the
-    slope counts as `least_slope` at least.
+    The gradient is that with the breaks held fixed, since the power is zero there, and continuous.
+    Second derivatives come from the zeros that move: 2 g g' / |slope| for each, with g the gradient
+    of the power there, never negative; the rest is linear in the power. Where zeros meet, that
+    curvature is without bound, though only there: the slope counts as `least_slope` at least.
 
     Returns
     -------
     Function
-        (power at the nodes [3], cubic, quartic, least_slope) -> (mean |power|, its gradient by the
-        power, cubic and quartic [5], second derivatives by the power [3, 3]).
+        (power at the nodes [3], least_slope) -> (its gradient by the power [3], second derivatives
+        by the power [3, 3]).
     """
-    power, cubic, quartic = ca.SX.sym("p", NODES), ca.SX.sym("cubic"), ca.SX.sym("quartic")
-    least_slope, breaks = ca.SX.sym("least"), ca.SX.sym("x", 2)
+    power, least_slope = ca.SX.sym("p", NODES), ca.SX.sym("least")
+    breaks = ca.SX.sym("x", 2)
     c = _quadratic(ca.vertsplit(power))
-    energy = _parted_energy(c, cubic, quartic, ca.vertsplit(breaks))
-    gradient = ca.gradient(energy, ca.vertcat(power, cubic, quartic))
-    by_break = ca.gradient(energy, breaks)
+    gradient = ca.gradient(_parted_energy(c, 0.0, 0.0, ca.vertsplit(breaks)), power)
     is_zero = c[1] * c[1] > 4 * c[0] * c[2]  # else both breaks stand where the power is least
     bends = ca.SX.zeros(NODES, NODES)
     for i in range(2):
         x = breaks[i]
         at_zero = ca.gradient(c[0] + x * (c[1] + x * c[2]), power)
-        slope = c[1] + 2 * x * c[2]
         inside = ca.logic_and(is_zero, ca.logic_and(x > 0, x < 1))
-        moved = -by_break[i] * ca.sign(slope) / ca.fmax(ca.fabs(slope), _LEAST_SHARE * least_slope)
-        gradient[:NODES] += ca.if_else(inside, moved, 0) * at_zero
-        bend = 2 / ca.fmax(ca.fabs(slope), least_slope)
+        bend = 2 / ca.fmax(ca.fabs(c[1] + 2 * x * c[2]), least_slope)
         bends += ca.if_else(inside, bend, 0) * (at_zero @ at_zero.T)
     places = ca.vertcat(*_breaks(c))
-    outputs = [ca.densify(ca.substitute(e, breaks, places)) for e in (energy, gradient, bends)]
-    return ca.Function("energy", [power, cubic, quartic, least_slope], outputs, {"cse": True})
+    outputs = [ca.densify(ca.substitute(e, breaks, places)) for e in (gradient, bends)]
+    return ca.Function("energy", [power, least_slope], outputs, {"cse": True})
 
 
 @lru_cache(maxsize=32)
@@ -179,6 +173,9 @@ class Motion:
         Largest absolute tip displacement during the move [m].
     overshoot : float
         How far the joint passes the target on its way [rad], 0 where it does not.
+    peak_jerk : float or None
+        Largest absolute value during the move [rad/s^3]; None where the acceleration jumps, and
+        in a file from before it was told.
     """
 
     residual: float
@@ -189,16 +186,18 @@ class Motion:
     peak_acceleration: float
     peak_deflection: float
     overshoot: float
+    peak_jerk: float | None = None
 
     def peak(self, name: str) -> float:
-        """The residual, or the peak torque, speed, acceleration or deflection, by name."""
-        return float(getattr(self, name if name == "residual" else f"peak_{name}"))
+        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
+        value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
+        return math.inf if value is None else float(value)
 
     @classmethod
     def from_samples(
         cls,
         task: PointToPoint,
-        joint: NDArray[np.float64],
+        joint: JointMotion,
         tips: NDArray[np.float64],
         torque: NDArray[np.float64],
         *,
@@ -212,8 +211,8 @@ class Motion:
         ----------
         task : PointToPoint
             The move.
-        joint : ndarray, shape (samples, 3)
-            Angle, speed, acceleration of the joint [rad, rad/s, rad/s^2].
+        joint : JointMotion of ndarray, shape (samples,)
+            How the joint moves; its jerk is None where the acceleration jumps.
         tips : ndarray, shape (samples, tips)
             Tip displacements [m].
         torque : ndarray, shape (samples,)
@@ -226,14 +225,13 @@ class Motion:
         Motion
             The figures.
         """
-        past_target = (joint[:, 0] - task.target) * np.sign(task.span)
+        past_target = (joint.angle - task.target) * np.sign(task.span)
+        of = {q.peak: q.of(joint, list(tips.T), torque) for q in QUANTITIES.values()}
+        known = {name: rows for name, rows in of.items() if all(row is not None for row in rows)}
         return cls(
             residual=residual,
             energy=energy,
             net_work=net_work,
-            peak_torque=float(np.abs(torque).max()),
-            peak_speed=float(np.abs(joint[:, 1]).max()),
-            peak_acceleration=float(np.abs(joint[:, 2]).max()),
-            peak_deflection=float(np.abs(tips).max()),
             overshoot=max(0.0, float(past_target.max())),
+            **{name: float(np.abs(rows).max()) for name, rows in known.items()},
         )

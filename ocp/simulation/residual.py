@@ -24,16 +24,44 @@ def fastest_mode(task: PointToPoint) -> float:
     return max(_fastest(task.plant, task.start), _fastest(task.plant, task.target))
 
 
+def vibrations(plant: Plant, angle: float) -> list[tuple[float, float]]:
+    """Frequencies and damping of the plant with its joint at rest.
+
+    Parameters
+    ----------
+    plant : Plant
+        What vibrates.
+    angle : float
+        Where the joint rests [rad].
+
+    Returns
+    -------
+    list of (float, float)
+        Undamped angular frequency [rad/s] and damping ratio of every mode that oscillates, the
+        slowest first.
+    """
+    values = _eigenvalues(plant, angle)
+    oscillating = sorted(values[values.imag > 0], key=abs)
+    return [(float(abs(value)), float(-value.real / abs(value))) for value in oscillating]
+
+
+def _fastest(plant: Plant, angle: float) -> float:
+    return float(np.abs(_eigenvalues(plant, angle)).max())
+
+
 @lru_cache(maxsize=256)
 @keep_interrupts()  # casadi loses a Ctrl-C
-def _fastest(plant: Plant, angle: float) -> float:
+def _eigenvalues(plant: Plant, angle: float) -> NDArray[np.complex128]:
+    """Of the matrix that gives (W', W'') by (W, W') with the joint at rest [1/s]; read-only."""
     system = modal_system(plant, JointMotion(angle, 0.0, 0.0))
     modes = plant.modes
     state_matrix = np.zeros((2 * modes, 2 * modes))
     state_matrix[:modes, modes:] = np.eye(modes)
     state_matrix[modes:, :modes] = -_numbers(system.K)
     state_matrix[modes:, modes:] = -_numbers(system.D)
-    return float(np.abs(np.linalg.eigvals(state_matrix)).max())
+    values = np.linalg.eigvals(state_matrix).astype(complex)
+    values.setflags(write=False)
+    return values
 
 
 def residual_samples(task: PointToPoint) -> int:

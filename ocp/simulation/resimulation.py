@@ -30,6 +30,7 @@ from ocp.simulation.cvodes import (
     rates_of,
     residual_of,
 )
+from ocp.simulation.extremes import extremes
 from ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
 from ocp.simulation.residual import fastest_mode, residual_samples
 from ocp.task.point_to_point import PointToPoint
@@ -65,7 +66,8 @@ def sample_trajectory(
     Raises
     ------
     ValueError
-        When the times do not increase from 0 or later, or the coefficients do not fit.
+        When the times do not increase from 0 or later, or coefficients or duration do not
+        fit the profile.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
@@ -73,7 +75,7 @@ def sample_trajectory(
     ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
     if not (ordered and np.all(np.isfinite(grid))):
         raise ValueError("sample times must be finite and increase from 0 or later")
-    checked = profile.checked(coefficients)
+    checked = profile.checked(coefficients, task.duration)
     moving, later = grid[grid <= task.duration], grid[grid > task.duration] - task.duration
     fractions, at = np.unique(np.append(moving / task.duration, [0.0, 1.0]), return_inverse=True)
     with _cvodes_along(checked):
@@ -120,21 +122,23 @@ def resimulated(
     Raises
     ------
     ValueError
-        When the coefficients do not fit the profile.
+        When the coefficients or the duration do not fit the profile.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
     residual_samples(task)  # refuses a window beyond reason
-    checked = profile.checked(coefficients)
+    checked = profile.checked(coefficients, task.duration)
     blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / _STEPS)
+    steps = _STEPS * max(1, blocks)
+    fractions = np.concatenate([[0.0], _nodes(steps), [1.0]])
     with _cvodes_along(checked):
-        figures = _figures(task.plant, profile, _STEPS * max(1, blocks))
+        figures = _figures(task.plant, profile, steps)
         values = [value.full() for value in figures([*checked, *task.move])]
-    extremes, arrival, energy, net_work = values
-    extreme = Trajectory.from_outputs(task.plant, np.zeros(2), extremes)
+    outputs, arrival, energy, net_work = values
+    extreme = Trajectory.from_outputs(task.plant, np.zeros(2), extremes(fractions, outputs))
     motion = Motion.from_samples(
         task,
-        extreme.joint,
+        extreme.motion,
         extreme.tips,
         extreme.torque,
         residual=residual_of(task, arrival[:, 0]),
@@ -150,29 +154,34 @@ def _cvodes_along(coefficients: Sequence[float]) -> AbstractContextManager[None]
 
 
 @lru_cache(maxsize=16)
+def _nodes(steps: int) -> NDArray[np.float64]:
+    """When the Gauss nodes of all steps come, as shares of the duration."""
+    begin, length = (entry.full() for entry in mesh(ca.DM(np.arange(steps)), steps))
+    return (begin + length * np.array(GAUSS_NODES)).ravel()
+
+
+@lru_cache(maxsize=16)
 @keep_interrupts()
 def _figures(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
-    """(coefficients and move) -> extremes of the outputs, state at arrival, energy, net work."""
-    begin, length = mesh(ca.DM(np.arange(steps)).T, steps)
-    nodes = ca.vec(ca.vertcat(*(begin + node * length for node in GAUSS_NODES))).full().ravel()
+    """(coefficients and move) -> outputs at the nodes and ends, state at arrival, energy, work."""
+    length = mesh(ca.DM(np.arange(steps)).T, steps)[1]
     given = ca.MX.sym("p", profile.size + 3)
-    states, outputs = _along(plant, profile, np.concatenate([[0.0], nodes, [1.0]]))(given)
+    states, outputs = _along(plant, profile, np.concatenate([[0.0], _nodes(steps), [1.0]]))(given)
     rows = ca.vertsplit(outputs)
-    extremes = ca.vertcat(*(ca.horzcat(ca.mmin(row), ca.mmax(row)) for row in rows))
     power, h = (rows[-1] * rows[1])[1:-1], given[-1] * length
     at_nodes = ca.vertsplit(ca.reshape(power, NODES, steps))
     beyond = (ca.horzcat(*at_nodes) @ weights for weights in beyond_quadratic(steps))
     energy = resolved_energy(at_nodes, h, *beyond)
     net_work = ca.sum2(h * sum(w * p for w, p in zip(GAUSS_WEIGHTS, at_nodes, strict=True)))
-    return ca.Function("figures", [given], [extremes, states[:, -1], energy, net_work])
+    return ca.Function("figures", [given], [outputs, states[:, -1], energy, net_work])
 
 
 def _along(plant: Plant, profile: JointProfile, fractions: NDArray[np.float64]) -> ca.Function:
     """(coefficients and move) -> states and outputs at these fractions of the move, from 0 on."""
 
-    def joint(given: Expression, fraction: Expression) -> JointMotion:
+    def joint(given: Expression, fraction: Expression, jerk: bool = False) -> JointMotion:
         entries = ca.vertsplit(given)
-        return profile.motion(entries[:-3], fraction, *entries[-3:])
+        return profile.motion(entries[:-3], fraction, *entries[-3:], jerk=jerk)
 
     size, count = 2 * plant.modes, len(fractions)
     state, fraction, given = ca.SX.sym("x", size), ca.SX.sym("t"), ca.SX.sym("p", profile.size + 3)
@@ -181,7 +190,7 @@ def _along(plant: Plant, profile: JointProfile, fractions: NDArray[np.float64]) 
     integrate = ca.integrator("move", "cvodes", problem, 0.0, fractions[1:].tolist(), CVODES)
     states, fraction = ca.MX.sym("x", size, count), ca.MX.sym("t", 1, count)
     given = ca.MX.sym("p", profile.size + 3)
-    outputs = outputs_of(plant, joint(given, fraction), states)
+    outputs = outputs_of(plant, joint(given, fraction, jerk=True), states)
     observe = ca.Function("observe", [fraction, states, given], [outputs])
     at_rest = ca.DM.zeros(size)
     states = ca.horzcat(at_rest, integrate(x0=at_rest, p=given)["xf"])

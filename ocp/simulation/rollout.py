@@ -15,7 +15,15 @@ from models import Expression, JointMotion, Plant
 from ocp.base.checks import whole
 from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
-from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NodeState, Step, mesh, step
+from ocp.simulation.collocation import (
+    GAUSS_NODES,
+    GAUSS_WEIGHTS,
+    NodeState,
+    Step,
+    end_to_end,
+    mesh,
+    step,
+)
 from ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
 from ocp.simulation.residual import fastest_mode, residual_matrix
 from ocp.task.point_to_point import PointToPoint
@@ -72,6 +80,7 @@ def symbolic_rollout(
     move: Sequence[Expression],
     steps: int,
     candidates: int = 1,
+    jerk: bool = False,
 ) -> SymbolicRollout:
     """Simulate the modes from rest along the profile, with a fixed number of steps.
 
@@ -89,6 +98,8 @@ def symbolic_rollout(
         Number of steps.
     candidates : int
         Number of rows.
+    jerk : bool
+        Whether the joints have a jerk, that at the times of `end_to_end`.
 
     Returns
     -------
@@ -98,10 +109,13 @@ def symbolic_rollout(
     start, target, duration = move
     begin, length = mesh(ca.repmat(ca.DM(np.arange(steps)).T, candidates, 1), steps)
     h = duration * length
-    joints = [
-        profile.motion(coefficients, begin + node * length, start, target, duration)
-        for node in GAUSS_NODES
-    ]
+    times = [begin + node * length for node in GAUSS_NODES]
+    joints = [profile.motion(coefficients, at, start, target, duration) for at in times]
+    if jerk:
+        joints = [
+            joint._replace(jerk=_jerk(profile, coefficients, at, move, steps))
+            for joint, at in zip(joints, times, strict=True)
+        ]
     steps_at_once = step(plant, joints, h)
     W, dW, arrival = _march(steps_at_once, candidates, steps)
     ddW = steps_at_once.accelerations(W, dW)
@@ -111,6 +125,19 @@ def symbolic_rollout(
         for joint, node in zip(joints, states, strict=True)
     ]
     return SymbolicRollout(joints, states, torque, arrival, h)
+
+
+def _jerk(
+    profile: JointProfile,
+    coefficients: Sequence[Expression],
+    times: Expression,
+    move: Sequence[Expression],
+    steps: int,
+) -> Expression:
+    """The jerk that is told of nodes at these fractions of the duration."""
+    start, target, duration = move
+    at = end_to_end(times, steps)
+    return profile.motion(coefficients, at, start, target, duration, jerk=True).jerk
 
 
 def _march(
@@ -171,7 +198,14 @@ def _compiled(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
         rollout.energy,
         net_work,
     ]
-    return ca.Function("rollout", [coefficients, move], outputs)
+    at_nodes = ca.Function("at_nodes", [coefficients, move], outputs)
+    a, of_move = ca.MX.sym("a", profile.size), ca.MX.sym("move", 3)
+    begin, length = mesh(ca.DM(np.arange(steps)).T, steps)
+    times = ca.vec(ca.vertcat(*(begin + node * length for node in GAUSS_NODES)))
+    # Built for all nodes at once, much sooner than scalar by scalar.
+    jerk = _jerk(profile, ca.vertsplit(a), times, ca.vertsplit(of_move), steps)
+    joint, *others = at_nodes(a, of_move)
+    return ca.Function("rollout", [a, of_move], [ca.horzcat(joint, jerk), *others])
 
 
 @dataclass(frozen=True)
@@ -218,16 +252,16 @@ def rollout(
     Raises
     ------
     ValueError
-        When the coefficients do not fit the profile.
+        When the coefficients or the duration do not fit the profile.
     """
     steps = default_steps(task) if steps is None else whole("steps", steps, 1)
     function = _compiled(task.plant, profile, steps)
-    values = function(ca.DM(profile.checked(coefficients)), ca.DM(task.move))
+    values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.move))
     joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
     residual = float(np.abs(residual_matrix(task) @ arrival.ravel()).max())
     motion = Motion.from_samples(
         task,
-        joint,
+        JointMotion(*joint.T),
         tips,
         torque.ravel(),
         residual=residual,

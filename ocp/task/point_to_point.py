@@ -7,13 +7,9 @@ from dataclasses import dataclass
 
 from models import Plant
 from ocp.base.checks import finite, positive
+from ocp.task.quantities import QUANTITIES
 
-LIMITS: Mapping[str, str] = {
-    "torque_limit": "N m",
-    "speed_limit": "rad/s",
-    "acceleration_limit": "rad/s^2",
-    "deflection_limit": "m",
-}
+LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}
 """The limits that a task may set, with their units."""
 MOST_ANGLE, LEAST_DURATION, MOST_DURATION = 1e6, 1e-6, 1e6
 """Beyond these [rad, s, s] no joint moves, and double precision does not follow."""
@@ -39,6 +35,8 @@ class PointToPoint:
         Largest absolute tip displacement on the way [m].
     residual_window : float, optional
         How long after arrival the residual vibration is watched [s]; eq (11) has 1 s.
+    jerk_limit : float, optional
+        Largest absolute rate of change of the joint's acceleration on the way [rad/s^3].
 
     Raises
     ------
@@ -55,6 +53,7 @@ class PointToPoint:
     acceleration_limit: float | None = None
     deflection_limit: float | None = None
     residual_window: float = 1.0
+    jerk_limit: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
@@ -97,9 +96,5 @@ class PointToPoint:
     @property
     def limits(self) -> dict[str, float]:
         """The limits that are set, by name of the quantity: torque, speed, ..."""
-        set_limits = {name: getattr(self, name) for name in LIMITS}
-        return {
-            name.removesuffix("_limit"): value
-            for name, value in set_limits.items()
-            if value is not None
-        }
+        every = {name: getattr(self, quantity.limit) for name, quantity in QUANTITIES.items()}
+        return {name: value for name, value in every.items() if value is not None}

@@ -12,6 +12,8 @@ import click
 
 from models import Plant, known_plants
 from ocp.base.files import check_writable
+from ocp.profiles.shapers import SHAPERS
+from ocp.task.quantities import QUANTITIES, Quantity
 from studies.cli.quantities import (
     is_number,
     parse_angle,
@@ -127,16 +129,28 @@ STATE = Parsed("file", _is_file)
 PICTURE = Parsed("picture", _is_picture)
 FOLDER = Parsed("folder", _is_folder)
 
+POLYNOMIAL = "polynomial"
+profile_option = click.option(
+    "--profile", type=click.Choice([POLYNOMIAL, *SHAPERS]), default=POLYNOMIAL, show_default=True,
+    help="How the joint moves: the cycloid of a polynomial, or the plain cycloid through an input "
+    "shaper for the plant's frequencies at the target.",
+)  # fmt: skip
+
+
+def _limit_option(quantity: Quantity) -> Callable[[F], F]:
+    option, words = f"--{quantity.name}-limit", f"Largest {quantity.label} on the way"
+    if quantity.unit == "m":
+        return click.option(option, type=LENGTH, help=f"{words}.")
+    return click.option(option, type=float, help=f"{words} [{quantity.unit}].")
+
+
 _TASK_OPTIONS = (
     click.argument("plant", type=PLANT),
     click.option("--start", type=ANGLE, default=0.0, show_default=True,
                  help="Joint angle at the start."),
     click.option("--target", type=ANGLE, required=True, help="Joint angle at the end."),
     click.option("--duration", type=TIME, required=True, help="Travelling time."),
-    click.option("--torque-limit", type=float, help="Largest joint torque on the way [N m]."),
-    click.option("--speed-limit", type=float, help="Largest joint speed on the way [rad/s]."),
-    click.option("--acceleration-limit", type=float, help="Largest joint acceleration [rad/s^2]."),
-    click.option("--deflection-limit", type=LENGTH, help="Largest tip displacement on the way."),
+    *map(_limit_option, QUANTITIES.values()),
     click.option("--residual-window", type=TIME, default=1.0, show_default=True,
                  help="Time after arrival in which the residual is measured."),
 )  # fmt: skip

@@ -7,7 +7,7 @@ from math import degrees
 from rich.console import Console
 
 from ocp import PointToPoint
-from ocp.task.point_to_point import LIMITS
+from ocp.task.quantities import QUANTITIES
 
 
 def print_lines(console: Console, *lines: str) -> None:
@@ -33,6 +33,6 @@ def move_of(task: PointToPoint) -> str:
 def title_of(task: PointToPoint) -> str:
     """A task in a line: its plant and move; its limits where it has any."""
     limits = [
-        f"{name} within {value:g} {LIMITS[f'{name}_limit']}" for name, value in task.limits.items()
+        f"{name} within {value:g} {QUANTITIES[name].unit}" for name, value in task.limits.items()
     ]
     return ", ".join([task.plant.name, move_of(task), *limits])

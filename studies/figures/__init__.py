@@ -22,7 +22,7 @@ from studies.figures.fronts import (
 from studies.figures.looks import BLUE, COLOURS, GREEN, GREY, RED, Look, look
 from studies.figures.motion import (
     PAPER_PANELS,
-    QUANTITIES,
+    QUANTITIES_DRAWN,
     Line,
     draw_quantity,
     floor_figure,
@@ -42,7 +42,7 @@ __all__ = [
     "GREEN",
     "GREY",
     "PAPER_PANELS",
-    "QUANTITIES",
+    "QUANTITIES_DRAWN",
     "RED",
     "Comparison",
     "Line",

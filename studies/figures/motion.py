@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ocp import Floor, Plan, Trajectory, evaluate_coefficients
+from ocp.task.quantities import QUANTITIES
 from studies.display.words import title_of
 from studies.figures.axes import TITLE, axes_or_new, legend_of, new_figure
 from studies.figures.looks import BLUE, GREY, RED, Dash, look
@@ -23,28 +24,12 @@ _IN_SIGHT = 0.4
 """A limit is drawn where a motion comes to this share of it; else it would flatten the motion."""
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """A quantity that can be drawn: its name, unit, and values of shape (samples, lines)."""
-
-    name: str
-    unit: str
-    values: Callable[[Trajectory], NDArray[np.float64]]
-    scale: float = 1.0
-    """What its limit [SI] is multiplied by, to be in that unit."""
-
-
-QUANTITIES: Mapping[str, Quantity] = {
-    "angle": Quantity("joint angle", "rad", lambda sampled: sampled.joint[:, :1]),
-    "speed": Quantity("angular velocity", "rad/s", lambda sampled: sampled.joint[:, 1:2]),
-    "acceleration": Quantity(
-        "angular acceleration", "rad/s^2", lambda sampled: sampled.joint[:, 2:3]
-    ),
-    "deflection": Quantity("tip displacement", "mm", lambda sampled: sampled.tips * 1e3, 1e3),
-    "torque": Quantity("motor torque", "N m", lambda sampled: sampled.torque[:, None]),
-}
-"""What can be drawn, by the name that its limit has in a task."""
-PAPER_PANELS = ("angle", "speed", "deflection", "torque")
+_ANGLE, _JERK = "angle", "jerk"
+_IN_MILLIMETRES = {"m": ("mm", 1e3)}
+"""The units that are drawn in others, and what turns the ones into the others."""
+QUANTITIES_DRAWN = (_ANGLE, "speed", "acceleration", _JERK, "deflection", "torque")
+"""What can be drawn: the joint's angle, and the quantities that a task may limit."""
+PAPER_PANELS = (_ANGLE, "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
 
@@ -91,7 +76,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
         The motions, all of one duration; a plan alone is drawn over the plain cycloid of its
         task.
     quantity : str
-        A name in `QUANTITIES`: angle, speed, acceleration, deflection or torque.
+        A name in `QUANTITIES_DRAWN`: angle, speed, acceleration, jerk, deflection or torque.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
 
@@ -106,22 +91,22 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     ValueError
         When there is no motion, their durations differ, or there is no such quantity.
     """
-    if quantity not in QUANTITIES:
-        raise ValueError(f"no quantity is called {quantity!r}; give {', '.join(QUANTITIES)}")
-    lines, drawn = lines_of(motions), QUANTITIES[quantity]
+    if quantity not in QUANTITIES_DRAWN:
+        known = ", ".join(QUANTITIES_DRAWN)
+        raise ValueError(f"no quantity is called {quantity!r}; give one of {known}")
+    lines, (name, unit, scale) = lines_of(motions), _name_and_unit(quantity)
     ax = axes_or_new(ax)
     for line in lines:
-        values = drawn.values(line.sampled)
+        values = _values(quantity, line.sampled)
         for i, column in enumerate(values.T):
             label = line.label if values.shape[1] == 1 else f"{line.label}, tip {i + 1}"
-            style = line.style if i == 0 else ":"
             ax.plot(
-                line.sampled.time, column, color=line.colour, linestyle=style, linewidth=1.6,
-                label=label,
+                line.sampled.time, column, color=line.colour, linestyle=_style(line.style, i),
+                linewidth=1.6, label=label,
             )  # fmt: skip
     ax.axvline(lines[0].plan.task.duration, color="0.6", linewidth=0.8, linestyle="--")
-    words = [f"{drawn.name} [{drawn.unit}]", *_draw_limits(ax, quantity, lines)]
-    words += _leave_out_jolts(ax, drawn, lines)
+    words = [f"{name} [{unit}]", *_draw_limits(ax, quantity, scale, lines)]
+    words += _leave_out_jolts(ax, quantity, lines)
     ax.set_title(", ".join(words), **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)
@@ -129,7 +114,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
 
 
 def motion_figure(
-    motions: Motions, title: str | None = None, quantities: Sequence[str] = tuple(QUANTITIES)
+    motions: Motions, title: str | None = None, quantities: Sequence[str] | None = None
 ) -> Figure:
     """Draw several quantities of motions, one panel for each.
 
@@ -139,8 +124,9 @@ def motion_figure(
         As for `draw_quantity`.
     title : str, optional
         Title of the picture; by default the plant, the move and its limits.
-    quantities : sequence of str
-        Names in `QUANTITIES`, all by default; `PAPER_PANELS` are those of the paper.
+    quantities : sequence of str, optional
+        Names in `QUANTITIES_DRAWN`; by default all, but the jerk only where a task limits it.
+        `PAPER_PANELS` are those of the paper.
 
     Returns
     -------
@@ -152,7 +138,9 @@ def motion_figure(
     ValueError
         As `draw_quantity`.
     """
-    lines, count = lines_of(motions), len(quantities)
+    lines = lines_of(motions)
+    quantities = _panels_of(lines) if quantities is None else quantities
+    count = len(quantities)
     columns = min(count, 2) if count <= 4 else 3
     rows = -(-count // columns)
     figure = new_figure(1.0 + 4.4 * columns, 0.8 + 2.9 * rows)
@@ -171,7 +159,11 @@ def motion_figure(
         spare[0].legend(*legend_of(axes[:count]), loc="center left", fontsize=10, frameon=False)
     else:
         figure.legend(
-            *legend_of(axes), loc="outside lower center", ncols=3, fontsize=9, frameon=False
+            *legend_of(axes),
+            loc="outside lower center",
+            ncols=min(3, len(lines)),
+            fontsize=9,
+            frameon=False,
         )
     title = title_of(lines[0].plan.task) if title is None else title
     if title:
@@ -204,13 +196,42 @@ def lines_of(motions: Motions) -> list[Line]:
     ]
 
 
-def _draw_limits(ax: Axes, quantity: str, lines: Sequence[Line]) -> list[str]:
-    """Draw the limits that a motion comes near; the others in words."""
+def _panels_of(lines: Sequence[Line]) -> list[str]:
+    """What is drawn by default: all, but the jerk only where a task limits it."""
+    jerk = any(_JERK in line.plan.task.limits for line in lines)
+    return [name for name in QUANTITIES_DRAWN if jerk or name != _JERK]
+
+
+def _name_and_unit(quantity: str) -> tuple[str, str, float]:
+    """What a quantity is called, the unit it is drawn in, and that unit for one of SI."""
+    if quantity == _ANGLE:
+        return "joint angle", "rad", 1.0
     drawn = QUANTITIES[quantity]
-    values = np.concatenate([drawn.values(line.sampled).ravel() for line in lines])
+    unit, scale = _IN_MILLIMETRES.get(drawn.unit, (drawn.unit, 1.0))
+    return drawn.label, unit, scale
+
+
+def _values(quantity: str, sampled: Trajectory) -> NDArray[np.float64]:
+    """A quantity of a motion as it is drawn, shape (samples, lines)."""
+    if quantity == _ANGLE:
+        return sampled.joint[:, :1]
+    columns = QUANTITIES[quantity].of(sampled.motion, list(sampled.tips.T), sampled.torque)
+    _, _, scale = _name_and_unit(quantity)
+    return scale * np.column_stack(columns)
+
+
+def _style(of_line: Dash, tip: int) -> Dash:
+    """The line's own style for its first tip, others for its other tips."""
+    others = [style for style in (":", "-.", "--") if style != of_line]
+    return of_line if tip == 0 else others[(tip - 1) % len(others)]
+
+
+def _draw_limits(ax: Axes, quantity: str, scale: float, lines: Sequence[Line]) -> list[str]:
+    """Draw the limits that a motion comes near; the others in words."""
+    values = np.concatenate([_values(quantity, line.sampled).ravel() for line in lines])
     every = [line.plan.task.limits.get(quantity) for line in lines]
     words, label = list[str](), "limit"
-    for limit in sorted({drawn.scale * limit for limit in every if limit is not None}):
+    for limit in sorted({scale * limit for limit in every if limit is not None}):
         sides = [side for side in (1, -1) if (side * values).max() >= _IN_SIGHT * limit]
         for side in sides:
             ax.axhline(side * limit, color="black", linewidth=1.1, linestyle=":", label=label)
@@ -219,11 +240,11 @@ def _draw_limits(ax: Axes, quantity: str, lines: Sequence[Line]) -> list[str]:
     return words
 
 
-def _leave_out_jolts(ax: Axes, drawn: Quantity, lines: Sequence[Line]) -> list[str]:
+def _leave_out_jolts(ax: Axes, quantity: str, lines: Sequence[Line]) -> list[str]:
     """Cut off a floor's jolts, in which it is for a moment a thousand times the rest; in words."""
     peaks, usual = [0.0], [0.0]
     for line in lines:
-        sizes = np.abs(drawn.values(line.sampled)).max(axis=1)
+        sizes = np.abs(_values(quantity, line.sampled)).max(axis=1)
         held, order = np.gradient(line.sampled.time), np.argsort(sizes)
         most_of_the_time = np.searchsorted(np.cumsum(held[order]), _SHOWN * held.sum())
         peaks.append(float(sizes.max()))

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ocp import Front, Polish
-from ocp.front.sweep import RESIDUAL_LIMIT
+from ocp.front.checking import RESIDUAL_LIMIT
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
 from studies.figures.looks import BLUE, ORANGE, RED

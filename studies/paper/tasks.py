@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isclose
 
 from ocp import PointToPoint
-from ocp.task.point_to_point import LIMITS
+from ocp.task.quantities import QUANTITIES
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
 
@@ -49,8 +49,8 @@ def _quantities(task: PointToPoint) -> dict[str, tuple[float | None, str]]:
         table[name] = (getattr(task, name), "rad")
     for name in ("duration", "residual_window"):
         table[name.replace("_", " ")] = (getattr(task, name), "s")
-    for name, unit in LIMITS.items():
-        table[name.replace("_", " ")] = (getattr(task, name), unit)
+    for name, quantity in QUANTITIES.items():
+        table[f"{name} limit"] = (getattr(task, quantity.limit), quantity.unit)
     return table
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 from rich.console import Console
 
-from ocp import Motion, Plan, PointToPoint
-from ocp.task.point_to_point import LIMITS
+from ocp import Motion, Plan, PointToPoint, ShapedCycloid
+from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
 from studies.display.words import millimetres, move_of
 
@@ -23,11 +25,10 @@ def print_plan(console: Console, plan: Plan) -> None:
         The plan.
     """
     motion, check = plan.motion, plan.verification
-    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
     relative = abs(check.energy_difference) / motion.energy if motion.energy else 0.0
     rows = [
         *move_rows(plan.task, motion),
-        ("coefficients", coefficients or "none: the plain cycloid"),
+        _choice(plan),
         ("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
         ("status", plan.status.text),
@@ -55,17 +56,20 @@ def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
 
 def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     """A motion's residual, peaks and overshoot."""
+    known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         (
             "residual F1",
-            f"{millimetres(motion.residual)} at the tip within {task.residual_window:g} s",
+            f"{millimetres(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
         ),
-        ("peak torque", f"{motion.peak_torque:.4g} N m"),
-        ("peak speed", f"{motion.peak_speed:.4g} rad/s"),
-        ("peak acceleration", f"{motion.peak_acceleration:.4g} rad/s^2"),
-        ("peak deflection", f"{millimetres(motion.peak_deflection)}{_large(task, motion)}"),
+        *((f"peak {name}", _peak(name, task, motion)) for name in known),
         ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none"),
     ]
+
+
+def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
+    peak, unit = motion.peak(name), QUANTITIES[name].unit
+    return f"{millimetres(peak)}{_large(task, motion)}" if unit == "m" else f"{peak:.4g} {unit}"
 
 
 def _large(task: PointToPoint, motion: Motion) -> str:
@@ -79,10 +83,25 @@ def _large(task: PointToPoint, motion: Motion) -> str:
     )
 
 
+def _choice(plan: Plan) -> tuple[str, str]:
+    """What tells the motion from others of its task, and its name."""
+    if isinstance(plan.profile, ShapedCycloid):
+        impulses = len(plan.profile.impulses.times)
+        shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
+        return "profile", f"{plan.profile.label}: {shaper}"
+    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    return "coefficients", coefficients or "none: the plain cycloid"
+
+
+def _tip(task: PointToPoint) -> str:
+    tips = task.plant.tips
+    return "tip" if tips == 1 else f"worst of {tips} tips"
+
+
 def _quantity(name: str, value: float) -> str:
-    return f"{value:g} {LIMITS[f'{name}_limit']}"
+    return f"{value:g} {QUANTITIES[name].unit}"
 
 
 def _broken(name: str, peak: float, limit: float) -> str:
     """How a limit is broken; nothing where it is kept to the README's tolerance."""
-    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {LIMITS[f'{name}_limit']})"
+    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {QUANTITIES[name].unit})"

@@ -6,7 +6,7 @@ from rich.console import Console
 
 from metaheuristics.ensemble import energy_at
 from ocp import FailedPoint, Front
-from ocp.front.sweep import RESIDUAL_LIMIT
+from ocp.front.checking import RESIDUAL_LIMIT
 from studies.display.words import counted, millimetres, print_lines
 from studies.methods import LEVELS
 

@@ -14,6 +14,7 @@ from metaheuristics.ensemble import STILL, LostSeedsError, search_many, seeds_of
 from ocp import (
     CycloidPolynomial,
     Front,
+    JointProfile,
     Plan,
     PointToPoint,
     QuietarmError,
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 def plan_by_search(
     task: PointToPoint,
     method: Method,
-    profile: CycloidPolynomial,
+    profile: JointProfile,
     bound: float | None,
     residual_limit: float,
     seed: int,
@@ -51,7 +52,7 @@ def plan_by_search(
         The move.
     method : Method
         A metaheuristic, run with the paper's settings.
-    profile : CycloidPolynomial
+    profile : JointProfile
         How the joint moves.
     bound : float or None
         Largest absolute coefficient; required, None gives the error that says so.
@@ -99,7 +100,9 @@ def plan_by_search(
             seconds=front.seconds + polished.provenance.seconds,
         )
         return replace(polished, provenance=provenance)
-    found = evaluate_coefficients(task, point.coefficients, method=method.name, settings=settings)
+    found = evaluate_coefficients(
+        task, point.coefficients, profile=profile, method=method.name, settings=settings
+    )
     return replace(found, provenance=replace(found.provenance, seconds=front.seconds))
 
 

@@ -97,13 +97,14 @@ def test_an_algorithm_may_be_given_twice(name):
 
 @pytest.mark.parametrize("name", ["SMSEMOA", "MOPSO_CD", "NSGA2", "VEPSO"])
 def test_any_algorithm_keeps_the_limits(name):
-    task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5)
+    task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5, jerk_limit=3000.0)
     front = search(task, OTHERS[name](), bound=0.5, generations=6, seed=2)
     assert len(front.points) > 0
     for point in front.points:
         motion = rollout(task, front.profile, point.coefficients).motion
         assert motion.peak_acceleration <= 75.0 * (1 + 1e-6)
         assert motion.peak_torque <= 0.5 * (1 + 1e-6)
+        assert motion.peak_jerk <= 3000.0 * (1 + 1e-6)
 
 
 @pytest.mark.parametrize("make", [GA, DE, PSO, NelderMead, PatternSearch])

@@ -11,7 +11,7 @@ from ocp import CycloidPolynomial, PointToPoint, plan_move
 
 @pytest.fixture(scope="session")
 def plants(two_links):
-    """The plants of the package and the user's own, by a short name."""
+    """The plants of the package, by a short name."""
     return {
         "single link": SingleLinkManipulator(),
         "arm": ArmOnFlexibleLink(),

@@ -8,9 +8,16 @@ from typing import Any
 import click
 from rich.console import Console
 
-from ocp import evaluate_coefficients
-from studies.cli.arguments import plan_files, split_options
-from studies.cli.options import COEFFICIENTS, output_options, quiet_option, task_options
+from ocp import evaluate_coefficients, shaped_cycloid
+from studies.cli.arguments import plan_files, refuse_idle, split_options
+from studies.cli.options import (
+    COEFFICIENTS,
+    POLYNOMIAL,
+    output_options,
+    profile_option,
+    quiet_option,
+    task_options,
+)
 from studies.display.progress import working
 from studies.display.saving import finish
 from studies.reports.plan import print_plan
@@ -18,20 +25,33 @@ from studies.reports.plan import print_plan
 
 @click.command()
 @task_options
+@profile_option
 @click.option(
-    "--coefficients", type=COEFFICIENTS, required=True,
-    help="a_1 to a_N, separated by commas, as --coefficients=-0.0019,-0.14.",
+    "--coefficients", type=COEFFICIENTS,
+    help="a_1 to a_N of the polynomial, separated by commas, as --coefficients=-0.0019,-0.14.",
 )  # fmt: skip
 @quiet_option
 @output_options
-def evaluate(coefficients: list[float], quiet: bool, **rest: Any) -> None:
-    """Compute residual, energy and peaks of given coefficients.
+@click.pass_context
+def evaluate(
+    context: click.Context,
+    profile: str,
+    coefficients: list[float] | None,
+    quiet: bool,
+    **rest: Any,
+) -> None:
+    """Compute residual, energy and peaks of given coefficients, or of an input shaper's motion.
 
     \b
-    Example, the paper's two terms for the single link:
+    Examples; the first has the paper's two terms for the single link:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
+      quietarm evaluate single-link --target pi/6 --duration 0.8 --profile zvd
     """  # noqa: D301  # \b is click's: do not rewrap
+    refuse_idle(context, profile, {"coefficients": [POLYNOMIAL]})
+    if profile == POLYNOMIAL and coefficients is None:
+        raise click.MissingParameter(param_hint="'--coefficients'", param_type="option")
     task, outputs = split_options(rest)
+    shaped = None if profile == POLYNOMIAL else shaped_cycloid(task, profile)
     with working("integrating", Console(stderr=True), quiet=quiet):
-        found = evaluate_coefficients(task, coefficients)
+        found = evaluate_coefficients(task, coefficients or [], profile=shaped)
     finish(plan_files(found, **outputs), partial(print_plan, plan=found))

@@ -7,9 +7,16 @@ from typing import Any
 import click
 from rich.console import Console
 
-from ocp import CycloidPolynomial, plan_move
+from ocp import CycloidPolynomial, plan_move, shaped_cycloid
 from studies.cli.arguments import plan_files, refuse_idle, split_options
-from studies.cli.options import LENGTH, output_options, quiet_option, task_options
+from studies.cli.options import (
+    LENGTH,
+    POLYNOMIAL,
+    output_options,
+    profile_option,
+    quiet_option,
+    task_options,
+)
 from studies.display.progress import working
 from studies.display.saving import finish
 from studies.display.words import print_lines
@@ -17,11 +24,14 @@ from studies.methods import METHODS, Kind, methods_of
 from studies.reports.plan import print_plan
 
 IPOPT = "ipopt"
+OF_POLYNOMIALS = ("terms", "bound", "starts", "seed", "method", "polish")
+"""Options with which there must be coefficients to choose."""
 SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 
 
 @click.command()
 @task_options
+@profile_option
 @click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
 @click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
 @click.option(
@@ -41,6 +51,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @click.pass_context
 def plan(
     context: click.Context,
+    profile: str,
     terms: int,
     bound: float | None,
     residual_limit: float,
@@ -53,29 +64,33 @@ def plan(
 ) -> None:
     """Find the move of least energy whose residual vibration is within a limit.
 
+    With an input shaper as the profile there is nothing to choose: its motion is evaluated.
+
     \b
     Examples:
       quietarm plan single-link --target 30deg --duration 0.8
       quietarm plan single-link --target pi/2 --duration 1.0 --bound 0.2 --residual-limit 1mm
       quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \\
           --output plan.json --csv move.csv --figure move.png
+      quietarm plan dual-link --target pi/2 --duration 0.9 --profile zv
     """  # noqa: D301  # \b is click's: do not rewrap
     task, outputs = split_options(rest)
+    refuse_idle(context, profile, {name: [POLYNOMIAL] for name in OF_POLYNOMIALS})
     refuse_idle(context, method, {"starts": [IPOPT]})
     if method == IPOPT and polish:
         named = " or ".join(SEARCHES)
         raise ValueError(f"--polish is for a metaheuristic's point; give --method {named}")
-    profile = CycloidPolynomial(terms)
+    motions = CycloidPolynomial(terms) if profile == POLYNOMIAL else shaped_cycloid(task, profile)
     if method == IPOPT:
         with working("solving", Console(stderr=True), quiet=quiet):
             found = plan_move(
-                task, profile, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed
+                task, motions, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed
             )
     else:
         from studies.runs.searching import plan_by_search
 
         found = plan_by_search(
-            task, METHODS[method], profile, bound, residual_limit, seed, polish, quiet
+            task, METHODS[method], motions, bound, residual_limit, seed, polish, quiet
         )
 
     def show(console: Console) -> None:

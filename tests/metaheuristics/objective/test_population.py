@@ -16,8 +16,9 @@ from ocp import (
     sample_trajectory,
 )
 from ocp.simulation.residual import fastest_mode
+from ocp.task.quantities import QUANTITIES
 
-LIMITS = ("torque", "speed", "acceleration", "deflection")
+LIMITS = tuple(QUANTITIES)
 
 # -- the same quantities as the rollout --
 
@@ -103,7 +104,7 @@ def test_violations_are_the_rollouts_peaks_over_the_limits(tasks, name):
         task, **{f"{name}_limit": float(v) for name, v in zip(LIMITS, limits, strict=True)}
     )
     values = PopulationObjective(limited, PROFILE)(X)
-    assert values.violations.shape == (30, 4)
+    assert values.violations.shape == (30, len(LIMITS))
     assert values.violations == pytest.approx(peaks / limits - 1, rel=0, abs=1e-12)
     assert np.array_equal(values.violations > 0, peaks > limits)
     assert np.all((values.violations > 0).sum(axis=0) == 15)
@@ -112,9 +113,11 @@ def test_violations_are_the_rollouts_peaks_over_the_limits(tasks, name):
     assert values.energy == pytest.approx(without.energy, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize("chosen", [("deflection",), ("deflection", "torque"), ("speed", "torque")])
+@pytest.mark.parametrize(
+    "chosen", [("deflection",), ("deflection", "jerk", "torque"), ("speed", "torque")]
+)
 def test_each_limit_keeps_its_own_column(chosen):
-    limits = {"torque": 0.3, "speed": 3.0, "acceleration": 70.0, "deflection": 0.01}
+    limits = {"torque": 0.3, "speed": 3.0, "acceleration": 70.0, "jerk": 900.0, "deflection": 0.01}
     task = PointToPoint(ARM, pi / 2, 0.8, **{f"{name}_limit": limits[name] for name in chosen})
     objective, X = PopulationObjective(task, PROFILE), candidates(10, 0.5)
     motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
@@ -122,6 +125,15 @@ def test_each_limit_keeps_its_own_column(chosen):
     columns = [name for name in LIMITS if name in chosen]
     expected = [[m.peak(name) / limits[name] - 1 for name in columns] for m in motions]
     assert objective(X).violations == pytest.approx(np.array(expected), rel=0, abs=1e-12)
+
+
+@PLANTS
+def test_the_plain_cycloids_jerk_breaks_a_limit_by_its_closed_form(tasks, name):
+    # 4 pi^2 span/T^3, as in tests/ocp/simulation/test_jerk.py
+    task = dataclasses.replace(tasks[name][0], jerk_limit=50.0)
+    values = PopulationObjective(task, PROFILE)(np.zeros((1, PROFILE.size)))
+    peak = 4 * pi**2 * abs(task.span) / task.duration**3
+    assert values.violations[0, 0] == pytest.approx(peak / 50.0 - 1, rel=1e-12)
 
 
 def test_only_the_value_of_a_limit_changed():

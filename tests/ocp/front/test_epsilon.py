@@ -13,10 +13,10 @@ import pytest
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import (
     CycloidPolynomial,
-    FailedPoint,
     Front,
     InfeasibleTaskError,
     PointToPoint,
+    SolverFailedError,
     epsilon_front,
     plan_move,
     reference_corner,
@@ -25,6 +25,8 @@ from ocp import (
 )
 from ocp.answers.provenance import SolveSettings
 from ocp.base.status import SolveStatus
+from ocp.front import checking, weighted
+from ocp.front.ends import find_ends
 from ocp.front.epsilon import _Stretch
 from ocp.front.sweep import Sweep
 from ocp.plan.solver import first_steps
@@ -168,7 +170,11 @@ def test_a_process_that_dies_costs_its_own_stretch_only():
 
 def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
     task, bound = CASES["arm"]
-    monkeypatch.setattr(Sweep, "checked", lambda self, found, asked, **_: FailedPoint(asked, "why"))
+
+    def failing(*_, **__):
+        raise SolverFailedError("why")
+
+    monkeypatch.setattr(checking, "verified", failing)  # the still end is checked on its own
     for method in (epsilon_front, weighted_front):
         front = method(task, CycloidPolynomial(3), bound=bound, points=2)
         assert (len(front.points), len(front.failures)) == (1, 1)
@@ -179,22 +185,21 @@ def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
 
 def test_ctrl_c_while_points_are_checked_keeps_what_there_is_time_for(monkeypatch):
     task, bound = CASES["arm"]
-    checked, began = Sweep.checked, []
+    checked, began = checking.checked, []
 
-    def slow(self, found, asked):
+    def slow(sweep, found, asked):
         if not began:
             began.append(asked)
             signal.raise_signal(signal.SIGINT)
         time.sleep(0.25)
-        return checked(self, found, asked)
+        return checked(sweep, found, asked)
 
-    def first(self):
-        ends = whole(self)
-        monkeypatch.setattr(Sweep, "checked", slow)
+    def first(sweep):
+        ends = find_ends(sweep)
+        monkeypatch.setattr(checking, "checked", slow)
         return ends
 
-    whole = Sweep.ends
-    monkeypatch.setattr(Sweep, "ends", first)
+    monkeypatch.setattr(weighted, "find_ends", first)
     front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=10)
     assert not front.complete
     assert 2 < len(front.points) < 8

@@ -16,7 +16,9 @@ from ocp import (
     rollout,
 )
 from ocp.plan.feasibility import explain
+from ocp.program.problem import Problem
 from ocp.program.solution import Solution
+from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import Form, Point
 
 # Name, terms, task's limits, settings of the solve.
@@ -136,36 +138,41 @@ def test_an_infeasible_task_is_a_failed_solve_is_quietarms_own():
 
 
 def _solution(status, **peaks):
-    stopped = {"form": Form(False, 0, None), "point": Point(np.empty(0))}
+    stopped = {"form": Form("sampled", 0, None), "point": Point(np.empty(0))}
     return Solution(np.zeros(3), 1.0, peaks, status, 0.0, 9, np.zeros(2), **stopped)
 
 
+def _explained(tasks, limits, bound, runs, least):
+    program = TaskProgram(tasks["arm"], CycloidPolynomial(3), 8)
+    return explain(Problem(program, limits, bound), runs, least)
+
+
 @pytest.mark.parametrize("status", [SolveStatus.ITERATION_LIMIT, SolveStatus.NUMERICAL_TROUBLE])
-def test_runs_that_failed_otherwise_are_not_called_infeasible(status):
+def test_runs_that_failed_otherwise_are_not_called_infeasible(tasks, status):
     runs = [_solution(status)] * 4
-    error = explain(CycloidPolynomial(3), {"residual": 0.0}, None, runs, {})
+    error = _explained(tasks, {"residual": 0.0}, None, runs, {})
     assert type(error) is SolverFailedError
     assert "none of 4 starts" in str(error)
     assert status.text in str(error)
 
 
-def test_one_infeasible_run_among_others_counts():
+def test_one_infeasible_run_among_others_counts(tasks):
     runs = [_solution(SolveStatus.NUMERICAL_TROUBLE), _solution(SolveStatus.INFEASIBLE)]
     least = {"torque": _solution(SolveStatus.OPTIMAL, torque=0.2)}
     limits = {"residual": 0.0, "torque": 0.1}
-    error = explain(CycloidPolynomial(3), limits, 0.5, runs, least)
+    error = _explained(tasks, limits, 0.5, runs, least)
     assert type(error) is InfeasibleTaskError
     # 0.2 with the room of 0.1 % that makes it feasible.
     assert "torque limit 0.2002 N m" in str(error)
 
 
-def test_a_peak_that_is_low_enough_already_is_no_remedy():
+def test_a_peak_that_is_low_enough_already_is_no_remedy(tasks):
     least = {
         "torque": _solution(SolveStatus.OPTIMAL, torque=0.2),
         "speed": _solution(SolveStatus.OPTIMAL, speed=1.0),
     }
     limits = {"residual": 0.0, "torque": 0.1, "speed": 2.0}
     runs = [_solution(SolveStatus.INFEASIBLE)]
-    text = str(explain(CycloidPolynomial(3), limits, None, runs, least))
+    text = str(_explained(tasks, limits, None, runs, least))
     assert "torque limit" in text
     assert "speed limit" not in text

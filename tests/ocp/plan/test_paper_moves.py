@@ -59,9 +59,14 @@ def test_finer_steps_do_not_find_less_energy(planned, row, in_box):
     fine = plan_move(
         plan.task, plan.profile, bound=bound, starts=1, steps=400, guess=plan.coefficients
     )
-    # Within 1e-6 for eleven of the twelve. The arm's last row without a box is 5e-6 above: the
-    # power meets zero along a stretch, and the solver settles at no number of steps.
-    assert plan.energy <= fine.energy * (1 + 1e-5)
+    # Eleven of the twelve are within 6e-7. The arm's second row without a box is 5.7e-6 above: at
+    # 48 steps the solver's own energy is off by less than what asks for more of them.
+    rough = not in_box and row == "arm, -pi/2 to pi/4 in 1.0 s"
+    assert plan.energy <= fine.energy * (1 + (6e-6 if rough else 1e-6))
+    middle = plan_move(
+        plan.task, plan.profile, bound=bound, starts=1, steps=80, guess=plan.coefficients
+    )
+    assert middle.energy <= fine.energy * (1 + 1e-7)  # by the steps alone, then
     assert plan.residual < 1e-8
     assert fine.residual < 1e-8
 

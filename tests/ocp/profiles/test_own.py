@@ -12,6 +12,7 @@ from models import JointMotion
 from ocp import JointProfile, Plan, PointToPoint, plan_move, resimulate, rollout
 from ocp.program.condensed import Condensed, Inputs
 from ocp.program.pieces import ProfilePieces
+from ocp.program.problem import Problem
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
 from ocp.simulation.rollout import symbolic_rollout
@@ -19,15 +20,14 @@ from ocp.simulation.rollout import symbolic_rollout
 pi = math.pi
 
 
-def _cycloid(U, dU, ddU, dddU, start, target):
-    """Eq (1) and its derivatives, from the input and its own."""
+def _cycloid(U, dU, ddU, start, target):
+    """Eq (1) and its first two derivatives, from the input and its own."""
     span, turn = target - start, 2 * pi
     sine, cosine = ca.sin(turn * U), ca.cos(turn * U)
     return (
         start + span * (U - sine / turn),
         span * (1 - cosine) * dU,
         span * (turn * sine * dU**2 + (1 - cosine) * ddU),
-        span * (turn**2 * cosine * dU**3 + 3 * turn * sine * dU * ddU + (1 - cosine) * dddU),
     )
 
 
@@ -43,13 +43,13 @@ class _Waves(JointProfile):
         return self.waves
 
     def derivatives(self, coefficients, fraction, start, target, duration):
-        U, dU, ddU, dddU = fraction, 1 / duration, 0.0, 0.0
+        U, dU, ddU = fraction, 1 / duration, 0.0
         for j, a in enumerate(coefficients, start=1):
             rate = j * pi / duration
             sine, cosine = ca.sin(j * pi * fraction), ca.cos(j * pi * fraction)
             U, dU = U + a * sine, dU + a * rate * cosine
-            ddU, dddU = ddU - a * rate**2 * sine, dddU - a * rate**3 * cosine
-        return _cycloid(U, dU, ddU, dddU, start, target)
+            ddU = ddU - a * rate**2 * sine
+        return _cycloid(U, dU, ddU, start, target)
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class _LinearWaves(_Waves):
 
     def outer(self, inner, start, target, duration):
         del duration
-        return JointMotion(*_cycloid(*inner, 0.0, start, target)[:3])
+        return JointMotion(*_cycloid(*inner, start, target))
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class _Neurons(JointProfile):
 
     def _input(self, coefficients, fraction, duration):
         T, rate = 2 * fraction - 1, 2 / duration
-        p = dp = ddp = dddp = 0.0
+        p = dp = ddp = 0.0
         for j in range(self.neurons):
             v, k, b = coefficients[3 * j : 3 * j + 3]
             k = k + 1 + j
@@ -97,13 +97,11 @@ class _Neurons(JointProfile):
             slope = 1 - y * y  # and its own derivative is -2 y slope
             p, dp = p + v * y, dp + v * k * slope
             ddp = ddp - 2 * v * k**2 * y * slope
-            dddp = dddp - 2 * v * k**3 * slope * (1 - 3 * y * y)
         bump = 1 - T * T
         return (
             fraction + bump * p,
             1 / duration + rate * (bump * dp - 2 * T * p),
             rate**2 * (bump * ddp - 4 * T * dp - 2 * p),
-            rate**3 * (bump * dddp - 6 * T * ddp - 6 * dp),
         )
 
     def derivatives(self, coefficients, fraction, start, target, duration):
@@ -111,11 +109,11 @@ class _Neurons(JointProfile):
 
     def inner(self, coefficients, fraction, start, target, duration):
         del start, target
-        return self._input(coefficients, fraction, duration)[:3]
+        return self._input(coefficients, fraction, duration)
 
     def outer(self, inner, start, target, duration):
         del duration
-        return JointMotion(*_cycloid(*inner, 0.0, start, target)[:3])
+        return JointMotion(*_cycloid(*inner, start, target))
 
 
 PROFILES = {"waves": _Waves(4), "linear waves": _LinearWaves(4), "neurons": _Neurons(2)}
@@ -138,7 +136,7 @@ def test_the_layers_give_the_motion_of_the_derivatives(profile):
     move = (-0.4, 1.1, 0.7)
     inner = profile.inner(list(a), times, *move)
     for layered, direct in zip(
-        profile.outer(inner, *move), profile.motion(list(a), times, *move), strict=True
+        profile.outer(inner, *move)[:3], profile.motion(list(a), times, *move)[:3], strict=True
     ):
         assert layered.full() == pytest.approx(direct.full(), rel=1e-12, abs=1e-12)
 
@@ -158,16 +156,18 @@ def test_each_derivative_is_that_of_the_one_before(profile):
 def test_first_and_second_derivatives_are_those_of_the_plain_rollout(plants, profile, name, steps):
     plant, a = plants[name], ca.SX.sym("a", profile.size)
     numbers, move = _coefficients(profile, seed=steps), [-0.4, 1.1, 0.7]
-    plain = symbolic_rollout(plant, profile, ca.vertsplit(a), move, steps)
-    in_time = [ca.vec(ca.vertcat(*entries)).T for entries in (plain.power, plain.torque)]
+    plain = symbolic_rollout(plant, profile, ca.vertsplit(a), move, steps, jerk=True)
+    jerk = [joint.jerk / 100 for joint in plain.joints]
+    in_time = [ca.vec(ca.vertcat(*entries)).T for entries in (plain.power, plain.torque, jerk)]
     everything = ca.vertcat(plain.arrival.T, ca.vec(ca.vertcat(*in_time)))
     multipliers = np.random.default_rng(3).normal(size=everything.numel())
     hessian = ca.hessian(ca.dot(multipliers, everything), a)[0]
     plain = ca.Function("plain", [a], [everything, ca.jacobian(everything, a), hessian])
     value, first, second = (x.full() for x in plain(numbers))
 
-    motion = Condensed(plant, profile, steps, ("torque",))
-    at = (numbers, move, np.ones(motion.scales), motion.basis(move, np.eye(profile.size)))
+    motion = Condensed(plant, profile, steps, ("torque", "jerk"))
+    scales = [*np.ones(motion.scales - 1), 100.0]
+    at = (numbers, move, scales, motion.basis(move, np.eye(profile.size)))
     symbols = Inputs(*(ca.MX.sym("x", len(x)) for x in at))
     linearised = march, slopes = motion.linearised(symbols)
     of_arrival = ca.DM(multipliers[: motion.states])
@@ -194,7 +194,7 @@ def test_only_a_linear_inner_layer_has_no_second_derivatives():
 def test_two_layers_are_planned_as_one(tasks):
     # The same family said in two ways, one of which is cheaper to differentiate.
     found = [
-        TaskProgram(tasks["arm"], profile, 60).solve(np.zeros(5), {RESIDUAL: 1e-3}, None)
+        Problem(TaskProgram(tasks["arm"], profile, 60), {RESIDUAL: 1e-3}).solve(np.zeros(5))
         for profile in (_Waves(5), _LinearWaves(5))
     ]
     assert found[0].status.solved

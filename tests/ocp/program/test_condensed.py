@@ -9,12 +9,14 @@ from functools import cache
 import casadi as ca
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 
 from ocp import CycloidPolynomial, PointToPoint, rollout
 from ocp.program.condensed import Condensed, Inputs
 from ocp.program.pieces import EnergyPieces
-from ocp.simulation.collocation import NODES, mesh
+from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
 from ocp.simulation.rollout import symbolic_rollout
+from ocp.task.quantities import QUANTITIES as TABLE
 
 TERMS = 3
 MOVE = np.array([-0.4, 1.1, 0.7])
@@ -23,7 +25,7 @@ QUANTITIES = {
     "none": (),
     "one": ("torque",),
     "two": ("deflection", "speed"),
-    "all": ("torque", "speed", "acceleration", "deflection"),
+    "all": tuple(TABLE),
 }
 CASES = [
     *((plant, "all", 4) for plant in ("single link", "arm", "two links")),
@@ -39,13 +41,14 @@ def _plain(plant, profile, steps, quantities, second):
     """Arrival, outputs at the nodes in time, and their derivatives, from the plain rollout."""
     a, move, modes = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3), plant.modes
     scale = ca.SX.sym("scale", 2 * modes + 1 + len(quantities))
-    plain = symbolic_rollout(plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps)
+    plain = symbolic_rollout(plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps, jerk=True)
     tips = [plant.tip_displacements(node.W) for node in plain.states]
     at_nodes = {
         "power": [plain.power],
         "torque": [plain.torque],
         "speed": [[joint.speed for joint in plain.joints]],
         "acceleration": [[joint.acceleration for joint in plain.joints]],
+        "jerk": [[joint.jerk for joint in plain.joints]],
         "deflection": [[tip[i] for tip in tips] for i in range(plant.tips)],
     }
     rows = [
@@ -143,14 +146,24 @@ def test_the_figures_hold_every_state_the_same_outputs_and_the_energy(case):
 
 @pytest.mark.parametrize("steps", [1, 7, 60])
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-def test_the_energy_is_that_of_the_rollout(tasks, name, steps):
+def test_the_energy_is_that_of_each_steps_quadratic(tasks, name, steps):
     task, profile = tasks[name], CycloidPolynomial(TERMS)
     motion = Condensed(task.plant, profile, steps, ())
     scale = np.ones(motion.scales)
     scale[motion.states] = 0.3  # the power's
-    energy = float(motion.figures(COEFFICIENTS, task.move, scale)[2])
-    expected = rollout(task, profile, COEFFICIENTS, steps=steps).motion.energy
-    assert energy * 0.3 * task.duration == pytest.approx(expected, rel=1e-11)
+    _, outputs, energy = _full(motion.figures(COEFFICIENTS, task.move, scale))
+    by_step = outputs[0].reshape(steps, NODES)
+    # |p| of a quadratic: its primitive between its zeros in the step.
+    expected = 0.0
+    for power, length in zip(by_step, motion.lengths, strict=True):
+        quadratic = Polynomial.fit(GAUSS_NODES, power, 2, domain=[0, 1], window=[0, 1])
+        zeros = [r.real for r in quadratic.roots() if abs(r.imag) < 1e-12 and 0 < r.real < 1]
+        work = np.diff(quadratic.integ()(np.array([0.0, *sorted(zeros), 1.0])))
+        expected += length * np.abs(work).sum()
+    assert energy.item() == pytest.approx(expected, rel=1e-10)
+    if steps == 1:  # no neighbours: the rollout's
+        simulated = rollout(task, profile, COEFFICIENTS, steps=1).motion.energy
+        assert energy.item() * 0.3 * task.duration == pytest.approx(simulated, rel=1e-11)
 
 
 def test_one_motion_serves_every_move(plants):
@@ -331,10 +344,10 @@ def test_the_energys_second_derivatives_where_the_power_keeps_its_sign(plants):
         assert found[i, j] == pytest.approx(expected, abs=1e-4 * np.abs(found).max())
 
 
+@pytest.mark.parametrize("steps", [1, 4, 30])
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-def test_the_energys_second_derivatives_where_one_steps_zeros_move(plants, name):
-    # A single step has no neighbours, whose terms alone the second derivatives leave out.
-    case = _Both(plants[name], CycloidPolynomial(TERMS), (), 1, second=False)
+def test_the_energys_second_derivatives_where_zeros_move(plants, name, steps):
+    case = _Both(plants[name], CycloidPolynomial(TERMS), (), steps, second=False)
     motion, a, h = case.motion, case.inputs[0], 1e-6
     power = case.simulated(a)[1]
     assert power.min() < 0 < power.max()

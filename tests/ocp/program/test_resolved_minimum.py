@@ -1,13 +1,10 @@
 """From the sampled minimum to that of the energy with its sign changes resolved."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 
 from ocp import CycloidPolynomial, resimulate
 from ocp.plan.solver import _HIDDEN
-from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
 
 TERMS = 6
@@ -16,29 +13,16 @@ PROFILE = CycloidPolynomial(TERMS)
 AT_REST = {RESIDUAL: 0.0}
 
 
-@pytest.fixture(params=["single link", "arm", "two links"])
-def task(request, tasks):
-    return tasks[request.param]
-
-
-@pytest.fixture(scope="module")
-def programs():
-    """The program of a task, compiled once."""
-
-    @cache
-    def of(task, steps=60):
-        return TaskProgram(task, PROFILE, steps)
-
-    return of
-
-
 @pytest.mark.parametrize("bound", [None, 0.3])
-def test_finishing_brings_the_sampled_minimum_to_the_resolved_one(task, programs, bound):
-    program = programs(task)
-    sampled = program.solve(START, AT_REST, bound, reaches=())
+def test_finishing_brings_the_sampled_minimum_to_the_resolved_one(problem, task, bound):
+    asked = problem(task, AT_REST, bound)
+    sampled = asked.solve(START, finish=False)
+    assert sampled.form.sampled
     assert not sampled.settled
-    finished = program.finished(sampled, AT_REST, bound)
-    at_once = program.solve(START, AT_REST, bound)
+    finished = asked.finished(sampled)
+    assert finished.form == sampled.form._replace(energy="resolved")
+    assert finished.settled
+    at_once = asked.solve(START)
     assert finished.coefficients.tolist() == at_once.coefficients.tolist()
     assert finished.iterations == at_once.iterations > sampled.iterations
     assert finished.energy < sampled.energy
@@ -66,10 +50,10 @@ def _energies_at_rest(program, found, count, size):
 
 
 @pytest.mark.parametrize("size", [1e-4, 1e-3, 1e-2])
-def test_no_neighbour_at_rest_has_less_resolved_energy(task, programs, size):
+def test_no_neighbour_at_rest_has_less_resolved_energy(problem, task, size):
     # The sampled program's minimum is near; the resolved one's is what the solution stands at.
-    program = programs(task)
-    found = program.solve(START, AT_REST, None)
+    asked = problem(task, AT_REST)
+    found, program = asked.solve(START), asked.program
     assert found.settled
     best = found.energy / program.reference["energy"]
     for energy in _energies_at_rest(program, found, 20, size):
@@ -77,8 +61,8 @@ def test_no_neighbour_at_rest_has_less_resolved_energy(task, programs, size):
 
 
 @pytest.mark.parametrize("steps", [24, 60])
-def test_energy_does_not_hide_between_the_nodes(task, programs, steps):
+def test_energy_does_not_hide_between_the_nodes(problem, task, steps):
     # The sampled program sees |power| at the nodes only; the solution's energy is the true one.
-    found = programs(task, steps).solve(START, AT_REST, None)
+    found = problem(task, AT_REST, steps=steps).solve(START)
     verified = resimulate(task, PROFILE, found.coefficients)
     assert found.energy == pytest.approx(verified.energy, rel=1e-3)

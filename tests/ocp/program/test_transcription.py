@@ -34,6 +34,18 @@ CASES = [
     ("two links", "all limits", ROWS, None),
     ("two links", "all limits", 0, "acceleration"),
 ]
+PROGRAMS = [
+    (*case, energy)
+    for case in CASES
+    for energy in ("sampled", "resolved", "free")
+    if energy != "free" or case[-1] is not None  # else nothing is minimised
+]
+SMOOTH = [program for program in PROGRAMS if program[-1] != "resolved"]
+"""casadi has no derivatives of the resolved energy where zeros are complex."""
+
+
+def _name(case):
+    return ", ".join(map(str, case))
 
 
 @pytest.fixture(scope="module")
@@ -43,25 +55,20 @@ def compiled(plants):
     @cache
     def of(name, limited, form, steps=STEPS):
         motion = Condensed(plants[name], PROFILE, steps, LIMITED[limited])
-        return NonlinearProgram(motion, form, QUIET, {})
+        return NonlinearProgram(motion, form, QUIET)
 
     return of
 
 
-@pytest.fixture(params=["sampled", "resolved"])
-def sampled(request):
-    return request.param == "sampled"
-
-
-@pytest.fixture(params=CASES, ids=lambda case: ", ".join(map(str, case)))
-def program(request, compiled, sampled):
-    name, limited, rows, least = request.param
-    return compiled(name, limited, Form(sampled, rows, least))
+@pytest.fixture(params=PROGRAMS, ids=_name)
+def program(request, compiled):
+    name, limited, rows, least, energy = request.param
+    return compiled(name, limited, Form(energy, rows, least))
 
 
 def _functions(program):
     """The functions that IPOPT calls, by name."""
-    return {name: program._cold.get_function(name) for name in program._cold.get_function()}
+    return {name: program._solver.get_function(name) for name in program._solver.get_function()}
 
 
 def _parameters(program, seed):
@@ -94,9 +101,7 @@ def test_the_jacobian_is_that_of_the_constraints(program, seed):
     expected_g, expected = (value.full() for value in automatic(x, p))
     found_g, found = (value.full() for value in functions["nlp_jac_g"](x, p))
     assert found_g == pytest.approx(expected_g, rel=1e-13, abs=1e-13)
-    # casadi has no derivative of the resolved energy where zeros are complex: sqrt(0) there.
-    first = 0 if program.form.sampled else 1
-    assert found[first:] == pytest.approx(expected[first:], rel=1e-10, abs=1e-10)
+    assert found == pytest.approx(expected, rel=1e-10, abs=1e-10)
 
 
 @pytest.mark.parametrize("seed", [0, 2])
@@ -112,6 +117,19 @@ def test_the_jacobian_is_the_limit_of_differences(program, seed):
         assert jacobian @ direction == pytest.approx(expected, abs=1e-7 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize("seed", [0, 2])
+def test_the_objectives_gradient_is_the_limit_of_differences(program, seed):
+    # casadi has none of the resolved energy where zeros are complex: sqrt(0) there.
+    x, p, *_ = _random_point(program, seed)
+    functions, h = _functions(program), 1e-6
+    f, gradient = (value.full().ravel() for value in functions["nlp_grad_f"](x, p))
+    assert f.item() == pytest.approx(float(functions["nlp_f"](x, p)), rel=1e-13)
+    for i, unit in enumerate(np.eye(len(x))):
+        there, back = (float(functions["nlp_f"](x + s * h * unit, p)) for s in (1, -1))
+        expected = (there - back) / (2 * h)
+        assert gradient[i] == pytest.approx(expected, abs=1e-7 * np.abs(gradient).max())
+
+
 def _both_hessians(program, seed):
     x, p, of_objective, multipliers = _random_point(program, seed)
     functions = _functions(program)
@@ -124,21 +142,18 @@ def _both_hessians(program, seed):
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-@pytest.mark.parametrize("case", CASES, ids=lambda case: ", ".join(map(str, case)))
-def test_the_hessian_of_the_sampled_program_is_that_of_the_lagrangian(compiled, case, seed):
-    name, limited, rows, least = case
-    found, expected = _both_hessians(compiled(name, limited, Form(True, rows, least)), seed)
-    size = np.abs(expected).max()
-    assert size > 0
-    assert found == pytest.approx(expected, abs=1e-11 * size)
+@pytest.mark.parametrize("program", SMOOTH, indirect=True, ids=_name)
+def test_the_hessian_is_that_of_the_lagrangian(program, seed):
+    found, expected = _both_hessians(program, seed)
+    assert found == pytest.approx(expected, abs=1e-11 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-@pytest.mark.parametrize("case", CASES, ids=lambda case: ", ".join(map(str, case)))
+@pytest.mark.parametrize("case", CASES, ids=_name)
 def test_the_hessian_of_one_resolved_step_is_that_of_the_lagrangian(compiled, case, seed):
-    # A single step has no neighbours, whose terms alone the energy's curvature leaves out.
+    # Here the zeros are real, and casadi has all derivatives of the energy.
     name, limited, rows, least = case
-    program = compiled(name, limited, Form(False, rows, least), steps=1)
+    program = compiled(name, limited, Form("resolved", rows, least), steps=1)
     found, expected = _both_hessians(program, seed)
     size = np.abs(expected).max()
     assert size > 0
@@ -146,17 +161,16 @@ def test_the_hessian_of_one_resolved_step_is_that_of_the_lagrangian(compiled, ca
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("steps", [STEPS, 30, 240])
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-def test_the_hessian_of_the_resolved_energy_is_that_of_differences(compiled, name, seed):
-    # What it leaves out, the neighbours' share in a zero's move, vanishes with the steps' length.
-    program = compiled(name, "one limit", Form(False, 0, None), steps=240)
-    x, p, _, multipliers = _random_point(program, seed)
+def test_the_hessian_of_the_resolved_energy_is_that_of_differences(compiled, name, steps, seed):
+    program = compiled(name, "one limit", Form("resolved", 0, None), steps=steps)
+    x, p, of_objective, multipliers = _random_point(program, seed)
     functions, h = _functions(program), 1e-6
-    multipliers[1:] = 0.0
-    found = functions["nlp_hess_l"](x, p, 0.0, multipliers).full()[:TERMS, :TERMS]
-    for i, unit in enumerate(np.eye(len(x))[:TERMS]):
-        there, back = (functions["nlp_jac_g"](x + s * h * unit, p)[1].full() for s in (1, -1))
-        expected = multipliers[0] * (there - back)[0, i:TERMS] / (2 * h)  # the upper triangle
+    found = functions["nlp_hess_l"](x, p, of_objective, 0 * multipliers).full()
+    for i, unit in enumerate(np.eye(len(x))):
+        there, back = (functions["nlp_grad_f"](x + s * h * unit, p)[1].full() for s in (1, -1))
+        expected = of_objective * (there - back).ravel()[i:] / (2 * h)  # the upper triangle
         assert found[i, i:] == pytest.approx(expected, abs=1e-3 * np.abs(found).max())
 
 
@@ -197,7 +211,7 @@ class _Stated:
             "arrival": self.arrival if form.residual_rows else [],
             "power": np.append(np.maximum(self.samples, 0), np.maximum(-self.samples, 0))
             if form.sampled
-            else [self.energy],
+            else [],
         }
         self.unknowns = np.concatenate(list(parts.values()))
 
@@ -212,14 +226,14 @@ def test_the_unknowns_stand_in_their_order(program):
         peak = stated.unknowns[program.part("peak")]
         assert peak.tolist() == [stated.peaks[program.form.least]]
     power = stated.unknowns[program.part("power")]
-    assert len(power) == (2 * SAMPLES if program.form.sampled else 1)
+    assert len(power) == (2 * SAMPLES if program.form.sampled else 0)
 
 
 def test_the_constraints_are_equations_and_values_to_be_bounded(program):
     stated, form = _Stated(program, p := _parameters(program, 3)), program.form
     rest = _functions(program)["nlp_g"](stated.unknowns, p).full().ravel()
-    energy, rest = np.split(rest, [SAMPLES if form.sampled else 1])
-    assert np.abs(energy).max() < 1e-13
+    samples, rest = np.split(rest, [SAMPLES if form.sampled else 0])
+    assert np.abs(samples).max(initial=0.0) < 1e-13
     arrival, rest = np.split(rest, [program.motion.states])
     expected = np.zeros_like(arrival) if form.residual_rows else stated.arrival
     assert arrival == pytest.approx(expected, abs=1e-13)
@@ -236,7 +250,7 @@ def test_the_constraints_are_equations_and_values_to_be_bounded(program):
 
 def test_the_objective_weighs_energy_and_peak(program):
     stated, form = _Stated(program, p := _parameters(program, 4)), program.form
-    energy = stated.mean if form.sampled else stated.energy
+    energy = {"sampled": stated.mean, "resolved": stated.energy, "free": 0.0}[form.energy]
     expected = stated.weights[0] * energy
     if form.least:
         expected += stated.weights[1] * stated.peaks[form.least]
@@ -251,7 +265,7 @@ def test_limits_bound_their_own_quantity_from_both_sides(program, limits):
     lower, upper = program._constraint_bounds(limits)
     stated, form = _Stated(program, p := _parameters(program, 5)), program.form
     assert len(lower) == len(upper) == _functions(program)["nlp_g"](stated.unknowns, p).numel()
-    equations = (SAMPLES if form.sampled else 1) + program.motion.states
+    equations = (SAMPLES if form.sampled else 0) + program.motion.states
     assert not lower[:equations].any()
     assert not upper[:equations].any()
     place = equations
@@ -274,10 +288,11 @@ def test_limits_bound_their_own_quantity_from_both_sides(program, limits):
 
 
 @pytest.mark.parametrize("steps", [5, 30])
+@pytest.mark.parametrize("energy", ["sampled", "resolved", "free"])
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-def test_both_forms_state_what_the_rollout_finds(tasks, compiled, sampled, name, steps):
+def test_every_form_states_what_the_rollout_finds(tasks, compiled, energy, name, steps):
     task, matrix = tasks[name], residual_matrix(tasks[name])
-    form = Form(sampled, len(matrix), RESIDUAL)
+    form = Form(energy, len(matrix), RESIDUAL)
     program = compiled(name, "all limits", form, steps)
     scale, weights = np.ones(program.motion.scales), [1.0, 0.0]
     nothing = np.zeros(program.motion.states)
@@ -292,19 +307,22 @@ def test_both_forms_state_what_the_rollout_finds(tasks, compiled, sampled, name,
     net_work = task.duration * weights @ stated.power
     assert net_work == pytest.approx(fixed.motion.net_work, rel=1e-9)
     functions = _functions(program)
-    equations = (2 * steps if sampled else 1) + program.motion.states
+    equations = (2 * steps if form.sampled else 0) + program.motion.states
     g = functions["nlp_g"](stated.unknowns, p).full().ravel()
     assert np.abs(g[:equations]).max() < 1e-12
-    energy = task.duration * float(functions["nlp_f"](stated.unknowns, p))
-    if sampled:  # between the samples some energy hides: never less than the net work is seen
-        assert energy >= abs(fixed.motion.net_work)
-        assert energy == pytest.approx(task.duration * stated.mean, rel=1e-12)
-    else:
-        assert energy == pytest.approx(fixed.motion.energy, rel=1e-12)
+    found = task.duration * float(functions["nlp_f"](stated.unknowns, p))
+    if energy == "sampled":  # between the samples some hides: never less than the net work is seen
+        assert found >= abs(fixed.motion.net_work)
+        assert found == pytest.approx(task.duration * stated.mean, rel=1e-12)
+    elif energy == "resolved":  # less what neighbouring steps tell, of fourth order in their length
+        assert found == pytest.approx(task.duration * stated.energy, rel=1e-12)
+        assert found == pytest.approx(fixed.motion.energy, rel=25 / steps**4)
+    else:  # the peak alone, whose weight is zero here
+        assert found == 0.0
 
 
 def test_scales_divide_states_and_quantities(compiled):
-    program = compiled("arm", "one limit", Form(False, 0, None))
+    program = compiled("arm", "one limit", Form("resolved", 0, None))
     scale, move = np.array([2.0, 3.0, 5.0, 7.0]), [-0.4, 1.1, 0.7]
     states, outputs, energy = (
         x.full() for x in program.motion.figures(COEFFICIENTS, move, np.ones(4))
@@ -320,7 +338,7 @@ def test_scales_divide_states_and_quantities(compiled):
 
 def test_a_run_says_how_far_a_bound_is_passed(tasks, compiled):
     task = tasks["arm"]
-    program = compiled("arm", "one limit", Form(True, 0, None), 12)
+    program = compiled("arm", "one limit", Form("sampled", 0, None), 12)
     basis = program.motion.basis(task.move, np.eye(TERMS))
     scale = np.ones(program.motion.scales)
     p = np.concatenate([task.move, scale, [1.0, 0.0], np.zeros(2), basis])

@@ -9,8 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
-from ocp.simulation.objective import energy_derivatives, resolved_energy
+from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from ocp.simulation.objective import beyond_quadratic, energy_derivatives, resolved_energy
 
 NODE = np.array(GAUSS_NODES)
 X = Polynomial([0.0, 1.0])
@@ -18,9 +18,6 @@ X = Polynomial([0.0, 1.0])
 BASIS = [
     math.prod((X - other) / (node - other) for other in NODE if other != node) for node in NODE
 ]
-VANISHING = math.prod(X - node for node in NODE)
-BY_FIVE = [*BASIS, VANISHING, VANISHING * (X - 0.5)]
-"""How the power on the step changes with its values at the nodes, the cubic and the quartic."""
 LEAST = 1e-3
 """Slopes above this count as they are."""
 
@@ -42,10 +39,14 @@ def _zeros(quadratic):
     return [r.real for r in roots if abs(r.imag) < 1e-9 and 0 < r.real < 1]
 
 
-def _derivatives(power, cubic=0.0, quartic=0.0, least=LEAST):
-    """Energy, gradient [5], second derivatives [3, 3]."""
-    energy, gradient, bends = energy_derivatives()(power, cubic, quartic, least)
-    return float(energy), gradient.full().ravel(), bends.full()
+def _energy(power):
+    return float(resolved_energy([ca.DM(p) for p in power], 1.0))
+
+
+def _derivatives(power, least=LEAST):
+    """Gradient [3], second derivatives [3, 3]."""
+    gradient, bends = energy_derivatives()(power, least)
+    return gradient.full().ravel(), bends.full()
 
 
 def _with_sign(quadratic, function):
@@ -62,9 +63,9 @@ def _with_sign(quadratic, function):
 def test_the_gradient_is_the_integral_of_the_sign(name):
     # d/dp of the integral of |p| is the integral of sign(p): the zeros' own move adds nothing.
     quadratic = QUADRATICS[name]
-    energy, gradient, _ = _derivatives(quadratic(NODE))
-    expected = [_with_sign(quadratic, function) for function in BY_FIVE]
-    assert energy == pytest.approx(_with_sign(quadratic, quadratic), abs=1e-14)
+    gradient, _ = _derivatives(quadratic(NODE))
+    expected = [_with_sign(quadratic, function) for function in BASIS]
+    assert _energy(quadratic(NODE)) == pytest.approx(_with_sign(quadratic, quadratic), abs=1e-14)
     assert gradient == pytest.approx(np.array(expected), abs=1e-13)
 
 
@@ -72,7 +73,7 @@ def test_the_gradient_is_the_integral_of_the_sign(name):
 def test_the_curvature_is_two_over_the_slope_at_each_zero(name):
     # The derivative of the integral of sign(p) q: q jumps by twice itself where the zero moves.
     quadratic = QUADRATICS[name]
-    bends, expected = _derivatives(quadratic(NODE))[2], np.zeros((NODES, NODES))
+    bends, expected = _derivatives(quadratic(NODE))[1], np.zeros((NODES, NODES))
     for zero in _zeros(quadratic):
         at_zero = np.array([function(zero) for function in BASIS])
         expected += 2 * np.outer(at_zero, at_zero) / abs(quadratic.deriv()(zero))
@@ -81,34 +82,36 @@ def test_the_curvature_is_two_over_the_slope_at_each_zero(name):
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_power_of_one_sign_costs_its_mean(sign):
-    energy, gradient, bends = _derivatives(sign * np.array([1.0, 2.0, 4.0]), 3.0, -5.0)
-    assert energy == pytest.approx(np.dot(GAUSS_WEIGHTS, [1.0, 2.0, 4.0]), rel=1e-14)
-    assert gradient == pytest.approx(sign * np.append(GAUSS_WEIGHTS, [0.0, 0.0]), abs=1e-14)
+    power = sign * np.array([1.0, 2.0, 4.0])
+    gradient, bends = _derivatives(power)
+    assert _energy(power) == pytest.approx(np.dot(GAUSS_WEIGHTS, [1.0, 2.0, 4.0]), rel=1e-14)
+    assert gradient == pytest.approx(sign * np.array(GAUSS_WEIGHTS), abs=1e-14)
     assert not bends.any()
 
 
 def test_where_the_power_touches_zero_the_gradient_is_that_of_one_sign():
     # 4 (x - 1/2)^2 has a double zero on the middle node, whose curvature has no bound.
-    energy, gradient, bends = _derivatives(4 * (NODE - 0.5) ** 2)
-    assert energy == pytest.approx(1 / 3, rel=1e-12)
-    assert gradient[:NODES] == pytest.approx(np.array(GAUSS_WEIGHTS), abs=1e-6)
+    power = 4 * (NODE - 0.5) ** 2
+    gradient, bends = _derivatives(power)
+    assert _energy(power) == pytest.approx(1 / 3, rel=1e-12)
+    assert gradient == pytest.approx(np.array(GAUSS_WEIGHTS), abs=1e-6)
     assert np.linalg.norm(bends) <= 2 * 2 / LEAST  # two zeros, each 2 g g' / slope with |g| = 1
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12, 0.0, -1e-12, -1e-9, -1e-6, -1e-3])
 def test_the_gradient_goes_over_without_a_jump_where_zeros_meet(gap):
     # Zeros at 0.3 +- sqrt(gap): between them the sign is the other way, 2 sqrt(gap) long.
-    _, gradient, bends = _derivatives((NODE - 0.3) ** 2 - gap)
+    gradient, bends = _derivatives((NODE - 0.3) ** 2 - gap)
     apart = 2 * math.sqrt(max(gap, 0.0))
     at_zero = np.array([function(0.3) for function in BASIS])
     expected = np.array(GAUSS_WEIGHTS) - 2 * apart * at_zero
-    assert gradient[:NODES] == pytest.approx(expected, abs=2 * apart**2 + 1e-6)
+    assert gradient == pytest.approx(expected, abs=2 * apart**2 + 1e-6)
     assert np.isfinite(bends).all()
 
 
 def test_no_power_has_an_energy_and_a_gradient_all_the_same():
-    energy, gradient, bends = _derivatives(np.zeros(NODES))
-    assert energy == 0.0
+    gradient, bends = _derivatives(np.zeros(NODES))
+    assert _energy(np.zeros(NODES)) == 0.0
     assert np.abs(gradient).max() <= 1.0
     assert np.isfinite(bends).all()
 
@@ -123,39 +126,36 @@ def _power(first, second, height):
 inside = st.floats(0.05, 0.95)
 outside = st.floats(1.05, 3.0) | st.floats(-2.0, -0.05)
 heights = st.floats(0.5, 5.0) | st.floats(-5.0, -0.5)
-beyond = st.floats(-1.0, 1.0)
-
-
-@given(first=inside, second=inside | outside, height=heights, cubic=beyond, quartic=beyond)
-def test_the_gradient_is_the_limit_of_differences(first, second, height, cubic, quartic):
-    assume(abs(first - second) > 0.05)
-    at, h = np.append(_power(first, second, height), [cubic, quartic]), 1e-6
-    _, gradient, _ = _derivatives(at[:NODES], *at[NODES:])
-    for i in range(NODES + 2):
-        there, back = at.copy(), at.copy()
-        there[i], back[i] = at[i] + h, at[i] - h
-        energies = [_derivatives(p[:NODES], *p[NODES:])[0] for p in (there, back)]
-        assert gradient[i] == pytest.approx((energies[0] - energies[1]) / (2 * h), abs=1e-7)
 
 
 @given(first=inside, second=inside | outside, height=heights)
-def test_the_curvature_is_that_of_the_gradient_without_terms_beyond(first, second, height):
+def test_the_gradient_is_the_limit_of_differences(first, second, height):
     assume(abs(first - second) > 0.05)
     power, h = _power(first, second, height), 1e-6
-    bends = _derivatives(power)[2]
+    gradient, _ = _derivatives(power)
     for i, unit in enumerate(np.eye(NODES)):
-        there, back = (_derivatives(power + s * h * unit)[1][:NODES] for s in (1, -1))
+        there, back = (_energy(power + s * h * unit) for s in (1, -1))
+        assert gradient[i] == pytest.approx((there - back) / (2 * h), abs=1e-7)
+
+
+@given(first=inside, second=inside | outside, height=heights)
+def test_the_curvature_is_that_of_the_gradient(first, second, height):
+    assume(abs(first - second) > 0.05)
+    power, h = _power(first, second, height), 1e-6
+    bends = _derivatives(power)[1]
+    for i, unit in enumerate(np.eye(NODES)):
+        there, back = (_derivatives(power + s * h * unit)[0] for s in (1, -1))
         assert bends[i] == pytest.approx((there - back) / (2 * h), rel=1e-4, abs=1e-4)
 
 
 numbers = st.floats(-10.0, 10.0)
 
 
-@given(power=st.tuples(numbers, numbers, numbers), cubic=numbers, quartic=numbers)
-def test_the_energy_is_that_of_the_rollout_and_convex(power, cubic, quartic):
-    energy, _, bends = _derivatives(power, cubic, quartic)
-    expected = float(resolved_energy([ca.DM(p) for p in power], 1.0, cubic, quartic))
-    assert energy == pytest.approx(expected, rel=1e-12, abs=1e-12)
+@given(power=st.tuples(numbers, numbers, numbers), other=st.tuples(numbers, numbers, numbers))
+def test_the_energy_is_convex_and_its_gradient_a_support_of_it(power, other):
+    gradient, bends = _derivatives(power)
+    assert gradient @ power == pytest.approx(_energy(power), rel=1e-9, abs=1e-9)  # homogeneous
+    assert _energy(other) >= gradient @ other - 1e-6 * (1 + np.abs(other).max())
     assert np.array_equal(bends, bends.T)
     assert np.linalg.eigvalsh(bends).min() >= -1e-12 * (1 + np.abs(bends).max())
 
@@ -163,6 +163,70 @@ def test_the_energy_is_that_of_the_rollout_and_convex(power, cubic, quartic):
 @pytest.mark.parametrize("least", [0.5, 1.0, 4.0])
 def test_a_slope_below_the_least_counts_as_the_least(least):
     # x - 1/2 has slope 1, and the middle node alone is not zero there.
-    bends = _derivatives(NODE - 0.5, least=least)[2]
+    bends = _derivatives(NODE - 0.5, least=least)[1]
     assert bends[1, 1] == pytest.approx(2 / max(1.0, least), rel=1e-12)
     assert np.abs(np.delete(bends.ravel(), 4)).max() < 1e-12
+
+
+# -- from one step to the next --
+
+STEPS = 4
+BEGIN, LENGTH = (x.full() for x in mesh(ca.DM(np.arange(STEPS)).T, STEPS))
+TIMES = BEGIN.T + LENGTH.T * NODE
+
+
+def _moved(zero):
+    """A power of one zero at the nodes of every step (STEPS, NODES), and its change with that."""
+    return (np.exp(2 * TIMES) - np.exp(2 * zero)), -2 * np.exp(2 * zero) * np.ones_like(TIMES)
+
+
+def _change(zero):
+    """How the energy changes with the zero, by the gradient."""
+    steps = zip(LENGTH.ravel(), *_moved(zero), strict=True)
+    return sum(length * _derivatives(power)[0] @ by_zero for length, power, by_zero in steps)
+
+
+def _change_with_terms_beyond(zero, h=1e-8):
+    """The same of the energy with what neighbouring steps tell, by differences."""
+
+    def energy(place):
+        power = [ca.DM(column).T for column in _moved(place)[0].T]
+        terms = (ca.horzcat(*power) @ weights for weights in beyond_quadratic(STEPS))
+        return float(resolved_energy(power, ca.DM(LENGTH), *terms))
+
+    return (energy(zero + h) - energy(zero - h)) / (2 * h)
+
+
+def _largest_jump(change, step, count):
+    """Largest difference of the gradient from place to place about where a step begins."""
+    places = BEGIN[0, step] + np.linspace(-5e-3, 5e-3, count)
+    return np.abs(np.diff([change(zero) for zero in places])).max()
+
+
+@pytest.mark.parametrize("step", range(1, STEPS))
+def test_the_gradient_does_not_jump_where_a_zero_passes_into_the_next_step(step):
+    # From place to place it changes by the curvature times their distance, and no more.
+    coarse, fine = (_largest_jump(_change, step, count) for count in (101, 401))
+    assert fine == pytest.approx(coarse / 4, rel=0.05)
+
+
+@pytest.mark.parametrize("step", range(1, STEPS))
+def test_with_terms_beyond_the_quadratic_it_would_jump(step):
+    # Why the solver's energy leaves them out: the cubic is not zero where a step ends.
+    coarse, fine = (_largest_jump(_change_with_terms_beyond, step, count) for count in (101, 401))
+    assert fine > 0.6 * coarse
+
+
+@pytest.mark.parametrize(("cubic", "jump"), [(0.0, 0.0), (3.0, 0.3), (5.0, 0.5)])
+def test_the_jump_of_a_zero_that_leaves_a_step_by_hand(cubic, jump):
+    # Of x - z the energy is z^2 - z + 1/2 up to z = 1 and z - 1/2 from there: slope 1 on both
+    # sides. The cubic's work up to z is counted twice, and its power at the end of the step is
+    # (1 - node 1)(1 - node 2)(1 - node 3) = 1/20.
+    h = 1e-6
+
+    def energy(zero):
+        return float(resolved_energy([ca.DM(x - zero) for x in GAUSS_NODES], 1.0, cubic))
+
+    inside, outside = ((energy(1 + s * h) - energy(1)) / (s * h) for s in (-1, 1))
+    assert outside == pytest.approx(1.0, abs=1e-5)
+    assert outside - inside == pytest.approx(jump, abs=1e-5)

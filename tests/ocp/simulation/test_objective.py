@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models import SingleLinkManipulator
+from models import JointMotion, SingleLinkManipulator
 from ocp import Motion, PointToPoint
 from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
 from ocp.simulation.objective import beyond_quadratic, resolved_energy
+from ocp.task.quantities import QUANTITIES
 
 numbers = st.floats(-10.0, 10.0)
 
@@ -154,15 +155,16 @@ def test_peaks_are_of_absolute_values():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
     motion = Motion.from_samples(
         task,
-        joint=np.array([[0.0, 1.0, -7.0], [0.5, -3.0, 5.0]]),
+        JointMotion(*np.array([[0.0, 0.5], [1.0, -3.0], [-7.0, 5.0], [80.0, -90.0]])),
         tips=np.array([[0.01, -0.04], [0.02, 0.03]]),
         torque=np.array([0.3, -0.6]),
         residual=0.005,
         energy=0.2,
         net_work=0.1,
     )
-    peaks = {name: motion.peak(name) for name in ("speed", "acceleration", "torque", "deflection")}
-    assert peaks == {"speed": 3.0, "acceleration": 7.0, "torque": 0.6, "deflection": 0.04}
+    assert {name: motion.peak(name) for name in QUANTITIES} == {
+        "speed": 3.0, "acceleration": 7.0, "jerk": 90.0, "torque": 0.6, "deflection": 0.04,
+    }  # fmt: skip
     assert (motion.peak("residual"), motion.energy, motion.net_work) == (0.005, 0.2, 0.1)
 
 
@@ -179,12 +181,13 @@ def test_peaks_are_of_absolute_values():
 def test_overshoot_is_how_far_the_joint_passes_the_target(target, angles, overshoot):
     motion = Motion.from_samples(
         PointToPoint(SingleLinkManipulator(), target, 0.8),
-        joint=np.array([[angle, 0.0, 0.0] for angle in angles]),
+        JointMotion(np.array(angles), *np.zeros((2, len(angles)))),
         tips=np.zeros((len(angles), 1)),
         torque=np.zeros(len(angles)),
         residual=0.0,
         energy=0.0,
         net_work=0.0,
     )
+    assert (motion.peak_jerk, motion.peak("jerk")) == (None, math.inf)  # its jerk is not known
     assert motion.overshoot == pytest.approx(overshoot, abs=1e-15)
     assert math.copysign(1.0, motion.overshoot) == 1.0  # else a table prints -0

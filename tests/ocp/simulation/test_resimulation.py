@@ -510,6 +510,7 @@ def test_a_trajectory_has_a_row_for_every_time(tasks):
         "tips": (4, 2),
         "torque": (4,),
         "power": (4,),
+        "jerk": (4,),
     }
     assert found.time.tolist() == [0.1, 0.5, 0.9, 1.0]
 

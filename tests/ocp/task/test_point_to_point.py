@@ -9,6 +9,7 @@ import pytest
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
 from ocp.task.point_to_point import LIMITS
+from ocp.task.quantities import QUANTITIES
 
 PLANT = SingleLinkManipulator()
 NOT_POSITIVE = [0, 0.0, -0.0, -0.8, math.nan, math.inf, -math.inf]
@@ -49,8 +50,7 @@ def test_a_limit_that_is_set_is_listed_by_its_quantity(name):
 
 def test_all_limits_together():
     limits = dict.fromkeys(LIMITS, 2)
-    expected = {"torque": 2.0, "speed": 2.0, "acceleration": 2.0, "deflection": 2.0}
-    assert _task(**limits).limits == expected
+    assert _task(**limits).limits == dict.fromkeys(QUANTITIES, 2.0)
 
 
 @pytest.mark.parametrize("kind", [int, np.float64, np.float32, np.int64])

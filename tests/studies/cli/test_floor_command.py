@@ -61,6 +61,20 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_jerk_limit_is_kept_by_a_smooth_floor_and_refused_by_another(call, tmp_path):
+    line = f"floor {MOVE} --jerk-limit 5000 --starts 1 --tolerance 0.1 --quiet"
+    code, out, err = call(f"{line} --smooth --output {tmp_path / 'f.json'}")
+    assert (code, err) == (0, "")
+    shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
+    assert shown["limits"] == "jerk 5000 rad/s^3"
+    peak = Floor.load(tmp_path / "f.json").motion.peak_jerk
+    assert shown["peak jerk"] == f"{peak:.4g} rad/s^3"
+    code, out, err = call(line)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "jerk limit is 5000 rad/s^3" in err
+    assert "--smooth" in err
+
+
 def test_the_help_shows_examples_that_are_read(call, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     code, out, _ = call("floor --help")
@@ -129,7 +143,7 @@ def test_a_picture_that_cuts_nothing_says_nothing_of_jolts():
     (lowest, highest), drawn = torque.get_ylim(), floor.trajectory.torque
     assert lowest < drawn.min() < -1.0
     assert 0.9 < drawn.max() < highest
-    assert torque.get_title(loc="left") == "(e) motor torque [N m]"
+    assert torque.get_title(loc="left") == "(e) joint torque [N m]"
     plt.close("all")
 
 
@@ -137,7 +151,7 @@ def test_a_plan_s_picture_leaves_nothing_out(plan):
     figure = motion_figure([Line(plan, "plan", "black")], quantities=PAPER_PANELS)
     torque = figure.axes[3]
     assert torque.get_ylim()[1] > np.abs(plan.trajectory([0.0, 0.1, 0.2]).torque).max()
-    assert torque.get_title(loc="left") == "(d) motor torque [N m]"
+    assert torque.get_title(loc="left") == "(d) joint torque [N m]"
 
 
 @pytest.mark.parametrize(

@@ -12,14 +12,14 @@ from matplotlib.figure import Figure
 
 from ocp import PointToPoint, evaluate_coefficients
 from studies.display.pictures import SUFFIXES, check_figure, save_figure
-from studies.figures import PAPER_PANELS, QUANTITIES, RED, Line, draw_quantity, motion_figure
+from studies.figures import PAPER_PANELS, QUANTITIES_DRAWN, RED, Line, draw_quantity, motion_figure
 
 TITLES = [
     "joint angle [rad]",
-    "angular velocity [rad/s]",
-    "angular acceleration [rad/s^2]",
+    "joint speed [rad/s]",
+    "joint acceleration [rad/s^2]",
     "tip displacement [mm]",
-    "motor torque [N m]",
+    "joint torque [N m]",
 ]
 HEADS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 TAILS = {".png": b"IEND\xaeB`\x82", ".pdf": b"%%EOF\n", ".svg": b"</svg>\n"}
@@ -173,7 +173,7 @@ def limits(axis):
 def test_limits_are_lines_where_a_motion_comes_near_them(task, limit, shown):
     motion = evaluate_coefficients(dataclasses.replace(task, **limit), [])
     drawn = [Line(motion, "cycloid")]
-    found = {name: limits(draw_quantity(drawn, name)) for name in QUANTITIES}
+    found = {name: limits(draw_quantity(drawn, name)) for name in QUANTITIES_DRAWN}
     assert {name: at for name, at in found.items() if at} == {
         name: pytest.approx(at) for name, at in shown.items()
     }
@@ -187,8 +187,19 @@ def test_a_limit_far_off_is_told_and_does_not_flatten_the_motion(task):
         )
         for limit in (None, 1e3)
     )
-    assert far.get_title(loc="left") == "motor torque [N m], limit 1000 far off"
+    assert far.get_title(loc="left") == "joint torque [N m], limit 1000 far off"
     assert far.get_ylim() == near.get_ylim()
+
+
+def test_the_jerk_is_drawn_where_a_task_limits_it(task):
+    # the cycloid's largest: span (2 pi)^2 / duration^3 = 40.4 rad/s^3
+    limited = evaluate_coefficients(dataclasses.replace(task, jerk_limit=50.0), [])
+    titles = [axis.get_title(loc="left") for axis in panels(motion_figure([Line(limited, "it")]))]
+    assert "(d) joint jerk [rad/s^3]" in titles
+    assert len(titles) == 6
+    axis = draw_quantity([Line(limited, "it")], "jerk")
+    assert limits(axis) == [-50.0, 50.0]
+    assert np.max(motions(axis)[0].get_ydata()) == pytest.approx(40.37, rel=1e-3)
 
 
 def test_motions_of_several_limits_show_each_once(task):
@@ -224,7 +235,7 @@ def test_lines_without_a_colour_are_told_apart(plan, cycloid):
 
 
 def test_a_quantity_that_is_none_is_refused_and_the_others_named(plan):
-    with pytest.raises(ValueError, match="no quantity is called 'power'; give angle, speed"):
+    with pytest.raises(ValueError, match="no quantity is called 'power'; give one of angle, speed"):
         draw_quantity(plan, "power")
 
 

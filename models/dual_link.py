@@ -1,0 +1,69 @@
+"""Two flexible links on one hub, the kind of plant of the paper's ref. [25]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from models.plant import Expression, JointMotion, Plant, parameter
+
+_IDENTIFIED = "theoretical value times identified factor, docs/physics.md"
+
+
+@dataclass(frozen=True)
+class DualLinkManipulator(Plant):
+    """Two flexible links of different frequency that one motor turns.
+
+    The equations are derived in docs/physics.md, 'A third plant', which also has the source of the
+    parameters. Index 1 or 2 is the link's.
+    """
+
+    name: ClassVar[str] = "dual-link"
+    modes: ClassVar[int] = 2
+
+    omega1: float = parameter(12.68 * 0.993, "rad/s", _IDENTIFIED)
+    zeta1: float = parameter(15.49e-3 * 1.214, "-", _IDENTIFIED)
+    a1: float = parameter(0.2266 * 0.984, "m", _IDENTIFIED)
+    b1: float = parameter(2.004e-3 * 1.020, "-", _IDENTIFIED)
+    omega2: float = parameter(10.71 * 0.993, "rad/s", _IDENTIFIED)
+    zeta2: float = parameter(14.27e-3 * 1.071, "-", _IDENTIFIED)
+    a2: float = parameter(0.2570 * 1.003, "m", _IDENTIFIED)
+    b2: float = parameter(5.822e-3 * 1.006, "-", _IDENTIFIED)
+    g1: float = parameter(2.996e-2 * 1.016, "kg m^2", _IDENTIFIED)
+    g2: float = parameter(6.652e-2 * 1.018, "kg m", _IDENTIFIED)
+    g3: float = parameter(5.237e-2 * 1.052, "kg m", _IDENTIFIED)
+    c: float = parameter(4.202e-2 * 1.131, "N m s", _IDENTIFIED)
+    phi: float = parameter(
+        2.7244, "-", "first mode shape of a clamped-free beam at its tip, docs/physics.md"
+    )
+
+    def modal_accelerations(
+        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
+    ) -> Sequence[Expression]:
+        """W_1'' and W_2'' [m/s^2]: each link vibrates on its own, as the single link does."""
+        links = (
+            (self.omega1, self.zeta1, self.a1, self.b1),
+            (self.omega2, self.zeta2, self.a2, self.b2),
+        )
+        return [
+            -2 * zeta * omega * dW[i]
+            - (omega**2 + b * joint.speed**2) * W[i]
+            - a * joint.acceleration
+            for i, (omega, zeta, a, b) in enumerate(links)
+        ]
+
+    def torque(
+        self,
+        joint: JointMotion,
+        W: Sequence[Expression],
+        dW: Sequence[Expression],
+        ddW: Sequence[Expression],
+    ) -> Expression:
+        """Joint torque [N m]: both links act on the one hub."""
+        inertia = self.g1 * joint.acceleration + self.g2 * ddW[0] + self.g3 * ddW[1]
+        return inertia + self.c * joint.speed
+
+    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+        """Displacement of either tip, phi W_i [m]."""
+        return [self.phi * W[0], self.phi * W[1]]

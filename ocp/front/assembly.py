@@ -1,0 +1,67 @@
+"""Put a sweep's points together to a front."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from ocp.front.answer import Front, reference_corner
+from ocp.front.points import FailedPoint, FrontPoint, non_dominated
+from ocp.front.sweep import Sweep
+
+
+def front_of(
+    sweep: Sweep,
+    method: str,
+    found: Sequence[FrontPoint | FailedPoint],
+    points: int,
+    *,
+    gaps: Sequence[tuple[float, float]] = (),
+    iterations: int = 0,
+    complete: bool = True,
+    seconds: float = 0.0,
+) -> Front:
+    """Put points together to a front.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        What was asked.
+    method : str
+        How they were found.
+    found : sequence of FrontPoint or FailedPoint
+        The points.
+    points : int
+        How many were asked for.
+    gaps : sequence of (float, float)
+        As in `Front`.
+    iterations : int
+        Iterations of the solver in other processes.
+    complete : bool
+        Whether the sweep ran to its end.
+    seconds : float
+        Time that was spent before the sweep [s].
+
+    Returns
+    -------
+    Front
+        The front.
+    """
+    failures = tuple(point for point in found if isinstance(point, FailedPoint))
+    settings = sweep.settings
+    return Front(
+        task=sweep.task,
+        profile=sweep.profile,
+        points=non_dominated(point for point in found if isinstance(point, FrontPoint)),
+        method=method,
+        settings={"bound": settings.bound, "points": points, "starts": settings.starts,
+                  "steps": sweep.steps},
+        seed=settings.seed,
+        reference=reference_corner(sweep.task),
+        evaluations=sweep.iterations + iterations,
+        failed=len(failures),
+        failures=failures,
+        gaps=tuple(gaps),
+        complete=complete,
+        seconds=seconds + time.perf_counter() - sweep.began,
+    )  # fmt: skip

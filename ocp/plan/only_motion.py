@@ -1,0 +1,56 @@
+"""The plan by a profile without coefficients: its only motion, evaluated."""
+
+from __future__ import annotations
+
+from ocp.answers.provenance import SolveSettings
+from ocp.base.errors import InfeasibleTaskError
+from ocp.plan.answer import Plan, evaluate_coefficients
+from ocp.plan.verification import OVERRUN
+from ocp.profiles.joint_profile import JointProfile
+from ocp.task.point_to_point import PointToPoint
+from ocp.task.quantities import QUANTITIES
+
+
+def only_motion(task: PointToPoint, profile: JointProfile, residual_limit: float = 0.0) -> Plan:
+    """The figures of the only motion that a profile has, within the task's limits.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move and its limits.
+    profile : JointProfile
+        A profile of size 0.
+    residual_limit : float
+        Largest F1 [m]; 0 asks for none, since there is nothing to choose.
+
+    Returns
+    -------
+    Plan
+        The motion, by CVODES; its status says that nothing was optimised.
+
+    Raises
+    ------
+    ValueError
+        When an argument is out of range, or the duration too short for the profile.
+    InfeasibleTaskError
+        When the motion breaks a limit.
+    SolverFailedError
+        When CVODES cannot follow the motion.
+    """
+    SolveSettings(residual_limit=residual_limit)  # refused before the integration, not after
+    plan = evaluate_coefficients(
+        task, [], profile=profile, method="evaluated", settings={"residual_limit": residual_limit}
+    )
+    limits = {**({"residual": residual_limit} if residual_limit else {}), **task.limits}
+    units = {"residual": "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
+    broken = [
+        f"its {name} reaches {plan.motion.peak(name):.4g} {units[name]}, above {limit:g}"
+        for name, limit in limits.items()
+        if plan.motion.peak(name) > limit * (1 + OVERRUN)
+    ]
+    if broken:
+        raise InfeasibleTaskError(
+            f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
+            "widen what is broken, or give a longer duration or another profile"
+        )
+    return plan

@@ -1,0 +1,62 @@
+"""Input shaping for a task: the shaper by the plant's own frequencies and damping."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.profiles.shaped_cycloid import ShapedCycloid
+from ocp.simulation.residual import vibrations
+from ocp.task.point_to_point import PointToPoint
+
+_SAMPLES = 200
+"""Joint angles along the plain cycloid, at even times, over which `average` is taken."""
+
+
+def shaped_cycloid(
+    task: PointToPoint, shaper: str, at: Literal["target", "average"] = "target"
+) -> ShapedCycloid:
+    """The cycloid through an input shaper for the modes of a task's plant.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    shaper : str
+        ``"zv"``, ``"zvd"`` or ``"ei"``.
+    at : str, optional
+        Where the plant's frequencies and damping are taken: with the joint at the target, or as
+        the average over time along the plain cycloid. They differ where the frequencies depend on
+        the joint angle; docs/physics.md, 'Input shaping', says which leaves less.
+
+    Returns
+    -------
+    ShapedCycloid
+        The profile; it has no coefficients.
+
+    Raises
+    ------
+    ValueError
+        When the task's duration is too short for the shaper, an argument is not known, or the
+        plant does not vibrate.
+    """
+    if at not in ("target", "average"):
+        raise ValueError(f"at is {at!r}; give 'target' or 'average'")
+    angles = [task.target] if at == "target" else _along(task)
+    modes = [vibrations(task.plant, angle) for angle in angles]
+    if not modes[0] or len({len(each) for each in modes}) > 1:
+        raise ValueError(
+            f"plant {task.plant.name!r} has modes that do not vibrate: there is nothing that a "
+            "shaper could leave out; take another profile"
+        )
+    frequencies, damping_ratios = np.mean(modes, axis=0).T
+    profile = ShapedCycloid(shaper, tuple(frequencies), tuple(damping_ratios))
+    profile.checked([], task.duration)
+    return profile
+
+
+def _along(task: PointToPoint) -> list[float]:
+    times = (np.arange(_SAMPLES) + 0.5) / _SAMPLES * task.duration
+    return CycloidPolynomial(0).path([], *task.move)(times).tolist()

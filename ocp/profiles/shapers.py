@@ -1,0 +1,105 @@
+"""Input shapers: impulses in time whose convolution with a motion leaves a vibration out.
+
+Formulas and their sources: docs/physics.md, 'Input shaping'.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+TOLERATED = 0.05
+"""Share of the unshaped vibration that EI leaves at the frequency that it is made for."""
+
+
+class Impulses(NamedTuple):
+    """A shaper: impulses whose amplitudes sum to one, the first at time 0.
+
+    Attributes
+    ----------
+    amplitudes : tuple of float
+        Shares of the motion.
+    times : tuple of float
+        When each share begins [s], in order.
+    """
+
+    amplitudes: tuple[float, ...]
+    times: tuple[float, ...]
+
+
+def zv(frequency: float, damping_ratio: float) -> Impulses:
+    """Zero vibration: two impulses, half a damped period apart.
+
+    Parameters
+    ----------
+    frequency : float
+        Undamped angular frequency of the mode [rad/s].
+    damping_ratio : float
+        Its damping ratio, between -1 and 1.
+
+    Returns
+    -------
+    Impulses
+        The shaper.
+    """
+    return _half_periods_apart([1.0, 1.0], frequency, damping_ratio)
+
+
+def zvd(frequency: float, damping_ratio: float) -> Impulses:
+    """Zero vibration and derivative by the frequency: three impulses; arguments as for `zv`."""
+    return _half_periods_apart([1.0, 2.0, 1.0], frequency, damping_ratio)
+
+
+def ei(frequency: float, damping_ratio: float) -> Impulses:
+    """Extra insensitive: `TOLERATED` of the vibration is left; arguments as for `zv`."""
+    decay = _decay(damping_ratio)
+    # So that TOLERATED is left at the frequency itself whatever the damping; undamped V = TOLERATED
+    V = TOLERATED * (1 + decay) ** 2 / (4 * decay**2 - TOLERATED * (1 - decay) ** 2)
+    return _half_periods_apart([1 + V, 2 * (1 - V), 1 + V], frequency, damping_ratio)
+
+
+SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {"zv": zv, "zvd": zvd, "ei": ei}
+"""Every shaper by its name: from frequency [rad/s] and damping ratio to impulses."""
+
+
+def convolved(shapers: Sequence[Impulses]) -> Impulses:
+    """One shaper that does what several do one after another, as for several modes.
+
+    Parameters
+    ----------
+    shapers : sequence of Impulses
+        The shapers.
+
+    Returns
+    -------
+    Impulses
+        As many impulses as the product of theirs.
+    """
+    impulses = [(0.0, 1.0)]
+    for shaper in shapers:
+        impulses = [
+            (time + later, amplitude * share)
+            for time, amplitude in impulses
+            for share, later in zip(*shaper, strict=True)
+        ]
+    times, amplitudes = zip(*sorted(impulses), strict=True)
+    return Impulses(amplitudes, times)
+
+
+def _decay(damping_ratio: float) -> float:
+    """K: what is left of an amplitude after half a damped period."""
+    return math.exp(-math.pi * damping_ratio / math.sqrt(1 - damping_ratio**2))
+
+
+def _half_periods_apart(
+    undamped: Sequence[float], frequency: float, damping_ratio: float
+) -> Impulses:
+    """Impulses for an undamped mode, the later ones less as the vibration decays."""
+    decay = _decay(damping_ratio)
+    half_period = math.pi / (frequency * math.sqrt(1 - damping_ratio**2))
+    weights = [weight * decay**i for i, weight in enumerate(undamped)]
+    return Impulses(
+        tuple(weight / sum(weights) for weight in weights),
+        tuple(half_period * i for i in range(len(undamped))),
+    )

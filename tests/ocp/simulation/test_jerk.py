@@ -1,0 +1,79 @@
+"""The jerk of a motion, by both integrators: closed forms and differences of the acceleration."""
+
+import math
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from ocp import CycloidPolynomial, JointProfile, PointToPoint, resimulate, rollout
+from ocp.simulation.collocation import GAUSS_NODES, end_to_end, mesh
+
+SIX = [-1.889e-3, -1.427e-1, -4.247e-2, -1.187e-1, 4.800e-2, -1.890e-1]  # the paper's Table 1
+
+
+@dataclass(frozen=True)
+class _Quintic(JointProfile):
+    """theta from rest to rest along 10 x^3 - 15 x^4 + 6 x^5, x = t/T; no third derivative given."""
+
+    @property
+    def size(self):
+        return 0
+
+    def derivatives(self, coefficients, fraction, start, target, duration):
+        x, span = fraction, target - start
+        return (
+            start + span * x * x * x * (10 - 15 * x + 6 * x * x),
+            span / duration * 30 * x * x * (1 - x) * (1 - x),
+            span / duration**2 * 60 * x * (1 - x) * (1 - 2 * x),
+        )
+
+
+@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+def test_the_plain_cycloids_peak_is_its_closed_form(tasks, name):
+    # Eq (1) with U = t/T: theta' = span/T (1 - cos(2 pi t/T)), so that theta''' is
+    # 4 pi^2 span/T^3 cos(2 pi t/T): largest at both ends and half-way.
+    task, plain = tasks[name], CycloidPolynomial(0)
+    peak = 4 * math.pi**2 * abs(task.span) / task.duration**3
+    assert resimulate(task, plain, []).peak_jerk == pytest.approx(peak, rel=1e-12)
+    assert rollout(task, plain, []).motion.peak_jerk == pytest.approx(peak, rel=1e-12)
+
+
+def test_a_profile_that_gives_no_third_derivative_has_a_jerk(tasks):
+    # The quintic's third derivative is 60 span/T^3 (1 - 6 x + 6 x^2): 60 at both ends.
+    task = tasks["arm"]
+    peak = 60 * task.span / task.duration**3
+    assert resimulate(task, _Quintic(), []).peak_jerk == pytest.approx(peak, rel=1e-12)
+    x = np.linspace(0.0, 1.0, 11)
+    jerk = _Quintic().path([], *task.move)(x * task.duration, 3)
+    assert jerk == pytest.approx(peak * (1 - 6 * x + 6 * x**2), rel=1e-9, abs=1e-9 * peak)
+
+
+@pytest.mark.parametrize("name", ["single link", "arm"])
+def test_the_peak_is_that_of_differences_of_the_acceleration(tasks, name):
+    # No integrator and no casadi derivative: only the acceleration of eq (3).
+    task, profile = tasks[name], CycloidPolynomial(6)
+    h, path = 1e-6 * task.duration, profile.path(SIX, *task.move)
+    times = np.linspace(h, task.duration - h, 40_001)
+    differences = (path(times + h, 2) - path(times - h, 2)) / (2 * h)
+    peak = np.abs(differences).max()
+    assert resimulate(task, profile, SIX).peak_jerk == pytest.approx(peak, rel=1e-4)
+    assert rollout(task, profile, SIX).motion.peak_jerk == pytest.approx(peak, rel=2e-3)
+
+
+def test_a_slower_move_has_less_jerk_by_the_cube(tasks):
+    fast = tasks["arm"]
+    slow = PointToPoint(fast.plant, fast.target, 3 * fast.duration)
+    jerks = [resimulate(task, CycloidPolynomial(6), SIX).peak_jerk for task in (slow, fast)]
+    assert 27 * jerks[0] == pytest.approx(jerks[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 24, 500])
+def test_the_jerk_is_sampled_from_the_first_moment_to_the_last(steps):
+    begin, length = mesh(ca.DM(np.arange(steps)), steps)
+    nodes = np.sort(np.concatenate([(begin + c * length).full().ravel() for c in GAUSS_NODES]))
+    times = end_to_end(nodes, steps)
+    assert times[[0, -1]] == pytest.approx([0.0, 1.0], abs=1e-14)
+    assert np.all(np.diff(times) > 0)
+    assert np.abs(times - nodes).max() == pytest.approx(nodes[0], rel=1e-9)

@@ -1,0 +1,43 @@
+"""The table of quantities, and that everything which lists them agrees with it."""
+
+from dataclasses import fields
+
+import pytest
+
+from models import ArmOnFlexibleLink, JointMotion
+from ocp import Motion, PointToPoint
+from ocp.task.quantities import QUANTITIES, ask_for_jerk
+
+
+def test_every_quantity_has_a_limit_in_a_task_and_a_peak_in_a_motion():
+    limits = [entry.name for entry in fields(PointToPoint) if entry.name.endswith("_limit")]
+    peaks = [entry.name for entry in fields(Motion) if entry.name.startswith("peak_")]
+    assert sorted(limits) == sorted(quantity.limit for quantity in QUANTITIES.values())
+    assert sorted(peaks) == sorted(quantity.peak for quantity in QUANTITIES.values())
+
+
+def test_each_follows_from_the_joint_the_tips_or_the_torque():
+    joint = JointMotion("angle", "speed", "acceleration", "jerk")
+    values = {name: q.of(joint, ["tip 1", "tip 2"], "torque") for name, q in QUANTITIES.items()}
+    assert values.pop("deflection") == ["tip 1", "tip 2"]
+    assert values == {name: [name] for name in ("torque", "speed", "acceleration", "jerk")}
+
+
+def test_derivatives_of_the_joint_say_which_they_are():
+    orders = {name: quantity.derivative for name, quantity in QUANTITIES.items()}
+    assert orders == {
+        "torque": None, "speed": 1, "acceleration": 2, "jerk": 3, "deflection": None,
+    }  # fmt: skip
+    for name, order in orders.items():
+        assert order is None or JointMotion._fields[order] == name
+
+
+def test_only_the_deflection_has_a_value_for_each_tip(two_links):
+    rows = {name: quantity.rows(two_links) for name, quantity in QUANTITIES.items()}
+    assert rows == {**dict.fromkeys(QUANTITIES, 1), "deflection": 2}
+    assert {quantity.rows(ArmOnFlexibleLink()) for quantity in QUANTITIES.values()} == {1}
+
+
+@pytest.mark.parametrize("name", [*QUANTITIES, "residual", "power"])
+def test_only_a_jerk_limit_asks_for_the_jerk(name):
+    assert ask_for_jerk(["torque", name]) == (name == "jerk")
