@@ -99,7 +99,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     for line in lines:
         values = _values(quantity, line.sampled)
         for i, column in enumerate(values.T):
-            label = line.label if values.shape[1] == 1 else f"{line.label}, tip {i + 1}"
+            label = line.label if i == 0 else f"{line.label}, tip {i + 1}"
             ax.plot(
                 line.sampled.time, column, color=line.colour, linestyle=_style(line.style, i),
                 linewidth=1.6, label=label,

@@ -18,6 +18,8 @@ STILL_LEVEL = 1
 """Which of the comparison's residual levels the summary speaks of."""
 _ALIKE = 1e-4
 """Energies within this share of each other count as equal: filled fronts are no finer."""
+_SAME_HYPERVOLUME = 1e-3
+"""Hypervolumes nearer to each other count as equal: the number of points decides about them."""
 _REST = 1e-6
 """A residual within this [m] counts as rest."""
 
@@ -37,7 +39,9 @@ def gap(
 
 def percent(share: float) -> str:
     """A share in words."""
-    return f"{100 * share:.2g} %" if abs(share) >= 1e-4 else "less than 0.01 %"
+    if abs(share) < 1e-4:
+        return "less than 0.01 %"
+    return f"{float(f'{100 * share:.2g}'):g} %"  # 120 %, not 1.2e+02 %
 
 
 def percents(shares: Sequence[float]) -> str:
@@ -105,7 +109,10 @@ def _weighted(found: CaseStudy) -> str:
     gaps = group.runs[0].front.gaps
     if not gaps:
         return "The weighted sum reaches the whole front."
-    holes = [f"between {millimetres(low)} and {millimetres(high)}" for low, high in gaps]
+    holes = [
+        f"between {'rest' if low <= _REST else millimetres(low)} and {millimetres(high)}"
+        for low, high in gaps
+    ]
     return f"No weighted sum reaches the front {_listed(holes)}."
 
 
@@ -175,13 +182,20 @@ def findings(study: Study) -> list[str]:
 def _whose_hypervolume(study: Study) -> str:
     winners: dict[str, int] = {}
     for found in study.cases:
-        best = max(found.comparison.groups, key=lambda group: group.spread("hypervolume").median)
-        winners[best.label] = winners.get(best.label, 0) + 1
+        shares = {g.label: g.spread("hypervolume").median for g in found.comparison.groups}
+        for label, share in shares.items():
+            if share > max(shares.values()) - _SAME_HYPERVOLUME:
+                winners[label] = winners.get(label, 0) + 1
     total = len(study.cases)
     words = ", ".join(
         f"{label} in {count} of {total}" for label, count in sorted(winners.items(), key=_last)
     )
-    return f"The front that dominates most: {words}." if total > 1 else ""
+    if total == 1:
+        return ""
+    return (
+        f"The front that dominates most: {words}; hypervolumes that differ by less than "
+        f"{_SAME_HYPERVOLUME:g} count as equal."
+    )
 
 
 def _last(item: tuple[str, int]) -> int:

@@ -233,6 +233,7 @@ def test_a_study_that_found_nothing_before_ctrl_c_is_none(let_sweep):
 def test_shares_in_words():
     assert percent(0.1234) == "12 %"
     assert percent(0.0012) == "0.12 %"
+    assert percent(1.199) == "120 %"
     assert percent(1e-6) == "less than 0.01 %"
     assert percents([0.001, 0.02]) == "0.1 to 2 %"
     assert percents([0.02, 0.02]) == "2 %"
