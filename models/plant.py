@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import Field, field, fields, is_dataclass
 from numbers import Real
 from typing import Any, ClassVar, NamedTuple
 
@@ -61,7 +61,6 @@ def parameter(default: float, unit: str, source: str) -> Any:
     return field(default=default, metadata={"unit": unit, "source": source})
 
 
-@dataclass(frozen=True)
 class Plant(ABC):
     """A joint with flexible modes: subclass it as a frozen dataclass, in one file.
 
@@ -85,6 +84,7 @@ class Plant(ABC):
     small_deflection: ClassVar[float | None] = None
     """Largest tip displacement that the equations are made for [m]; None where none is stated."""
 
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
 
     def __init_subclass__(cls) -> None:
@@ -154,6 +154,10 @@ class Plant(ABC):
             When the number of modal accelerations is not `modes`, the equations are not affine in
             the modes, the tip is not linear in them, or the structure does not stay at rest.
         """
+        if not is_dataclass(self):
+            raise ValueError(
+                f"plant {self.name!r} is no dataclass; write @dataclass(frozen=True) above it"
+            )
         if isinstance(self.modes, bool) or not isinstance(self.modes, int) or self.modes < 1:
             raise ValueError(f"plant {self.name!r} has {self.modes!r} modes; give it 1 or more")
         try:

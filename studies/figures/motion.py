@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,7 +16,6 @@ from studies.display.words import title_of
 from studies.figures.axes import TITLE, axes_or_new, legend_of, new_figure
 from studies.figures.looks import BLUE, GREY, RED, Dash, look
 
-_SAMPLES = 1500
 _SHOWN, _ABOVE = 0.99, 1.15
 """A panel with jolts ends at this multiple of what is not exceeded 99 % of the time."""
 _IN_SIGHT = 0.4
@@ -54,15 +52,6 @@ class Line:
     colour: str = ""
     style: Dash = "-"
 
-    @cached_property
-    def sampled(self) -> Trajectory:
-        """The motion in time, through the residual window after arrival."""
-        if isinstance(self.plan, Floor):
-            return self.plan.trajectory
-        task = self.plan.task
-        end = task.duration + task.residual_window
-        return self.plan.trajectory(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
-
 
 Motions = Sequence[Line] | Plan | Floor
 
@@ -97,11 +86,11 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     lines, (name, unit, scale) = lines_of(motions), _name_and_unit(quantity)
     ax = axes_or_new(ax)
     for line in lines:
-        values = _values(quantity, line.sampled)
-        for i, column in enumerate(values.T):
+        sampled = line.plan.trajectory
+        for i, column in enumerate(_values(quantity, sampled).T):
             label = line.label if i == 0 else f"{line.label}, tip {i + 1}"
             ax.plot(
-                line.sampled.time, column, color=line.colour, linestyle=_style(line.style, i),
+                sampled.time, column, color=line.colour, linestyle=_style(line.style, i),
                 linewidth=1.6, label=label,
             )  # fmt: skip
     ax.axvline(lines[0].plan.task.duration, color="0.6", linewidth=0.8, linestyle="--")
@@ -228,7 +217,7 @@ def _style(of_line: Dash, tip: int) -> Dash:
 
 def _draw_limits(ax: Axes, quantity: str, scale: float, lines: Sequence[Line]) -> list[str]:
     """Draw the limits that a motion comes near; the others in words."""
-    values = np.concatenate([_values(quantity, line.sampled).ravel() for line in lines])
+    values = np.concatenate([_values(quantity, line.plan.trajectory).ravel() for line in lines])
     every = [line.plan.task.limits.get(quantity) for line in lines]
     words, label = list[str](), "limit"
     for limit in sorted({scale * limit for limit in every if limit is not None}):
@@ -244,8 +233,8 @@ def _leave_out_jolts(ax: Axes, quantity: str, lines: Sequence[Line]) -> list[str
     """Cut off a floor's jolts, in which it is for a moment a thousand times the rest; in words."""
     peaks, usual = [0.0], [0.0]
     for line in lines:
-        sizes = np.abs(_values(quantity, line.sampled)).max(axis=1)
-        held, order = np.gradient(line.sampled.time), np.argsort(sizes)
+        sizes = np.abs(_values(quantity, line.plan.trajectory)).max(axis=1)
+        held, order = np.gradient(line.plan.trajectory.time), np.argsort(sizes)
         most_of_the_time = np.searchsorted(np.cumsum(held[order]), _SHOWN * held.sum())
         peaks.append(float(sizes.max()))
         usual.append(float(sizes[order][min(most_of_the_time, len(order) - 1)]))

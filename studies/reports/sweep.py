@@ -27,7 +27,7 @@ def print_sweep(console: Console, front: Front, asked_for: int) -> None:
     print_lines(
         console,
         f"{front.method}: {counted(len(front.points), 'point')}, "
-        f"{counted(front.evaluations, 'iteration')} of the solver "
+        f"{counted(front.iterations, 'iteration')} of the solver "
         f"in {front.seconds:.1f} s{state}",
         *point_lines(front),
         *failure_lines(front, asked_for),

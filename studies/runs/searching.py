@@ -96,7 +96,7 @@ def plan_by_search(
         provenance = replace(
             polished.provenance,
             method=f"{method.name}, polished by ipopt",
-            settings={**settings, **polished.provenance.settings},
+            search=settings,
             seconds=front.seconds + polished.provenance.seconds,
         )
         return replace(polished, provenance=provenance)

@@ -148,15 +148,18 @@ def test_every_quantity_of_the_table_has_an_option(call, command):
 
 def test_the_json_file_holds_the_plan_in_si_units(planned):
     document = json.loads((planned[0] / "plan.json").read_text())
-    assert (document["format"], document["version"]) == ("quietarm-plan", 1)
-    assert document["plant"] == "arm-on-flexible-link"
-    assert (document["start"], document["target"]) == (-math.pi / 2, math.pi / 4)
-    assert document["duration"] == 1.0
+    assert (document["format"], document["version"]) == ("quietarm-plan", 2)
+    task = document["task"]
+    assert task["plant"]["name"] == "arm-on-flexible-link"
+    assert (task["start"], task["target"]) == (-math.pi / 2, math.pi / 4)
+    assert task["duration"] == 1.0
     assert len(document["coefficients"]) == 6
-    assert document["limits"] == {"torque": 0.4}
-    assert 0 <= document["residual"] < 1e-8  # README, 'How exact'
-    assert document["energy"] > 0.13  # above the least without a limit, 0.136 J in docs/physics.md
-    assert document["diagnostics"]["peak_torque"] <= 0.4 * 1.001
+    assert (task["torque_limit"], task["speed_limit"]) == (0.4, None)
+    assert 0 <= document["motion"]["residual"] < 1e-8  # README, 'How exact'
+    assert (
+        document["motion"]["energy"] > 0.13
+    )  # above the least without a limit, 0.136 J in docs/physics.md
+    assert document["motion"]["peak_torque"] <= 0.4 * 1.001
     settings = document["provenance"]["settings"]
     assert (settings["starts"], settings["seed"]) == (2, 3)
 

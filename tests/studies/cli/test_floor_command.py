@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models import ArmOnFlexibleLink
-from ocp import Floor, PointToPoint, SolverFailedError, energy_floor
+from ocp import Floor, FloorSettings, PointToPoint, SolverFailedError, energy_floor
 from studies.cli import main
 from studies.figures.motion import PAPER_PANELS, Line, floor_figure, motion_figure
 from studies.reports.floor import plan_beside
@@ -44,8 +44,9 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     assert (code, err) == (0, "")
     floor = Floor.load(tmp_path / "f.json")
     assert floor.task.limits == {"acceleration": 100.0}
-    settings = floor.provenance.settings
-    assert dict(settings) == {"smooth": False, "starts": 2, "seed": 3, "tolerance": 0.02}
+    assert floor.provenance.settings == FloorSettings(
+        smooth=False, starts=2, seed=3, tolerance=0.02
+    )
     shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
     assert float(shown["least energy"].split()[0]) == pytest.approx(floor.energy, rel=1e-5)
     assert shown["limits"] == "acceleration 100 rad/s^2"
@@ -150,7 +151,7 @@ def test_a_picture_that_cuts_nothing_says_nothing_of_jolts():
 def test_a_plan_s_picture_leaves_nothing_out(plan):
     figure = motion_figure([Line(plan, "plan", "black")], quantities=PAPER_PANELS)
     torque = figure.axes[3]
-    assert torque.get_ylim()[1] > np.abs(plan.trajectory([0.0, 0.1, 0.2]).torque).max()
+    assert torque.get_ylim()[1] > np.abs(plan.sampled([0.0, 0.1, 0.2]).torque).max()
     assert torque.get_title(loc="left") == "(d) joint torque [N m]"
 
 

@@ -52,7 +52,7 @@ def test_an_epsilon_front_is_shown_and_written(call):
     assert found == again
     assert "<svg" in Path("f.svg").read_text()
     lines = out.splitlines()
-    assert lines[0].startswith(f"epsilon: 9 points, {found.evaluations} iterations of the solver ")
+    assert lines[0].startswith(f"epsilon: 9 points, {found.iterations} iterations of the solver ")
     ends = (found.stillest(), found.knee(), found.cheapest())
     for line, point in zip(lines[1:4], ends, strict=True):
         assert line.endswith(f"{point.energy:.4g} J at {point.residual * 1e3:.3g} mm")

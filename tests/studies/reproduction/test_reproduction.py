@@ -156,8 +156,8 @@ def test_the_box_is_kept(reproduction):
     for result in reproduction.rows:
         largest = max(map(abs, result.in_box.coefficients))
         assert largest <= result.row.condition.bound * (1 + 1e-6)
-        assert result.in_box.provenance.settings["bound"] == result.row.condition.bound
-        assert result.free.provenance.settings["bound"] is None
+        assert result.in_box.provenance.settings.bound == result.row.condition.bound
+        assert result.free.provenance.settings.bound is None
 
 
 @pytest.mark.parametrize("condition", GRADIENT, ids=lambda value: value.label)
