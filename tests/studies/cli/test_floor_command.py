@@ -107,7 +107,9 @@ def test_smooth_is_asked_for(call, tmp_path):
 
 def test_limits_without_any_plan_still_have_a_floor(call):
     # Six terms need 34 rad/s^2 on this move; a free motion does it with 27.
-    code, out, err = call(f"floor {MOVE} --acceleration-limit 30 --starts 1 --tolerance 0.1")
+    code, out, err = call(
+        f"floor {MOVE} --acceleration-limit 30 --starts 1 --tolerance 0.1 --quiet"
+    )
     assert (code, err) == (0, "")
     assert "none within these limits" in out
 
