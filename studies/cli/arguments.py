@@ -60,9 +60,9 @@ def plan_files(
     """The files of a plan that were asked for."""
 
     def picture() -> Figure:
-        from studies.reports.motion_figure import four_panels
+        from studies.figures import motion_figure
 
-        return four_panels(found)
+        return motion_figure(found)
 
     return [
         (output, found.save),

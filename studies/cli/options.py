@@ -24,7 +24,7 @@ from studies.cli.quantities import (
     parse_time,
     parse_weights,
 )
-from studies.display.picture_names import check_figure
+from studies.display.pictures import check_figure
 from studies.display.saving import STDOUT
 
 _BARE = "quietarm.bare_angles"
@@ -171,7 +171,8 @@ _OUTPUT_OPTIONS = (
     click.option("--csv", "csv_file", type=OUTPUT, help="Write the move to this CSV file."),
     click.option("--sample-rate", type=float, default=1000.0, show_default=True,
                  help="Rows per second of the CSV file [Hz]."),
-    click.option("--figure", type=PICTURE, help="Draw the four panels (.png, .pdf or .svg)."),
+    click.option("--figure", type=PICTURE,
+                 help="Draw the move over the plain cycloid (.png, .pdf or .svg)."),
 )  # fmt: skip
 
 

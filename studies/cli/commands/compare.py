@@ -48,13 +48,13 @@ def compare(
     from ocp import QuietarmError
     from studies.comparison.check import check_figures
     from studies.comparison.measures import FILL, compare_fronts
-    from studies.comparison.report import (
+    from studies.display.saving import finish
+    from studies.reports.comparison import (
         comparison_files,
         load_fronts,
         print_comparison,
         with_floor,
     )
-    from studies.display.saving import finish
 
     errors, trouble = Console(stderr=True), None
     with working("comparing", errors, quiet=quiet):
