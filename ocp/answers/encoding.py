@@ -17,6 +17,7 @@ import msgspec
 import numpy as np
 
 from models import Plant, known_plants
+from ocp.answers.plants import PLANT_FILE, file_entry, without_file
 from ocp.profiles.joint_profile import JointProfile, known_profiles
 
 T = TypeVar("T")
@@ -28,7 +29,8 @@ def plain(value: Any) -> Any:
     Parameters
     ----------
     value : Any
-        A dataclass, a container or a number. Of a plant or profile its name is written, too.
+        A dataclass, a container or a number. Of a plant or profile its name is written, too, and
+        the file that a plant was loaded from.
 
     Returns
     -------
@@ -40,7 +42,9 @@ def plain(value: Any) -> Any:
     ValueError
         When the class of a plant or profile could not be found by its name.
     """
-    if isinstance(value, Plant | JointProfile):
+    if isinstance(value, Plant):
+        return {"name": _name_of(value), **file_entry(value), **_entries(value)}
+    if isinstance(value, JointProfile):
         return {"name": _name_of(value), **_entries(value)}
     if dataclasses.is_dataclass(value):
         return _entries(value)
@@ -108,7 +112,7 @@ def _name_of(value: Plant | JointProfile) -> str:
 def _named_or_array(kind: Any, entry: Any) -> Any:
     """What msgspec does not know: plants and profiles by their name, arrays."""
     if kind is Plant:
-        return _named("plant", entry, known_plants())
+        return _named("plant", without_file(entry), known_plants())
     if kind is JointProfile:
         return _named("profile", entry, known_profiles())
     try:
@@ -152,7 +156,7 @@ def _refuse_other_entries(found: Any, wanted: Any, place: str = "") -> None:
         for name, entry in wanted.items():
             if name in found:
                 _refuse_other_entries(found[name], entry, f"{place}{name}.")
-            elif entry is not None:
+            elif entry is not None and name != PLANT_FILE:  # a script's own plant has no file
                 raise KeyError(place + name)
     elif isinstance(wanted, list):
         for i, (entry, written) in enumerate(zip(found, wanted, strict=True)):

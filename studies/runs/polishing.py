@@ -72,7 +72,7 @@ def run_polish(
         raise KeyboardInterrupt
 
     def picture() -> Figure:
-        from studies.reports.sweep_figure import polish_figure
+        from studies.figures import polish_figure
 
         return polish_figure(front, polish)
 
