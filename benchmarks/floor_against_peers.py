@@ -249,7 +249,7 @@ def measure(
     ]
 
 
-def show(rows: list[Row]) -> Table:
+def grid_table(rows: list[Row]) -> Table:
     """Every run."""
     table = Table(
         "intervals", "side", r"build and solve \[s]", "/ quietarm", "IPOPT iterations",
@@ -269,7 +269,7 @@ def show(rows: list[Row]) -> Table:
     return table
 
 
-def show_at_equal_error(rows: list[Row]) -> Table:
+def equal_error_table(rows: list[Row]) -> Table:
     """The coarsest grid on which each side is within a bound."""
     table = Table("energy within", "side", "intervals", r"build and solve \[s]", "/ quietarm")
     for bound in BOUNDS:
@@ -308,8 +308,8 @@ def main() -> None:
         for row in found:
             if row.error <= min(BOUNDS):
                 del sides[row.side]
-    screen.print(show(rows))
-    screen.print(show_at_equal_error(rows))
+    screen.print(grid_table(rows))
+    screen.print(equal_error_table(rows))
 
 
 if __name__ == "__main__":

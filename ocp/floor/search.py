@@ -8,10 +8,9 @@ from contextlib import suppress
 
 import numpy as np
 
-from ocp.answers.provenance import Provenance, Verification, number_of_starts
-from ocp.base.checks import positive, whole
+from ocp.answers.provenance import Provenance, Verification
 from ocp.base.errors import SolverFailedError
-from ocp.floor.answer import Floor, Level
+from ocp.floor.answer import Floor, FloorSettings, Level
 from ocp.floor.grid import finer, first_grid
 from ocp.floor.program import FloorProgram, FreeSolution
 from ocp.plan.feasibility import rescued, unmet
@@ -86,14 +85,13 @@ def energy_floor(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    starts, seed = number_of_starts(starts), whole("seed", seed, 0)
-    tolerance = positive("tolerance", tolerance)
+    settings = FloorSettings(smooth, starts, seed, tolerance)
     began = time.perf_counter()
-    program = FloorProgram(task, bool(smooth))
+    program = FloorProgram(task, settings.smooth)
     fractions = first_grid(_first_steps(task))
     tried = [
         program.solve(program.along(path, fractions), task.limits)
-        for path in _paths(task, starts, seed)
+        for path in _paths(task, settings)
     ]
     tried, least = rescued(
         tried,
@@ -107,7 +105,7 @@ def energy_floor(
         raise unmet("motion at all", task.limits, tried, least, "a longer duration")
     improved = _refined_once(program, solved)
     grids = [min(solved, key=_energy), min(improved, key=_energy)]
-    while not _settled(grids, tolerance) and 2 * grids[-1].free.steps <= MOST_STEPS:
+    while not _settled(grids, settings.tolerance) and 2 * grids[-1].free.steps <= MOST_STEPS:
         following = _refined(program, grids[-1])
         if not following.status.solved:
             break
@@ -123,7 +121,7 @@ def energy_floor(
         verification=Verification.between(best.free.steps, best.energy, 0.0, simulation.motion),
         provenance=Provenance(
             f"ipopt, free {'jerk' if smooth else 'acceleration'}",
-            {"smooth": bool(smooth), "starts": starts, "seed": seed, "tolerance": tolerance},
+            settings,
             seconds=time.perf_counter() - began,
         ),
     )
@@ -139,11 +137,11 @@ def _first_steps(task: PointToPoint) -> int:
     return steps
 
 
-def _paths(task: PointToPoint, starts: int, seed: int) -> Iterator[JointPath]:
+def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
     """Motions to start from: plain cycloid, the plan of six terms, random ones."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(settings.seed)
     profile = CycloidPolynomial()
-    for i in range(starts):
+    for i in range(settings.starts):
         coefficients = random.uniform(-UNBOUNDED_SPREAD, UNBOUNDED_SPREAD, profile.size)
         if i == 0:
             coefficients = np.zeros(profile.size)

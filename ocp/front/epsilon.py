@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.answers.provenance import SolveSettings, number_of_points
+from ocp.base.checks import positive
 from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
@@ -28,7 +29,8 @@ _DOUBT = 1e-4
 error of the fixed steps, and the better of the two is taken."""
 _SCOUTS = 12
 """Most steps along the front, about, that tell how its points are to be spaced."""
-
+_JUST_BELOW = 1 - 1e-4
+"""Share of a residual at which it is asked for: the verified one may be as much above."""
 _STRIDE = 4
 """Points from one to the next at which the sweep back compares, as long as both sweeps agree, and
 at which random starts join where they do not; what is found better is carried on to the others."""
@@ -45,6 +47,7 @@ def epsilon_front(
     *,
     bound: float | None = None,
     points: int = 50,
+    at: Sequence[float] = (),
     starts: int = 4,
     seed: int = 0,
     steps: int | None = None,
@@ -68,6 +71,8 @@ def epsilon_front(
         Largest absolute coefficient; none by default.
     points : int
         Number of points, the ends included.
+    at : sequence of float, optional
+        Residuals [m] at which there is to be a point as well, where they lie between the ends.
     starts : int
         Starts of the ends, and of points that the sweeps do not agree on.
     seed : int
@@ -97,16 +102,19 @@ def epsilon_front(
     """
     profile = CycloidPolynomial() if profile is None else profile
     points, workers = number_of_points(points), number_of_workers(workers)
+    at = [positive("residual", residual, "m") for residual in at]
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = find_ends(sweep)
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
     found.append(checked(sweep, ends.cheapest, asked, free=True))
-    report(2, points)
-    heard = _Heard(report, points)
+    also = _between(ends, at)
+    report(2, points + len(also))
+    heard = _Heard(report, points + len(also))
     iterations, complete = 0, True
     try:
         limits, scouts = _spaced_limits(sweep, ends, points)
+        limits = sorted([*limits, *also], reverse=True)
         if workers == 1:
             stretch = _Stretch(sweep, limits, partial(heard, 0))
             stretch_points, complete = stretch.run(ends.cheapest, ends.still.coefficients)
@@ -118,7 +126,9 @@ def epsilon_front(
             found += shared
     except KeyboardInterrupt:
         complete = False
-    return front_of(sweep, "epsilon", found, points, iterations=iterations, complete=complete)
+    front = front_of(sweep, "epsilon", found, points, iterations=iterations, complete=complete)
+    extra = {"at": ", ".join(f"{residual:g}" for residual in at)} if at else {}
+    return replace(front, settings={**front.settings, **extra})
 
 
 class _Heard:
@@ -143,7 +153,7 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], 
     scaled to the ends, by the slope that the solver's multiplier gives.
     """
     if ends.are_one or points == 2:
-        return [], []
+        return [], [ends.cheapest]
     stillest, width, height = ends.still.residual, ends.width, ends.height
     scouts, limit = [ends.cheapest], ends.cheapest.residual
     stride = 2 * width / min(_SCOUTS, points)  # the scaled front is between sqrt(2) and 2 long
@@ -160,6 +170,12 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], 
     along = np.concatenate([[0.0], along])
     spaced = np.interp(np.linspace(0.0, along[-1], points)[1:-1], along, residuals)
     return spaced.tolist(), scouts
+
+
+def _between(ends: Ends, at: Sequence[float]) -> list[float]:
+    """Residual limits for those of these residuals that lie between the ends."""
+    limits = [_JUST_BELOW * residual for residual in at]
+    return [one for one in limits if ends.still.residual < one < ends.cheapest.residual]
 
 
 def _differ(one: Solution, other: Solution) -> bool:

@@ -197,13 +197,14 @@ def _together(front: Front, sweep: Sweep, tried: Mapping[int, _Tried], complete:
         f"{front.method}, polished",
         [found for one in in_order for found in one.found],
         len(front.points),
-        iterations=front.evaluations, complete=complete, seconds=front.seconds,
+        iterations=front.iterations, complete=complete, seconds=front.seconds,
     )  # fmt: skip
     with_origin = replace(
         polished,
         settings={**front.settings, "steps": polished.settings["steps"]},
         seed=front.seed,
         reference=front.reference,
+        evaluations=front.evaluations,
         history=front.history,
     )
     return Polish(with_origin, tuple(one.gain for one in in_order))

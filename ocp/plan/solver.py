@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -80,15 +80,14 @@ def plan_move(
         When no start ended at an optimum for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    settings = SolveSettings(residual_limit, bound, starts, seed, steps)
+    if guess is not None:
+        guess = profile.checked(guess)
+    settings = SolveSettings(residual_limit, bound, starts, seed, steps, guess)
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
-    guesses, asked = start_coefficients(profile.size, settings), asdict(settings)
-    if guess is not None:
-        guesses[0] = np.array(profile.checked(guess))
-        asked["guess"] = ", ".join(repr(value) for value in profile.checked(guess))
+    guesses = start_coefficients(profile.size, settings)
     problem = Problem(program, {RESIDUAL: residual_limit, **task.limits}, bound, guesses)
     best, motion, steps_used = verified(problem, least_energy(problem))
     return Plan(
@@ -98,7 +97,7 @@ def plan_move(
         motion=motion,
         status=best.status,
         verification=Verification.between(steps_used, best.energy, best.residual, motion),
-        provenance=Provenance("ipopt", asked, seconds=time.perf_counter() - began),
+        provenance=Provenance("ipopt", settings, seconds=time.perf_counter() - began),
     )
 
 
@@ -136,11 +135,12 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
 
 
 def start_coefficients(size: int, settings: SolveSettings) -> list[NDArray[np.float64]]:
-    """Vectors of coefficients to start from: zeros, then random ones from the seed."""
+    """Vectors of coefficients to start from: the guess or zeros, then random ones of the seed."""
     random = np.random.default_rng(settings.seed)
     spread = UNBOUNDED_SPREAD if settings.bound is None else settings.bound
     others = [random.uniform(-spread, spread, size) for _ in range(settings.starts - 1)]
-    return [np.zeros(size), *others]
+    first = np.zeros(size) if settings.guess is None else np.array(settings.guess)
+    return [first, *others]
 
 
 def least_energy(problem: Problem) -> Solution:

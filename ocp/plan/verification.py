@@ -47,7 +47,8 @@ class Care:
 
 
 OF_A_PLAN = Care()
-"""The cheapest motion for the solver is the cheapest for the independent integrator to 1e-6."""
+"""The cheapest motion for the solver is then that for the independent integrator to 1e-6, in all
+but one of 56 plans tried (6e-6)."""
 
 
 def verified(

@@ -16,12 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 from models import Expression, JointMotion
 
 
-@dataclass(frozen=True)
 class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
-    A new family is one subclass: it says how many coefficients it has and gives theta and its
-    first two time derivatives, in operations that work element by element. casadi derives the jerk.
+    A new family is one subclass, a frozen dataclass: it says how many coefficients it has and gives
+    theta and its first two time derivatives, in operations that work element by element. casadi
+    derives the jerk.
     """
 
     name: ClassVar[str]

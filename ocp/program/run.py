@@ -108,20 +108,13 @@ class Run:
         """The same program with the energy resolved."""
         return self.form._replace(energy="resolved")
 
-    def solve(self, guess: NDArray[np.float64], finish: bool = True) -> Solution:
-        """Solve from coefficients alone, unless told otherwise to the resolved energy's minimum."""
-        found = self.cold(guess)
-        return (
-            self.finished(found) if finish and found.form.sampled and found.status.solved else found
-        )
-
     def cold(self, guess: NDArray[np.float64]) -> Solution:
         """Solve from coefficients alone, at first not too far from them where nothing bounds them.
 
         IPOPT's first steps are the longest, and far from the cycloid it loses its way.
         """
         start = self.start(guess, self.form)
-        if self.axes is not self.program.even_axes:
+        if np.isfinite(self.bound):
             return self.solution(self.form, self.stop(self.form, start))
         stop = self.stop(self.form, start, _FIRST_REACH)
         iterations = stop.iterations
@@ -135,16 +128,19 @@ class Run:
     def finished(self, found: Solution) -> Solution:
         """Go on from a sampled minimum to that of the resolved energy.
 
-        What is found must keep the constraints and be better, else the given solution stands.
+        What is found must keep the constraints and be better, else the given solution stands;
+        that of other steps, by which energies are not compared, stands only for want of another.
         """
-        samples = 2 * self.program.steps  # each with two unknowns and a constraint
+        start = self.start(found.coefficients, self.resolved)
+        power = len(found.point.unknowns) - len(start.unknowns)  # two for each sample
         start = Point(
-            found.point.unknowns[: -2 * samples],
-            found.point.bound_multipliers[: -2 * samples],
-            found.point.multipliers[samples:],
-        )
+            start.unknowns, found.point.bound_multipliers[:-power],
+            found.point.multipliers[power // 2 :],
+        )  # fmt: skip
         after = self.beside(replace(found, form=self.resolved, point=start))
-        better = after.status.solved and self._value(after) <= self._value(found)
+        comparable = power == 4 * self.program.steps
+        better = not comparable or self._value(after) <= self._value(found)
+        better = better and after.status.solved
         return replace(after if better else found, iterations=after.iterations)
 
     def beside(self, found: Solution) -> Solution:

@@ -1,7 +1,6 @@
-"""CVODES as every verification uses it: a plant's equations, samples by name, and the rest after.
+"""CVODES with its options, a plant's equations for it, and what happens after arrival.
 
-Nothing here knows how the joint moves; `resimulation` drives it along a profile, `ocp.floor.motion`
-along a motion of free acceleration.
+Nothing here knows how the joint moves: `resimulation` drives it along a profile or a free motion.
 """
 
 from __future__ import annotations

@@ -26,7 +26,6 @@ from ocp import (
 from ocp.base.files import check_writable
 from studies.display.saving import STDOUT, drawing, finish
 from studies.display.search_progress import search_display
-from studies.display.words import counted
 from studies.methods import Method
 from studies.reports.search import print_fronts
 from studies.runs.files import refuse_same_file, warn_of_workers
@@ -97,7 +96,7 @@ def plan_by_search(
         provenance = replace(
             polished.provenance,
             method=f"{method.name}, polished by ipopt",
-            settings={**settings, **polished.provenance.settings},
+            search=settings,
             seconds=front.seconds + polished.provenance.seconds,
         )
         return replace(polished, provenance=provenance)
@@ -153,10 +152,9 @@ def run_front(
         raise lost or SolverFailedError(f"{method.name}: {fronts[0].why_empty()}")
 
     def picture() -> Figure:
-        from studies.reports.search_figure import front_figure
+        from studies.figures import front_figure
 
-        title = f"{method.name}, {task.plant.name}, {counted(len(fronts), 'seed')}"
-        return front_figure(fronts, title)
+        return front_figure(fronts)
 
     trouble = lost
     if stopped or troubles:

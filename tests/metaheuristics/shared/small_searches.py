@@ -12,6 +12,7 @@ from metaheuristics import PAPER_BOX, PopulationObjective, search
 from metaheuristics.objective.population import LEAST_STEPS
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
+from ocp.answers.encoding import plain
 
 pi = math.pi
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
@@ -42,7 +43,7 @@ def papers_search(method, task):
 
 def exactly(front):
     """All of a front but its time, to the last bit."""
-    return json.dumps({**front.to_document(), "seconds": None})
+    return json.dumps({**plain(front), "seconds": None})
 
 
 def assert_is_a_front(front):

@@ -288,7 +288,7 @@ def test_the_same_seed_gives_the_same_floor(floor_of):
     one, two = energy_floor(task, starts=3, seed=5), energy_floor(task, starts=3, seed=5)
     assert one == two
     assert len(one.starts) == 3
-    assert one.provenance.settings["seed"] == 5
+    assert one.provenance.settings.seed == 5
 
 
 # -- files --
@@ -307,13 +307,14 @@ def test_a_saved_floor_is_equal(floor_of, tmp_path):
     "damage",
     [
         lambda d: d.pop("motion"),
-        lambda d: d["motion"].pop("jerk"),
-        lambda d: d["motion"]["times"].pop(),
-        lambda d: d["motion"].update(times="0, 1"),
+        lambda d: d["free"].pop("jerk"),
+        lambda d: d["free"]["times"].pop(),
+        lambda d: d["free"].update(times="0, 1"),
+        lambda d: d["free"]["times"].__setitem__(1, "0.1"),
         lambda d: d.update(levels=d["levels"][:1]),
         lambda d: d["levels"][0].update(energy="0.1"),
         lambda d: d.update(starts=[]),
-        lambda d: d.update(duration=0.9),
+        lambda d: d["task"].update(duration=0.9),
         lambda d: d.update(status="fine"),
         lambda d: d["provenance"]["settings"].pop("smooth"),
         lambda d: d["provenance"]["settings"].pop("tolerance"),
@@ -322,10 +323,10 @@ def test_a_saved_floor_is_equal(floor_of, tmp_path):
     ],
 )
 def test_a_damaged_file_is_refused(floor_of, tmp_path, damage):
-    document = {"format": "quietarm-floor", "version": 1, **floor_of(ARM, **SHORT).to_document()}
-    document = json.loads(json.dumps(document))
-    damage(document)
     path = tmp_path / "floor.json"
+    floor_of(ARM, **SHORT).save(path)
+    document = json.loads(path.read_text())
+    damage(document)
     path.write_text(json.dumps(document))
     with pytest.raises(FileFormatError, match=r"floor\.json"):
         Floor.load(path)
