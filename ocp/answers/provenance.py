@@ -15,13 +15,14 @@ from ocp.base.checks import finite, positive, whole
 from ocp.base.ranges import CountFromOne, NotNegative
 from ocp.base.readonly import ReadOnlyDict
 from ocp.simulation.objective import Motion
+from ocp.simulation.rollout import MOST_STEPS
 
 Setting = str | bool | int | float | None
 S = TypeVar("S")
 
 MOST_BOUND = 1e6
 """Beyond it the figures of a motion are noise in double precision, and soon overflow."""
-MOST_STARTS, MOST_POINTS, MOST_STEPS = 10_000, 10_000, 20_000
+MOST_STARTS, MOST_POINTS = 10_000, 10_000
 
 
 def versions() -> dict[str, str]:

@@ -23,8 +23,8 @@ from ocp.simulation.resimulation import Resimulation, resimulated
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-FIRST_STEPS = 80
-MOST_FIRST_STEPS, MOST_STEPS = 1500, 6000
+FIRST_INTERVALS = 80
+MOST_FIRST_INTERVALS, MOST_INTERVALS = 1500, 6000
 """Intervals of the first grid, and those beyond which it is refined no further."""
 _MOST_COLD = 600
 """Where a warm solve fails, intervals up to which a cold one is worth its time."""
@@ -105,7 +105,7 @@ def energy_floor(
         raise unmet("motion at all", task.limits, tried, least, "a longer duration")
     improved = _refined_once(program, solved)
     grids = [min(solved, key=_energy), min(improved, key=_energy)]
-    while not _settled(grids, settings.tolerance) and 2 * grids[-1].free.steps <= MOST_STEPS:
+    while not _settled(grids, settings.tolerance) and 2 * grids[-1].free.steps <= MOST_INTERVALS:
         following = _refined(program, grids[-1])
         if not following.status.solved:
             break
@@ -128,11 +128,11 @@ def energy_floor(
 
 
 def _first_steps(task: PointToPoint) -> int:
-    steps = default_steps(task, least=FIRST_STEPS)
-    if steps > MOST_FIRST_STEPS:
+    steps = default_steps(task, least=FIRST_INTERVALS)
+    if steps > MOST_FIRST_INTERVALS:
         raise ValueError(
             f"duration {task.duration:g} s takes {steps} intervals of the plant's fastest mode; "
-            f"a floor begins with up to {MOST_FIRST_STEPS}: give a shorter duration"
+            f"a floor begins with up to {MOST_FIRST_INTERVALS}: give a shorter duration"
         )
     return steps
 

@@ -17,7 +17,7 @@ from ocp.program.transcription import RESIDUAL
 from ocp.simulation.objective import Motion
 
 RESIDUAL_LIMIT = "residual_limit"
-_PATIENCE = 0.6
+_TIME_AFTER_CTRL_C = 0.6
 """How long [s] points are still checked after Ctrl-C."""
 SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""
@@ -108,7 +108,7 @@ def all_checked(
             except KeyboardInterrupt:
                 interrupted = True
             if interrupted or came:
-                until = min(until, time.monotonic() + _PATIENCE)
+                until = min(until, time.monotonic() + _TIME_AFTER_CTRL_C)
             if time.monotonic() > until:
                 break
             done[i] = checked(sweep, *found[i])

@@ -12,7 +12,7 @@ from ocp.answers.provenance import Provenance, SolveSettings, Verification
 from ocp.plan.answer import Plan
 from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
-from ocp.plan.verification import MOST_STEPS, verified
+from ocp.plan.verification import MOST_SOLVER_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.problem import Problem
@@ -22,7 +22,7 @@ from ocp.program.transcription import RESIDUAL
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
+PLAN_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
 """Steps that a profile needs: more where more terms let the power change sign more often, and where
 limits hold only at the nodes."""
 _HIDDEN = 2e-3
@@ -123,13 +123,13 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = max(LIMITED_STEPS if task.limits else LEAST_STEPS, STEPS_A_TERM * (profile.size - 2))
+    least = max(LIMITED_STEPS if task.limits else PLAN_STEPS, STEPS_A_TERM * (profile.size - 2))
     least = min(least, MOST_LEAST_STEPS)
     steps = settings.steps or default_steps(task, least=least)
-    if steps > MOST_STEPS and settings.steps is None:
+    if steps > MOST_SOLVER_STEPS and settings.steps is None:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
-            f"mode; the solver resolves up to {MOST_STEPS // 2}: give a shorter duration"
+            f"mode; the solver resolves up to {MOST_SOLVER_STEPS // 2}: give a shorter duration"
         )
     return steps
 

@@ -15,7 +15,8 @@ from ocp.simulation.objective import Motion
 from ocp.simulation.piecewise import PiecewiseMotion
 from ocp.simulation.resimulation import Resimulation, resimulated
 
-MOST_STEPS = 3200
+MOST_SOLVER_STEPS = 3200
+"""Up to which the solver's steps are doubled."""
 STILL, STILL_SHARE = 1e-8, 1e-7
 """Verified residual up to which 'at rest on arrival' counts as kept: in metres, or as a share of
 what the plain cycloid leaves, whichever is more."""
@@ -43,7 +44,7 @@ class Care:
 
     agreement: float = 1e-5
     enough_steps: int = 150
-    most_steps: int = MOST_STEPS
+    most_steps: int = MOST_SOLVER_STEPS
 
 
 OF_A_PLAN = Care()

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from metaheuristics.ensemble import STILL, energies_at, energy_at, hypervolumes
+from metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hypervolumes
 from ocp import Front
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
@@ -111,7 +111,7 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
 
 
 def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
-    """Draw the least energy of every seed with a residual of `STILL`, its median and quartiles.
+    """Draw every seed's least energy at `SEARCH_RESIDUAL`, with median and quartiles.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
             ax.plot(place, energy, "o", color=colour, markersize=6)
         else:
             ax.plot(place, 0.02, "x", color=colour, transform=ax.get_xaxis_transform())
-    level = millimetres(STILL)
+    level = millimetres(SEARCH_RESIDUAL)
     marks = [f"x: never within {level}"] * (spread.count < spread.seeds)
     figures = ""
     if spread.count:
@@ -173,7 +173,7 @@ def front_figure(fronts: Sequence[Front], title: str | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
         Energy against residual; median hypervolume with its quartiles against candidates; for
-        several seeds also the least energy of each with a residual of `STILL`, over its quartiles.
+        several seeds also the least energy of each at `SEARCH_RESIDUAL`, over its quartiles.
     """
     complete = [front for front in fronts if front.complete]
     several = len(complete) > 1

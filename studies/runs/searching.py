@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from metaheuristics import search
-from metaheuristics.ensemble import STILL, LostSeedsError, search_many, seeds_of
+from metaheuristics.ensemble import SEARCH_RESIDUAL, LostSeedsError, search_many, seeds_of
 from ocp import (
     CycloidPolynomial,
     Front,
@@ -57,7 +57,7 @@ def plan_by_search(
     bound : float or None
         Largest absolute coefficient; required, None gives the error that says so.
     residual_limit : float
-        Largest residual [m]; 0 stands for `STILL`, since no search arrives quite at rest.
+        Largest residual [m]; 0 stands for `SEARCH_RESIDUAL`, since no search arrives quite at rest.
     seed : int
         Seed of the search.
     polish : bool
@@ -79,10 +79,10 @@ def plan_by_search(
             "keeps what a search has found until Ctrl-C"
         )
     try:
-        point = front.cheapest(residual_limit or STILL)
+        point = front.cheapest(residual_limit or SEARCH_RESIDUAL)
     except ValueError as error:
         raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
-    settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or STILL}
+    settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or SEARCH_RESIDUAL}
     if polish:
         polished = plan_move(
             task,
