@@ -26,7 +26,7 @@ from ocp.task.quantities import ask_for_jerk
 
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400}
 _WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
-"""From a coarser grid's solution, which a larger barrier would let the solver leave."""
+"""From a coarser grid's solution; with a larger barrier the solver would move away from it."""
 _SCALE_STEPS = 40
 _SLACK_ROOM = 1e-2
 """How far the slacks of |power| start inside their constraints, as a share of the peak power."""

@@ -25,11 +25,11 @@ from ocp.task.point_to_point import PointToPoint
 
 FIRST_INTERVALS = 80
 MOST_FIRST_INTERVALS, MOST_INTERVALS = 1500, 6000
-"""Intervals of the first grid, and those beyond which it is refined no further."""
+"""Most intervals of the first grid, and of any finer one."""
 _MOST_COLD = 600
-"""Where a warm solve fails, intervals up to which a cold one is worth its time."""
+"""After a failed warm solve a cold one is tried on grids of up to this many intervals."""
 _LEAST_LEVELS = 3
-"""As many as show whether the falls of the energy become smaller, and how fast."""
+"""Two falls of the energy at least, to see whether they become smaller, and how fast."""
 _SAME = 1e-5
 _ROUNDS, _KEPT = 4, 1e-6
 """Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
@@ -146,7 +146,7 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
         if i == 0:
             coefficients = np.zeros(profile.size)
         elif i == 1:
-            with suppress(SolverFailedError):  # limits that allow no such plan may allow a motion
+            with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
                 coefficients = np.array(plan_move(task, profile, starts=1).coefficients)
         yield profile.path(coefficients, *task.move)
 
@@ -170,7 +170,7 @@ def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:
 
 
 def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[FreeSolution]:
-    """Every solution on its next grid; those that are the same are refined once."""
+    """Every solution on its next grid; solutions of equal energy are refined once."""
     refined: dict[float, FreeSolution] = {}
     for found in solved:
         if not any(abs(found.energy - energy) <= _SAME * energy for energy in refined):

@@ -1,8 +1,8 @@
 """From a task to a nonlinear program over all joint motions.
 
-With no profile: on every interval the acceleration (or the jerk) is an unknown of its own beside
-the joint's angle and speed and the modes before the interval, so that nothing is dense. Intervals
-and limits are numbers of the compiled program. The power has a slack at the three Gauss nodes of
+There is no profile. Unknowns of every interval are its acceleration (or jerk), and the joint's
+angle and speed and the modes before it, so that all derivatives are sparse. Lengths of intervals
+and limits are parameters of the compiled program. The power has a slack at the three Gauss nodes of
 every interval, where it is smooth: sampled only at the grid, the solver would hide energy between
 the samples.
 """
@@ -87,7 +87,7 @@ class FreePoint:
 
     @property
     def flat(self) -> NDArray[np.float64]:
-        """The unknowns one after the other, as the solver has them."""
+        """All unknowns in one vector, as the solver takes them."""
         return np.concatenate([self.peaks, self.intervals.ravel(order="F"), self.slack])
 
 

@@ -24,7 +24,7 @@ SAMPLING = 1e-4
 
 
 def care_of(sweep: Sweep) -> Care:
-    """A point between the ends may be off by more than a plan; its steps are doubled once."""
+    """How exact a point between the ends must be: less than a plan; its steps are doubled once."""
     return Care(agreement=1e-4, enough_steps=2 * sweep.steps, most_steps=2 * sweep.steps)
 
 
@@ -79,7 +79,7 @@ def all_checked(
     interrupted: bool = False,
     heed: Callable[[], None] = lambda: None,
 ) -> tuple[list[FrontPoint | FailedPoint], bool]:
-    """Check many solutions; after Ctrl-C those that there is time for, spread evenly.
+    """Check many solutions; after Ctrl-C as many as there is time for, spread evenly.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""When a task cannot be met: start from motions of least peaks, or say what would do."""
+"""When no start is solved: start from motions of least peaks, or say what would be feasible."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ocp.program.transcription import RESIDUAL
 from ocp.task.quantities import QUANTITIES
 
 UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
-"""Of what may be limited."""
+"""Unit of every quantity that may be limited."""
 _ROOM = 1.001
 """A found least value is quoted with this room, so that asking for it is feasible."""
 

@@ -1,4 +1,4 @@
-"""Hold the solver's answer against the independent integrator, and mend it where they differ."""
+"""Compare the solver's answer with the independent integrator, and correct it where they differ."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from ocp.simulation.piecewise import PiecewiseMotion
 from ocp.simulation.resimulation import Resimulation, resimulated
 
 MOST_SOLVER_STEPS = 3200
-"""Up to which the solver's steps are doubled."""
+"""The solver's steps are doubled up to this many."""
 STILL, STILL_SHARE = 1e-8, 1e-7
-"""Verified residual up to which 'at rest on arrival' counts as kept: in metres, or as a share of
-what the plain cycloid leaves, whichever is more."""
+"""A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
+the plain cycloid's residual, whichever is larger."""
 _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
-"""Share of that which the residual at rest is brought below."""
+"""A residual at rest is corrected until it is below this share of that."""
 _ROUNDS = 12
 OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
@@ -37,7 +37,7 @@ class Care:
     agreement : float
         Share of the energy by which they may differ.
     enough_steps : int
-        Steps with which a minimum counts though the solver did not settle there.
+        Steps from which on a solution is accepted although the solver did not settle there.
     most_steps : int
         Steps up to which they are doubled.
     """
@@ -59,11 +59,11 @@ def verified(
     care: Care = OF_A_PLAN,
     kept: Mapping[str, float] | None = None,
 ) -> tuple[Solution, Motion, int]:
-    """Verify; mend the arrival, double the steps while energies disagree, tighten passed limits.
+    """Verify; correct the arrival, double the steps while energies disagree, tighten passed limits.
 
     The few steps of the solver miss the state on arrival by a little, and it holds limits at its
-    nodes and the residual at its samples. What the independent integrator finds of that is given
-    back to the solver, which goes on from where it stopped.
+    nodes and the residual at its samples. The solver is told what the independent integrator found,
+    and goes on from where it stopped.
 
     Parameters
     ----------

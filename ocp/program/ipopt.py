@@ -32,19 +32,18 @@ OPTIONS: dict[str, str | int | float] = {
     "expect_infeasible_problem": "yes",
 }
 SAMPLED = {**OPTIONS, "tol": 1e-5}
-"""From coefficients in a box. What remains of the sampled program's error is much less than its own
-distance to the truth."""
+"""From coefficients in a box. The tolerance is much finer than the error of the samples."""
 UNBOXED = {**SAMPLED, "mu_strategy": "monotone", "mu_init": 1e-3}
-"""Without a box the adaptive barrier loses its way with ten terms or more; with one it takes a
-fifth less iterations."""
+"""Without a box the adaptive barrier loses its way with ten terms or more; with a box it takes a
+fifth fewer iterations."""
 PEAK = OPTIONS
 """The least peak, from coefficients alone."""
 _BARRIER = 2e-9
 RESOLVED = {
     **OPTIONS,
     "tol": 1e-7,
-    # IPOPT keeps the barrier above an eleventh of this; what the barrier is times the rows of a
-    # residual limit is energy that is not saved.
+    # IPOPT keeps the barrier above an eleventh of this. The barrier times the rows of a residual
+    # limit is energy lost.
     "compl_inf_tol": 10 * _BARRIER,
     "mu_strategy": "monotone",
     "mu_init": _BARRIER,
@@ -55,7 +54,7 @@ RESOLVED = {
                      "mult_bound_push")
     },
     "max_iter": 30,
-    # Else a constraint that is kept a little better pays for more energy.
+    # Else more energy is accepted in exchange for slightly less constraint violation.
     "delta": 1e-12,
     "acceptable_tol": 1e3,
     "acceptable_dual_inf_tol": 1e10,
@@ -65,7 +64,7 @@ RESOLVED = {
     "acceptable_iter": 3,
 }  # fmt: skip
 """From the minimum beside it, with its multipliers. Where zeros of the power meet, second
-derivatives are of no more use: the iterations end when the energy has hardly changed three times.
+derivatives do not help any more: the iterations end when the energy has hardly changed three times.
 """
 
 

@@ -15,7 +15,7 @@ from ocp.program.solution import LEAST_ENERGY, Solution
 from ocp.program.task_program import TaskProgram
 
 _LEAST_STEPS, _STEPS_A_TERM = 24, 6
-"""Steps of cold runs: with fewer they begin to end at other minima."""
+"""Least steps of cold runs: with fewer, some end at other minima."""
 
 
 @dataclass(frozen=True)

@@ -21,12 +21,12 @@ from ocp.simulation.collocation import NODES
 from ocp.simulation.objective import two_samples
 
 _SLACK_ROOM = 1e-2
-"""How far the parts of the power start from zero, as a share of the peak power."""
+"""The unknowns of |power| start this far from their bound 0, as a share of the peak power."""
 _FIRST_REACH = 0.25
 """How far the unknowns along even axes may move from a cold start at first: minima of the paper's
 conditions lie within 0.2 of the cycloid."""
 _REACH = 0.1
-"""How far they may move from a neighbouring minimum, against 1 or their own size."""
+"""How far they may move from a neighbouring minimum, relative to 1 or to their own size."""
 _KEPT = 1e-7
 """A motion that passes a scaled constraint by no more than this keeps it."""
 
@@ -128,8 +128,8 @@ class Run:
     def finished(self, found: Solution) -> Solution:
         """Go on from a sampled minimum to that of the resolved energy.
 
-        What is found must keep the constraints and be better, else the given solution stands;
-        that of other steps, by which energies are not compared, stands only for want of another.
+        What is found must keep the constraints and be better, else the given solution stands; one
+        found with other steps, whose energy cannot be compared, stands only if this run fails.
         """
         start = self.start(found.coefficients, self.resolved)
         power = len(found.point.unknowns) - len(start.unknowns)  # two for each sample

@@ -14,7 +14,7 @@ from ocp.simulation.collocation import NODES, NodeState, step
 from ocp.task.quantities import QUANTITIES
 
 JOINT = 3
-"""Numbers that say how the joint moves at one time, to the plant: angle, speed, acceleration."""
+"""How many numbers describe the joint to the plant at one time: angle, speed, acceleration."""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from ocp.simulation.residual import residual_rows
 from ocp.task.point_to_point import PointToPoint
 
 _ROWS_AT_ONCE = 32
-"""Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
+"""Residual rows are padded to a multiple of this, so that similar tasks share a program."""
 
 
 class TaskProgram:

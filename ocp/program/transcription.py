@@ -5,8 +5,8 @@ a residual is limited (its many rows then have few entries). The energy comes in
 
 - sampled: the power at two samples of every step is the difference of two unknowns that are not
   negative, and their sum is |power| there. The solver decides sample by sample, as in a linear
-  program, and comes to the minimum from far away in 15 to 40 iterations; but between the samples a
-  little energy can hide;
+  program, and finds the minimum from far away in 15 to 40 iterations; but the samples miss a little
+  energy between them;
 - resolved: the energy with its sign changes resolved, a smooth function of the coefficients. From
   the sampled minimum, or from that of a neighbouring problem, a few iterations lead to its own.
 

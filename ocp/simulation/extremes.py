@@ -9,16 +9,16 @@ _POINTS = 7
 """Samples of the polynomial through an extreme and its neighbours."""
 _NEWTON = 3
 _SMOOTH = 0.02
-"""The polynomial's two highest terms may be this share of what its samples span; more, and the
-function jumps or bends sharply there, so that the samples stand."""
+"""If the polynomial's two highest terms exceed this share of the range of its samples, the function
+jumps or bends sharply there, and the largest sample is taken instead."""
 
 
 def extremes(times: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Least and largest value of each row, where the derivative is zero between the samples.
 
     A polynomial of degree six goes through the extreme sample and its neighbours; Newton's method
-    finds the root of its derivative. Where a row jumps or bends sharply, its samples stand. A
-    function in pieces may jump from one to the next.
+    finds the root of its derivative. Where a row jumps or bends sharply, its extreme sample is
+    returned. A function in pieces may jump from one to the next.
 
     Parameters
     ----------

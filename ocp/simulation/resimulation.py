@@ -42,9 +42,9 @@ from ocp.task.point_to_point import PointToPoint
 _STEPS = 500
 """Steps of the quadrature, or a multiple: its nodes are a thousandth of the move apart at most."""
 _STEPS_A_RADIAN = 10
-"""The same in radians of the plant's fastest mode."""
+"""Steps a radian of the plant's fastest mode, where these are more."""
 _LEAST_STEPS_OF_A_PIECE = 2
-"""As many as `extremes` needs samples for."""
+"""So that every piece has the seven samples that `extremes` needs."""
 
 
 @keep_interrupts()  # casadi loses a Ctrl-C
@@ -186,7 +186,7 @@ def resimulated(task: PointToPoint, joint: PiecewiseMotion) -> Resimulation:
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    residual_samples(task)  # refuses a window beyond reason
+    residual_samples(task)  # refuses a window that is too long
     blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / _STEPS)
     of_a_piece = math.ceil(_STEPS * max(1, blocks) / joint.given.shape[1])
     steps = max(of_a_piece, _LEAST_STEPS_OF_A_PIECE)
