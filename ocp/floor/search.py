@@ -19,6 +19,7 @@ from ocp.plan.verification import refuse_passed, tightened
 from ocp.profiles.joint_profile import JointPath
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.residual import residual_samples
 from ocp.simulation.resimulation import Resimulation, resimulated
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
@@ -128,6 +129,7 @@ def energy_floor(
 
 
 def _first_steps(task: PointToPoint) -> int:
+    residual_samples(task)  # a window that is too long is refused before the solves, not after
     steps = default_steps(task, least=FIRST_INTERVALS)
     if steps > MOST_FIRST_INTERVALS:
         raise ValueError(
