@@ -25,7 +25,7 @@ from ocp.task.point_to_point import PointToPoint
 PLAN_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
 """Steps that a profile needs: more with more terms, since the power changes sign more often, and
 more with limits, since these hold only at the nodes."""
-_HIDDEN = 2e-3
+_HIDDEN = 5e-3
 """A sampled minimum can lie above the resolved one beside it by this share of the energy."""
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
