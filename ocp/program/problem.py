@@ -53,7 +53,8 @@ class Problem:
     def coarse(self) -> TaskProgram:
         """The program that cold runs begin with.
 
-        Half the steps lead to the sampled minimum as well, unless limits hold at the nodes.
+        Half the steps lead to the sampled minimum as well, unless limits hold at the nodes or a
+        second mode bends the power more.
         """
         task, profile, steps = self.program.task, self.program.profile, self.program.steps
         coarse = max(_LEAST_STEPS, steps // 2, _STEPS_A_TERM * (profile.size - 2))
