@@ -58,9 +58,9 @@ class Problem:
         """
         task, profile, steps = self.program.task, self.program.profile, self.program.steps
         coarse = max(_LEAST_STEPS, steps // 2, _STEPS_A_TERM * (profile.size - 2))
-        return (
-            self.program if task.limits or coarse >= steps else TaskProgram(task, profile, coarse)
-        )
+        if task.limits or task.plant.modes > 1 or coarse >= steps:
+            return self.program
+        return TaskProgram(task, profile, coarse)
 
     def _run(self, minimise: Mapping[str, float], program: TaskProgram | None = None) -> Run:
         return Run.of(program or self.program, self.limits, self.bound, minimise)
