@@ -61,7 +61,7 @@ def test_the_solution_arrives_at_rest_with_its_energy(problem, task):
     assert solution.settled
     motion = _simulated(task, solution)
     assert motion.residual < 1e-11  # IPOPT's tolerance of the constraints; 4.4e-12 seen
-    assert solution.residual < 1e-12
+    assert solution.residual < 1e-11
     assert solution.slope == 0.0
     # The independent integrator finds the same motion a little off rest, and the same energy but
     # for what neighbouring steps tell of it: 2e-6.
