@@ -16,7 +16,7 @@ from ocp.floor.grid import finer, first_grid
 from ocp.floor.motion import FreeSimulation, simulate
 from ocp.floor.program import FloorProgram, FreeSolution
 from ocp.plan.feasibility import unmet
-from ocp.plan.solver import UNBOUNDED_SPREAD, plan_move
+from ocp.plan.solver import plan_move
 from ocp.profiles.joint_profile import JointPath
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.simulation.rollout import default_steps
@@ -134,9 +134,9 @@ def _paths(task: PointToPoint, starts: int, seed: int) -> Iterator[JointPath]:
     random = np.random.default_rng(seed)
     profile = CycloidPolynomial()
     for i in range(starts):
-        coefficients = random.uniform(-UNBOUNDED_SPREAD, UNBOUNDED_SPREAD, profile.size)
+        coefficients = random.uniform(*profile.start_box(None))
         if i == 0:
-            coefficients = np.zeros(profile.size)
+            coefficients = profile.plain
         elif i == 1:
             with suppress(SolverFailedError):  # limits that allow no such plan may allow a motion
                 coefficients = np.array(plan_move(task, profile, starts=1).coefficients)

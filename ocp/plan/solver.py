@@ -27,8 +27,6 @@ LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
 limits hold only at the nodes."""
 _HIDDEN = 2e-3
 """Share of the energy by which sampled minima can lie above the resolved ones beside them."""
-UNBOUNDED_SPREAD = 0.2
-"""Random starts lie within this of the plain cycloid where the coefficients have no bound."""
 
 
 def plan_move(
@@ -85,7 +83,7 @@ def plan_move(
         return only_motion(task, profile, residual_limit)
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
-    guesses, asked = start_coefficients(profile.size, settings), asdict(settings)
+    guesses, asked = start_coefficients(profile, settings), asdict(settings)
     if guess is not None:
         guesses[0] = np.array(profile.checked(guess))
         asked["guess"] = ", ".join(repr(value) for value in profile.checked(guess))
@@ -135,12 +133,12 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     return steps
 
 
-def start_coefficients(size: int, settings: SolveSettings) -> list[NDArray[np.float64]]:
-    """Vectors of coefficients to start from: zeros, then random ones from the seed."""
+def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[NDArray[np.float64]]:
+    """Vectors of coefficients to start from: the plain cycloid, then random ones from the seed."""
     random = np.random.default_rng(settings.seed)
-    spread = UNBOUNDED_SPREAD if settings.bound is None else settings.bound
-    others = [random.uniform(-spread, spread, size) for _ in range(settings.starts - 1)]
-    return [np.zeros(size), *others]
+    within = profile.start_box(settings.bound)
+    others = [random.uniform(*within) for _ in range(settings.starts - 1)]
+    return [profile.plain, *others]
 
 
 def least_energy(problem: Problem) -> Solution:
