@@ -49,8 +49,9 @@ _ONLY_FOR = {
     "--bound", type=float, help="Largest coefficient; for polynomials a metaheuristic requires it."
 )
 @click.option(
-    "--points", type=int, default=50, show_default=True, help="Gradient: points of the front."
-)
+    "--points", type=int, default=50, show_default=True,
+    help="Gradient: points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
+)  # fmt: skip
 @click.option(
     "--starts", type=int, default=4, show_default=True, help="Gradient: starts of its ends."
 )

@@ -125,7 +125,8 @@ def test_the_splines_are_scipys(terms):
 @settings(deadline=None)
 @given(at=st.floats(0.0, 1.0))
 def test_the_splines_sum_to_one(at):
-    assert sum(float(B) for B in b_splines(CycloidSpline(6).knots, DEGREE, at)) == pytest.approx(1.0)
+    values = b_splines(CycloidSpline(6).knots, DEGREE, at)
+    assert sum(float(value) for value in values) == pytest.approx(1.0)
 
 
 def test_a_spline_is_linear_in_its_coefficients_and_units_are_not():

@@ -11,6 +11,8 @@ import pytest
 from rich.console import Console
 
 from ocp import CycloidPolynomial, SolveStatus, plan_move
+from studies.figures import BLUE, GREEN, RED
+from studies.figures.looks import ORANGE
 from studies.paper.printed import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
@@ -157,8 +159,8 @@ def test_the_box_is_kept(reproduction):
     for result in reproduction.rows:
         largest = max(map(abs, result.in_box.coefficients))
         assert largest <= result.row.condition.bound * (1 + 1e-6)
-        assert result.in_box.provenance.settings["bound"] == result.row.condition.bound
-        assert result.free.provenance.settings["bound"] is None
+        assert result.in_box.provenance.settings.bound == result.row.condition.bound
+        assert result.free.provenance.settings.bound is None
 
 
 @pytest.mark.parametrize("condition", GRADIENT, ids=lambda value: value.label)
@@ -501,7 +503,7 @@ def test_figures_2_and_5_draw_cycloid_printed_coefficients_and_gradient(
     drawn = {line.get_label(): line for line in figure.axes[0].get_lines()}
     # The paper, 3.1: 'green, red, and blue lines denote the results for N = 2, 4, and 6', 'the
     # black line indicates the results obtained from the cycloidal motion'.
-    colours = ["black", "tab:green", "tab:red", "tab:blue"]
+    colours = ["black", GREEN, RED, BLUE]
     assert [drawn[label].get_color() for label in labels[:4]] == colours
 
 
@@ -520,7 +522,7 @@ def test_figures_3_and_6_draw_the_earlier_study_as_read_here(reproduction, condi
     figure = against_earlier(reproduction, condition, "A title")
     drawn = {line.get_label(): line.get_color() for line in figure.axes[0].get_lines()}
     # The paper, 3.1 and 3.2: 'in blue and orange lines', the earlier study in orange.
-    assert [drawn[label] for label in labels] == ["tab:orange", "tab:blue"]
+    assert [drawn[label] for label in labels] == [ORANGE, BLUE]
 
 
 @pytest.mark.parametrize("table", [3, 6])
