@@ -6,7 +6,7 @@ import math
 
 from rich.console import Console
 
-from ocp import Motion, Plan, PointToPoint, ShapedCycloid
+from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
 from studies.display.words import millimetres, move_of, plant_words
@@ -90,6 +90,8 @@ def _choice(plan: Plan) -> tuple[str, str]:
         shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
         return "profile", f"{plan.profile.label}: {shaper}"
     coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    if not isinstance(plan.profile, CycloidPolynomial):
+        return "profile", f"{plan.profile.label}: {coefficients}"
     return "coefficients", coefficients or "none: the plain cycloid"
 
 
