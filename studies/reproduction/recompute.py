@@ -162,7 +162,7 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
         work.append(Piece((condition, terms, boxed), name, solve))
     for condition in COMPARED:
         reference, profile_name, _ = EARLIER[condition.task.plant.name]
-        name = f"gradient: {condition.task.plant.name}, {condition.label}, {profile_name}"
+        name = f"{EARLIER_STUDY}: {condition.task.plant.name}, {condition.label}, {profile_name}"
         solve = partial(_solved_as_earlier, condition)
         work.append(Piece((condition, EARLIER_STUDY), f"{name} of ref. [{reference}]", solve))
     for condition in CONDITIONS:

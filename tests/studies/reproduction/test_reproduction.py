@@ -82,6 +82,7 @@ def test_every_problem_is_solved_once_and_announced(reproduction, begun):
     kinds = Counter(name.partition(": ")[0] for name in begun)
     assert kinds == {
         "gradient": 6 * 5 * 2,  # conditions, N = 2 to 10, with and without the box
+        "earlier study": 6,  # conditions
         "floor": 6,  # conditions
         "vepso": 2 * 3 + 4,  # Tables 2 and 5; what 3 and 6 have beyond them
         "nsga2": 2 * 3 + 4,
