@@ -156,17 +156,17 @@ def test_a_process_that_dies_costs_its_own_stretch_only():
             os.kill(child.pid, signal.SIGKILL)
 
     front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=20, workers=2, report=report
+        task, CycloidPolynomial(3), bound=bound, points=400, workers=2, report=report
     )
     assert len(killed) == 1
-    assert len(front.failures) == 9  # of 18 between the ends
+    assert len(front.failures) == 199  # of 398 between the ends
     for failure in front.failures:
         # the first stretch begins at the cheap end
         assert failure.asked["residual_limit"] > front.points[-2].residual
         assert failure.reason == (
             "its process died (killed by SIGKILL); where memory ran short, give fewer workers"
         )
-    assert len(front.points) == 11
+    assert len(front.points) == 201
 
 
 def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):

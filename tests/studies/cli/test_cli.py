@@ -428,7 +428,7 @@ def test_a_bad_search_is_refused_with_its_value_and_a_remedy(refused, line, valu
     ("line", "words"),
     [
         ("replan", ["replan", "'plan'"]),
-        ("plan", ["PLANT"]),
+        ("plan", ["--target"]),
         ("plan single-link --duration 1", ["--target"]),
         ("plan single-link --target 1", ["--duration"]),
         (f"evaluate {MOVE}", ["--coefficients"]),
