@@ -21,6 +21,9 @@ S = TypeVar("S")
 
 MOST_BOUND = 1e6
 """Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+AGREEMENT, REST = 1e-3, 1e-6
+"""Share of an energy or a residual, and residual [m] beside it, by which two integrators may differ
+where a figure is called verified."""
 MOST_STARTS, MOST_POINTS, MOST_STEPS = 10_000, 10_000, 20_000
 
 
@@ -107,6 +110,19 @@ class Verification:
     fixed_step_residual: float
     energy_difference: float
     residual_difference: float
+
+    @property
+    def energy_share(self) -> float:
+        """How far the energies differ, as a share of the independent integrator's."""
+        energy = self.fixed_step_energy - self.energy_difference
+        return abs(self.energy_difference / energy) if energy else 0.0
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the figures count as verified: within `AGREEMENT`, and `REST` at rest."""
+        residual = abs(self.fixed_step_residual - self.residual_difference)
+        close = abs(self.residual_difference) <= AGREEMENT * residual + REST
+        return self.energy_share <= AGREEMENT and close
 
     @classmethod
     def between(cls, steps: int, energy: float, residual: float, motion: Motion) -> Verification:

@@ -13,6 +13,7 @@ from ocp.answers.documents import Upgrades
 from ocp.answers.older import front_of_version_2
 from ocp.answers.provenance import Setting, versions
 from ocp.answers.saved import Saved
+from ocp.base.checks import not_negative
 from ocp.base.ranges import Count, NotNegative, Positive
 from ocp.base.readonly import ReadOnlyDict
 from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
@@ -65,6 +66,12 @@ class Front(Saved):
         Versions of what computed it.
     seconds : float
         How long it took; not compared.
+
+    Raises
+    ------
+    ValueError
+        When an entry is not of its kind, a point has other than the profile's number of
+        coefficients or is not finite, or the points are out of order, or one beats another.
     """
 
     kind: ClassVar[str] = "front"
@@ -90,12 +97,25 @@ class Front(Saved):
     seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.task, PointToPoint):
+            raise ValueError(f"task is {self.task!r}; give a PointToPoint")
+        if not isinstance(self.profile, JointProfile):
+            raise ValueError(f"profile is {self.profile!r}; give a JointProfile")
+        self._check_entries("task", "profile", "points")
         for name in ("settings", "versions"):
             object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
-        for point in self.points:
+        object.__setattr__(self, "points", tuple(self.points))
+        for i, point in enumerate(self.points, start=1):
+            if not isinstance(point, FrontPoint):
+                raise ValueError(f"point {i} is {point!r}; give a FrontPoint")
             self.profile.checked(point.coefficients)
+            not_negative(f"residual of point {i}", point.residual, "m")
+            not_negative(f"energy of point {i}", point.energy, "J")
         if self.points != non_dominated(self.points):
-            raise ValueError("its points are out of order, or one is better than another")
+            raise ValueError(
+                "its points are out of order, or one is better than another; give "
+                "non_dominated(points)"
+            )
 
     @property
     def residuals(self) -> NDArray[np.float64]:

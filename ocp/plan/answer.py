@@ -69,6 +69,7 @@ class Plan(Saved):
     provenance: Provenance[SolveSettings | None]
 
     def __post_init__(self) -> None:
+        self._check_entries("task", "profile", "coefficients")
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
 
     @property

@@ -22,6 +22,9 @@ _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
 """Share of that which the residual at rest is brought below."""
 _ROUNDS = 12
+_BELOW = 1 + 2e-8
+"""How far below a limit that is passed the solver is sent: by its own tolerance, else the next peak
+passes the limit by as little again."""
 OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
 
@@ -46,8 +49,8 @@ class Care:
 
 
 OF_A_PLAN = Care()
-"""The cheapest motion for the solver is then that for the independent integrator to 1e-6, in all but
-one of 56 plans tried (6e-6)."""
+"""The cheapest motion for the solver is then that for the independent integrator to 1e-6, in all
+but one of 56 plans tried (6e-6)."""
 
 
 def verified(
@@ -95,12 +98,13 @@ def verified(
         steps = problem.program.steps
         tried.append((best, motion, steps))
         overrun = {name: motion.peak(name) / limit for name, limit in kept.items() if limit > 0}
-        used = {name: limit / max(overrun.get(name, 1.0), 1.0) for name, limit in used.items()}
+        passed = {name: _BELOW * ratio for name, ratio in overrun.items() if ratio > 1}
+        used = {name: limit / passed.get(name, 1.0) for name, limit in used.items()}
         rough = abs(best.energy - motion.energy) > care.agreement * motion.energy
         unsettled = not best.settled and steps < care.enough_steps
         missed = abs(best.residual - motion.residual) > tolerated
         again = None
-        if not rough and (missed or any(ratio > 1 for ratio in overrun.values())):
+        if not rough and (missed or passed):
             again = problem.within(used).corrected(best, arrival)
         elif not (rough or unsettled):
             break

@@ -126,7 +126,9 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _complain(message: str, status: int) -> int:
-    line = " ".join(message.split())
+    from studies.display.words import printable  # loads what `--help` does not need
+
+    line = printable(" ".join(message.split()))
     click.echo(f"quietarm: {line}", err=True)
     return status
 

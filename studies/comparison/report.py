@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from ocp import Front, QuietarmError
+from ocp import QuietarmError
 from ocp.base.files import write_whole
 from ocp.floor.search import energy_floor
 from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
 from studies.display.saving import File, drawing, inside
 from studies.display.tables import print_table
+from studies.display.words import printable
 from studies.paper.points import paper_points
 from studies.paper.tasks import title_of
 
@@ -22,12 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 REPORT, PICTURE = "report.md", "fronts.png"
-
-
-def load_fronts(paths: list[Path]) -> tuple[list[Front], list[str]]:
-    """The fronts of files and what to call them; FileFormatError where one is no front."""
-    fronts = [Front.load(path) for path in paths]
-    return fronts, [str(path) for path in paths]
 
 
 def with_floor(comparison: Comparison, console: Console) -> Comparison:
@@ -51,7 +46,7 @@ def print_comparison(console: Console, comparison: Comparison) -> None:
     for table in tables(comparison).values():
         print_table(console, table)
     for line in (*how_to_read(comparison), *units(comparison)):
-        console.print(f"- {line}", highlight=False, style="dim")
+        console.print(f"- {printable(line)}", highlight=False, style="dim")
 
 
 def comparison_files(folder: Path, comparison: Comparison) -> list[File]:

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
 
-import studies.comparison.check
 import studies.comparison.measures
 import studies.comparison.report
+import studies.runs.files
+from metaheuristics.objective.claims import check_figures
 from models import ArmOnFlexibleLink
 from ocp import FrontPoint, PointToPoint, SolverFailedError, evaluate_coefficients
-from studies.comparison.check import check_figures
 from studies.comparison.figure import BANDS, PANELS, comparison_figure, looks, panel_figure
 from studies.comparison.tables import runs_table, tables
 from studies.paper.points import paper_points
@@ -43,7 +43,7 @@ def files(good, poor, tmp_path, monkeypatch):
     """Two files, in the folder of the test."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
-    monkeypatch.setattr(studies.comparison.check, "check_figures", lambda front, name: None)
+    monkeypatch.setattr(studies.runs.files, "check_figures", lambda front, name: None)
     good.save("good.json")
     poor.save("poor.json")
     return tmp_path
