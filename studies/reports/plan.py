@@ -47,8 +47,8 @@ def verified_row(check: Verification) -> Row:
     if check.agrees:
         return "verified", f"by CVODES: {differ}"
     return "not verified", (
-        f"{differ} from CVODES, whose figures these are; up to {AGREEMENT:g} of either counts as "
-        "verified: give smaller coefficients"
+        f"the figures are by CVODES, and {differ}, where {AGREEMENT:g} of each is agreement; give "
+        "smaller coefficients"
     )
 
 

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -172,3 +173,17 @@ def test_control_characters_of_a_name_do_not_reach_the_terminal(call):
         2,
         "quietarm: \\x1b[32m.json cannot be read: no such file or directory\n",
     )
+
+
+def test_verified_is_said_only_where_the_integrators_agree(call):
+    def row(coefficients):
+        code, out, _ = call(f"evaluate {MOVE} --coefficients={coefficients}")
+        assert code == 0
+        (line,) = re.findall("^.*verified.*$", out, re.MULTILINE)
+        return line.strip()
+
+    differ = r"by CVODES.* \d+ fixed steps differ by \de{}\d+ in energy and \S+ mm in residual"
+    assert re.fullmatch("verified +" + differ.format("-"), row("0.01,-0.1"))
+    far = differ.format(r"\+")
+    beyond = ", where 0.001 of each is agreement; give smaller coefficients"
+    assert re.fullmatch("not verified +the figures are " + far + beyond, row("100"))
