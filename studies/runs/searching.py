@@ -24,7 +24,7 @@ from ocp import (
     plan_move,
 )
 from ocp.base.files import check_writable
-from studies.display.saving import STDOUT, drawing, finish
+from studies.display.saving import STDOUT, File, drawing, finish
 from studies.display.search_progress import search_display
 from studies.display.words import counted
 from studies.methods import Method
@@ -112,6 +112,7 @@ def run_front(
     method: Method,
     options: dict[str, Any],
     output: Path | None,
+    csv_file: Path | None,
     figure: Path | None,
     quiet: bool,
 ) -> None:
@@ -125,8 +126,9 @@ def run_front(
         A metaheuristic.
     options : dict
         The settings of `search`, with ``terms`` for its profile, ``runs`` and ``workers``.
-    output : Path or None
-        File for the front; with several runs `with_seed` names one for every seed.
+    output, csv_file : Path or None
+        Files for the front, whole and its points as a table; with several runs `with_seed` names
+        one for every seed.
     figure : Path or None
         File for the picture.
     quiet : bool
@@ -141,8 +143,10 @@ def run_front(
     runs, profile = options["runs"], CycloidPolynomial(options.pop("terms"))
     if runs > 1 and (options["checkpoint"] or options["resume"]):
         raise ValueError("--checkpoint and --resume are for one run, not with --runs")
-    targets = _targets(output, seeds_of(options["seed"], runs))
-    _refuse_same_files(targets, options, figure)
+    seeds = seeds_of(options["seed"], runs)
+    targets = _targets("--output", output, seeds)
+    tables = _targets("--csv", csv_file, seeds)
+    _refuse_same_files([*targets.values()], [*tables.values()], options, figure)
     errors = Console(stderr=True)
     found, lost, troubles = _fronts(errors, task, method, {**options, "profile": profile}, quiet)
     fronts = [front for front in found if front.complete or front.points]
@@ -161,7 +165,8 @@ def run_front(
     trouble = lost
     if stopped or troubles:
         trouble = lost or QuietarmError("; ".join([*filter(None, [stopped]), *troubles]))
-    files = [(targets.get(front.seed or 0), front.save) for front in fronts]
+    files: list[File] = [(targets.get(front.seed or 0), front.save) for front in fronts]
+    files += [(tables.get(front.seed or 0), front.save_csv) for front in fronts]
     finish(
         [*files, (figure, drawing(picture))],
         lambda console: print_fronts(console, fronts),
@@ -202,19 +207,23 @@ def with_seed(path: Path, seed: int) -> Path:
 
 
 def _refuse_same_files(
-    targets: Mapping[int, Path], options: Mapping[str, Any], figure: Path | None
+    outputs: Sequence[Path],
+    tables: Sequence[Path],
+    options: Mapping[str, Any],
+    figure: Path | None,
 ) -> None:
-    written = [*(("--output", path) for path in targets.values()), ("--figure", figure)]
+    written: list[tuple[str, Path | None]] = [("--output", path) for path in outputs]
+    written += [*(("--csv", path) for path in tables), ("--figure", figure)]
     refuse_same_file([*written, ("--checkpoint", options["checkpoint"])])
     # a checkpoint may be continued in the same file, but not overwritten by a front
     refuse_same_file([*written, ("--resume", options["resume"])])
 
 
-def _targets(output: Path | None, seeds: range) -> dict[int, Path]:
+def _targets(option: str, output: Path | None, seeds: range) -> dict[int, Path]:
     if output is None:
         return {}
     if len(seeds) == 1:
         return {seeds[0]: output}
     if output is STDOUT:
-        raise ValueError(f"--output {output} is for one run; with --runs give the name of a file")
+        raise ValueError(f"{option} {output} is for one run; with --runs give the name of a file")
     return {seed: check_writable(with_seed(output, seed)) for seed in seeds}
