@@ -9,7 +9,6 @@ from __future__ import annotations
 import dataclasses
 import re
 import reprlib
-import unicodedata
 from collections.abc import Mapping
 from enum import Enum
 from typing import Any, TypeVar
@@ -18,6 +17,7 @@ import msgspec
 import numpy as np
 
 from models import Plant, known_plants
+from ocp.base.printable import has_control_characters
 from ocp.profiles.joint_profile import JointProfile, known_profiles
 
 T = TypeVar("T")
@@ -166,7 +166,7 @@ def _refuse_other_entries(found: Any, wanted: Any, place: str = "") -> None:
 def _refuse_control_characters(document: Any, place: str = "") -> None:
     """ValueError where a text in a document holds what would move a terminal's cursor."""
     if isinstance(document, str):
-        if any(unicodedata.category(character) == "Cc" for character in document):
+        if has_control_characters(document):
             raise ValueError(
                 f"its entry {reprlib.repr(place)} has a control character in "
                 f"{reprlib.repr(document)}; take it out"

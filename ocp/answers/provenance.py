@@ -147,6 +147,8 @@ class Provenance(Generic[S]):
         Versions of quietarm, casadi, numpy and Python.
     seconds : float
         How long it took; not compared.
+    stopped : str or None
+        After what Ctrl-C ended the work early, in words; None where it ran to its end.
     """
 
     method: str
@@ -154,6 +156,7 @@ class Provenance(Generic[S]):
     search: Mapping[str, Setting] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=versions)
     seconds: NotNegative = field(default=0.0, compare=False)
+    stopped: str | None = None
 
     def __post_init__(self) -> None:
         for name in ("search", "versions"):

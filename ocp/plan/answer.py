@@ -83,6 +83,11 @@ class Plan(Saved):
         return self.motion.energy
 
     @property
+    def complete(self) -> bool:
+        """Whether the solver ran to its end; else the plan is the best of some of its starts."""
+        return self.provenance.stopped is None
+
+    @property
     def path(self) -> JointPath:
         """The joint's motion as a callable of time and derivative order."""
         return self.profile.path(self.coefficients, *self.task.move)

@@ -10,12 +10,12 @@ from rich.console import Console
 
 from ocp import QuietarmError
 from ocp.base.files import write_whole
+from ocp.base.printable import printable
 from ocp.floor.search import energy_floor
 from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
 from studies.display.saving import File, drawing, inside
 from studies.display.tables import print_table
-from studies.display.words import printable
 from studies.paper.points import paper_points
 from studies.paper.tasks import title_of
 
@@ -32,6 +32,8 @@ def with_floor(comparison: Comparison, console: Console) -> Comparison:
     except QuietarmError as error:
         console.print(f"no floor: {error}", highlight=False, soft_wrap=True)
         return comparison
+    if not floor.complete:
+        raise KeyboardInterrupt
     return replace(comparison, floor=floor.energy)
 
 

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from unicodedata import category
-
 from rich.console import Console
+
+from ocp.base.printable import printable
 
 
 def print_lines(console: Console, *lines: str) -> None:
     """Print lines as they are, however narrow the console."""
-    text = "\n".join(map(printable, lines))
+    text = "\n".join(printable(line) for part in lines for line in part.split("\n"))
     console.print(text, markup=False, highlight=False, soft_wrap=True)
-
-
-def printable(text: str) -> str:
-    """A text whose control characters are spelled out, as those in the name of a file."""
-    control = {c: c.encode("unicode_escape").decode() for c in text if category(c) == "Cc"}
-    return text.translate(str.maketrans(control))
 
 
 def counted(number: int, what: str) -> str:

@@ -31,11 +31,16 @@ def print_plan(console: Console, plan: Plan) -> None:
         _choice(plan),
         ("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
-        ("status", plan.status.text),
+        ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
         verified_row(plan.verification),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
     print_rows(console, rows)
+
+
+def stopped_words(after: str | None) -> str:
+    """That Ctrl-C came, and after what; nothing where it did not."""
+    return f" Interrupted after {after}: the best of these." if after else ""
 
 
 def verified_row(check: Verification) -> Row:

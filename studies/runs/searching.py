@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +25,7 @@ from ocp import (
     plan_move,
 )
 from ocp.base.files import check_writable
+from ocp.base.interrupts import note_interrupts
 from studies.display.saving import STDOUT, File, drawing, finish
 from studies.display.search_progress import search_display
 from studies.display.words import counted
@@ -84,27 +86,29 @@ def plan_by_search(
     except ValueError as error:
         raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
     settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or STILL}
+    stopped = None
     if polish:
-        polished = plan_move(
-            task,
-            profile,
-            residual_limit=residual_limit,
-            bound=bound,
-            starts=1,
-            seed=seed,
-            guess=point.coefficients,
+        try:
+            polished = plan_move(
+                task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
+                guess=point.coefficients,
+            )  # fmt: skip
+        except KeyboardInterrupt:
+            stopped = "the search, before its point was polished"
+        else:
+            provenance = replace(
+                polished.provenance,
+                method=f"{method.name}, polished by ipopt",
+                search=settings,
+                seconds=front.seconds + polished.provenance.seconds,
+            )
+            return replace(polished, provenance=provenance)
+    with note_interrupts() if stopped else nullcontext():
+        found = evaluate_coefficients(
+            task, point.coefficients, profile=profile, method=method.name, settings=settings
         )
-        provenance = replace(
-            polished.provenance,
-            method=f"{method.name}, polished by ipopt",
-            search=settings,
-            seconds=front.seconds + polished.provenance.seconds,
-        )
-        return replace(polished, provenance=provenance)
-    found = evaluate_coefficients(
-        task, point.coefficients, profile=profile, method=method.name, settings=settings
-    )
-    return replace(found, provenance=replace(found.provenance, seconds=front.seconds))
+    provenance = replace(found.provenance, seconds=front.seconds, stopped=stopped)
+    return replace(found, provenance=provenance)
 
 
 def run_front(

@@ -208,7 +208,7 @@ def test_compare_measures_against_a_named_front(call, files, good):
 
 def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     class Found:
-        energy = 0.1234
+        energy, complete = 0.1234, True
 
     monkeypatch.setattr(studies.comparison.report, "energy_floor", lambda task: Found())
     code, out, _ = call("compare good.json poor.json --as-found")
