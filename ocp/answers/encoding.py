@@ -17,6 +17,7 @@ import msgspec
 import numpy as np
 
 from models import Plant, known_plants
+from ocp.answers.plants import PLANT_FILE, file_entry, without_file
 from ocp.base.printable import has_control_characters
 from ocp.profiles.joint_profile import JointProfile, known_profiles
 
@@ -29,7 +30,8 @@ def plain(value: Any) -> Any:
     Parameters
     ----------
     value : Any
-        A dataclass, a container or a number. Of a plant or profile its name is written, too.
+        A dataclass, a container or a number. Of a plant or profile its name is written, too, and
+        the file that a plant was loaded from.
 
     Returns
     -------
@@ -41,7 +43,9 @@ def plain(value: Any) -> Any:
     ValueError
         When the class of a plant or profile could not be found by its name.
     """
-    if isinstance(value, Plant | JointProfile):
+    if isinstance(value, Plant):
+        return {"name": _name_of(value), **file_entry(value), **_entries(value)}
+    if isinstance(value, JointProfile):
         return {"name": _name_of(value), **_entries(value)}
     if dataclasses.is_dataclass(value):
         return _entries(value)
@@ -112,7 +116,7 @@ def _name_of(value: Plant | JointProfile) -> str:
 def _named_or_array(kind: Any, entry: Any) -> Any:
     """What msgspec does not know: plants and profiles by their name, arrays."""
     if kind is Plant:
-        return _named("plant", entry, known_plants())
+        return _named("plant", without_file(entry), known_plants())
     if kind is JointProfile:
         return _named("profile", entry, known_profiles())
     try:
@@ -156,7 +160,7 @@ def _refuse_other_entries(found: Any, wanted: Any, place: str = "") -> None:
         for name, entry in wanted.items():
             if name in found:
                 _refuse_other_entries(found[name], entry, f"{place}{name}.")
-            elif entry is not None:
+            elif entry is not None and name != PLANT_FILE:  # a script's own plant has no file
                 raise KeyError(place + name)
     elif isinstance(wanted, list):
         for i, (entry, written) in enumerate(zip(found, wanted, strict=True)):

@@ -15,6 +15,7 @@ from ocp.base.checks import finite, positive, whole
 from ocp.base.ranges import CountFromOne, NotNegative
 from ocp.base.readonly import ReadOnlyDict
 from ocp.simulation.objective import Motion
+from ocp.simulation.rollout import MOST_STEPS
 
 Setting = str | bool | int | float | None
 S = TypeVar("S")
@@ -24,7 +25,7 @@ MOST_BOUND = 1e6
 AGREEMENT, REST = 1e-3, 1e-6
 """Share of an energy or a residual, and residual [m] beside it, by which two integrators may differ
 where a figure is called verified."""
-MOST_STARTS, MOST_POINTS, MOST_STEPS = 10_000, 10_000, 20_000
+MOST_STARTS, MOST_POINTS = 10_000, 10_000
 
 
 def versions() -> dict[str, str]:

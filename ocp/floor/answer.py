@@ -14,9 +14,11 @@ from ocp.answers.saved import Saved
 from ocp.base.checks import positive, whole
 from ocp.base.ranges import CountFromOne
 from ocp.base.status import SolveStatus
-from ocp.floor.motion import FreeMotion, simulate
+from ocp.profiles.free_motion import FreeMotion
 from ocp.simulation.cvodes import Trajectory
 from ocp.simulation.objective import Motion
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.resimulation import resimulated
 from ocp.task.point_to_point import PointToPoint
 
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
@@ -180,4 +182,5 @@ class Floor(Saved):
     @cached_property
     def trajectory(self) -> Trajectory:
         """The move and the residual window by CVODES; times stand twice where the torque jumps."""
-        return simulate(self.task, self.free).trajectory
+        joint = PiecewiseMotion.of_free_motion(self.task, self.free)
+        return resimulated(self.task, joint).trajectory

@@ -80,7 +80,7 @@ class Generation:
 
 
 def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
-    """The points that no other beats in both objectives, stillest first.
+    """The points that no other beats in both objectives, in order of residual.
 
     Parameters
     ----------

@@ -123,7 +123,7 @@ def polish_front(
 
 
 class _Tried(NamedTuple):
-    """What became of a point: itself or a better one, or the reason why not; and its gain."""
+    """The point or a better one, or the reason of a failure; and the gain."""
 
     found: Sequence[FrontPoint | FailedPoint]
     gain: Gain
@@ -190,7 +190,7 @@ def _no_gain(point: FrontPoint, tried: bool = True) -> Gain:
 
 
 def _together(front: Front, sweep: Sweep, tried: Mapping[int, _Tried], complete: bool) -> Polish:
-    """The improved front, by its points' places along the given one."""
+    """The improved front; points keep their order along the given one."""
     in_order = [tried[i] for i in range(len(front.points))]
     polished = front_of(
         sweep,

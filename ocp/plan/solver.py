@@ -13,9 +13,9 @@ from ocp.answers.provenance import Provenance, SolveSettings, Verification
 from ocp.base.errors import SolverFailedError
 from ocp.base.interrupts import note_interrupts
 from ocp.plan.answer import Plan
-from ocp.plan.feasibility import explain, least_peaks
+from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
-from ocp.plan.verification import HURRIED, MOST_STEPS, verified
+from ocp.plan.verification import HURRIED, MOST_SOLVER_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.problem import Problem
@@ -26,11 +26,11 @@ from ocp.simulation.objective import Motion
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
-"""Steps that a profile needs: more where more terms let the power change sign more often, and where
-limits hold only at the nodes."""
-_HIDDEN = 2e-3
-"""Share of the energy by which sampled minima can lie above the resolved ones beside them."""
+PLAN_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
+"""Steps that a profile needs: more with more terms, since the power changes sign more often, and
+more with limits, since these hold only at the nodes."""
+_HIDDEN = 5e-3
+"""A sampled minimum can lie above the resolved one beside it by this share of the energy."""
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
 
@@ -148,13 +148,13 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = max(LIMITED_STEPS if task.limits else LEAST_STEPS, STEPS_A_TERM * (profile.size - 2))
+    least = max(LIMITED_STEPS if task.limits else PLAN_STEPS, STEPS_A_TERM * (profile.size - 2))
     least = min(least, MOST_LEAST_STEPS)
     steps = settings.steps or default_steps(task, least=least)
-    if steps > MOST_STEPS and settings.steps is None:
+    if steps > MOST_SOLVER_STEPS and settings.steps is None:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
-            f"mode; the solver resolves up to {MOST_STEPS // 2}: give a shorter duration"
+            f"mode; the solver resolves up to {MOST_SOLVER_STEPS // 2}: give a shorter duration"
         )
     return steps
 
@@ -195,19 +195,20 @@ def least_energy(problem: Problem, kept: list[Solution] | None = None) -> Soluti
         solutions.append(problem.solve(guess, finish=False))
         if kept is not None and solutions[-1].status.solved:
             kept.append(solutions[-1])
+    solutions, least = rescued(
+        solutions,
+        problem.limits,
+        problem.guesses[:2],
+        problem.least,
+        lambda found: problem.solve(found.coefficients, finish=False),
+    )
     solved = [solution for solution in solutions if solution.status.solved]
     if not solved:
-        least = least_peaks(problem, starts=2)
-        rescues = [found.coefficients for name, found in least.items()
-                   if found.peaks[name] <= problem.limits[name]]  # fmt: skip
-        solutions += [problem.solve(guess, finish=False) for guess in rescues]
-        solved = [solution for solution in solutions if solution.status.solved]
-        if not solved:
-            raise explain(problem, solutions, least)
+        raise explain(problem, solutions, least)
     before = sum(solution.iterations for solution in solutions)
-    least, finished = min(map(_energy, solved)), list[Solution]()
+    lowest, finished = min(map(_energy, solved)), list[Solution]()
     for found in sorted(solved, key=_energy):
-        near = found.energy <= least * (1 + _HIDDEN)
+        near = found.energy <= lowest * (1 + _HIDDEN)
         if near and not any(same_minimum(found, other) for other in finished):
             finished.append(problem.finished(replace(found, iterations=0)))
     best = min(finished, key=_energy)

@@ -17,7 +17,8 @@ from studies.display.saving import drawing, finish, interruption
 from studies.display.tables import Column, Table
 from studies.display.words import counted, millimetres, print_lines
 from studies.reports.sweep import failure_lines
-from studies.runs.files import load_front, refuse_same_file, warn_of_workers
+from studies.runs.files import refuse_same_file, warn_of_workers
+from studies.runs.loading import load_front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,7 +74,7 @@ def run_polish(
         raise KeyboardInterrupt
 
     def picture() -> Figure:
-        from studies.reports.sweep_figure import polish_figure
+        from studies.figures import polish_figure
 
         return polish_figure(front, polish)
 

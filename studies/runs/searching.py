@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from metaheuristics import search
-from metaheuristics.ensemble import STILL, LostSeedsError, search_many, seeds_of
+from metaheuristics.ensemble import SEARCH_RESIDUAL, LostSeedsError, search_many, seeds_of
 from ocp import (
     CycloidPolynomial,
     Front,
@@ -28,7 +28,6 @@ from ocp.base.files import check_writable
 from ocp.base.interrupts import note_interrupts
 from studies.display.saving import STDOUT, File, drawing, finish
 from studies.display.search_progress import search_display
-from studies.display.words import counted
 from studies.methods import Method
 from studies.reports.search import print_fronts
 from studies.runs.files import refuse_same_file, warn_of_workers
@@ -60,7 +59,7 @@ def plan_by_search(
     bound : float or None
         Largest absolute coefficient; required, None gives the error that says so.
     residual_limit : float
-        Largest residual [m]; 0 stands for `STILL`, since no search arrives quite at rest.
+        Largest residual [m]; 0 stands for `SEARCH_RESIDUAL`, since no search arrives quite at rest.
     seed : int
         Seed of the search.
     polish : bool
@@ -82,10 +81,10 @@ def plan_by_search(
             "keeps what a search has found until Ctrl-C"
         )
     try:
-        point = front.cheapest(residual_limit or STILL)
+        point = front.cheapest(residual_limit or SEARCH_RESIDUAL)
     except ValueError as error:
         raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
-    settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or STILL}
+    settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or SEARCH_RESIDUAL}
     stopped = None
     if polish:
         try:
@@ -161,10 +160,9 @@ def run_front(
         raise lost or SolverFailedError(f"{method.name}: {fronts[0].why_empty()}")
 
     def picture() -> Figure:
-        from studies.reports.search_figure import front_figure
+        from studies.figures import front_figure
 
-        title = f"{method.name}, {task.plant.name}, {counted(len(fronts), 'seed')}"
-        return front_figure(fronts, title)
+        return front_figure(fronts)
 
     trouble = lost
     if stopped or troubles:

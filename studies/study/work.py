@@ -25,11 +25,11 @@ from ocp.base.checks import whole
 from ocp.base.interrupts import note_interrupts
 from ocp.base.workers import number_of_workers
 from studies.comparison.measures import Comparison, compare_fronts
+from studies.display.words import title_of
 from studies.methods import METHODS, Kind, Method, methods_of
 from studies.paper.case import Case
 from studies.paper.points import PaperPoint, paper_points
 from studies.paper.printed import CONDITIONS
-from studies.paper.tasks import title_of
 from studies.runs.pieces import (
     Begin,
     Done,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from metaheuristics import PAPER_BOX, PopulationObjective, search
-from metaheuristics.objective.population import LEAST_STEPS
+from metaheuristics.objective.population import CANDIDATE_STEPS
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
 from ocp.answers.encoding import plain
@@ -74,7 +74,7 @@ def failing(monkeypatch, value, column="energy"):
     def failing(self, coefficients):
         values = evaluate(self, coefficients)
         bad = np.asarray(coefficients)[:, 0] > 0
-        if self.steps == LEAST_STEPS:
+        if self.steps == CANDIDATE_STEPS:
             counts.append(int(bad.sum()))
         getattr(values, column)[bad] = value
         return values

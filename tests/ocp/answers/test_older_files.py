@@ -17,7 +17,8 @@ from ocp import (
     resimulate,
 )
 from ocp.answers.encoding import plain, typed
-from ocp.floor.motion import simulate
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.resimulation import resimulated
 
 FOLDER = Path(__file__).parents[2] / "older_files"  # its README says how they were written
 PLANS = ("plan-solved", "plan-given", "plan-polished")
@@ -120,7 +121,7 @@ def test_a_floor():
     assert floor.starts == tuple(document["starts"])
     assert floor.provenance.settings == FloorSettings(False, 2, 5, 0.9)
     assert floor.provenance.versions == document["provenance"]["versions"]
-    motion = simulate(floor.task, floor.free).motion
+    motion = resimulated(floor.task, PiecewiseMotion.of_free_motion(floor.task, floor.free)).motion
     assert motion.energy == pytest.approx(floor.energy, rel=1e-9)  # README, 'How exact'
 
 

@@ -277,6 +277,12 @@ def test_a_move_of_too_many_periods_is_refused():
         energy_floor(replace(ARM, duration=200.0))
 
 
+def test_a_residual_window_beyond_reason_is_refused_before_the_solves(monkeypatch):
+    monkeypatch.delattr(FloorProgram, "solve")
+    with pytest.raises(ValueError, match=r"residual window 10000 s .* give a shorter one"):
+        energy_floor(replace(ARM, residual_window=1e4))
+
+
 def test_starts_that_agree_are_counted(floor_of):
     floor = replace(floor_of(ARM, **SHORT), starts=(1.0, 1.004, 1.006, 2.0))
     assert floor.agreeing() == 2

@@ -18,7 +18,7 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.plan.solver import LEAST_STEPS, start_coefficients
+from ocp.plan.solver import PLAN_STEPS, start_coefficients
 from ocp.task.point_to_point import LIMITS
 
 pi = math.pi
@@ -222,7 +222,7 @@ def test_a_residual_limit_that_is_not_in_the_way_is_verified_as_any_other(tasks,
     assert 0.01 < plan.residual < 0.1
     check = plan.verification
     assert check.fixed_step_residual == pytest.approx(plan.residual, rel=1e-3)
-    assert check.steps <= 2 * LEAST_STEPS
+    assert check.steps <= 2 * PLAN_STEPS
 
 
 def test_the_box_is_kept_however_narrow(tasks, solved):

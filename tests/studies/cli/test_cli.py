@@ -20,7 +20,7 @@ import studies.cli.commands.evaluate
 import studies.cli.commands.floor
 import studies.cli.commands.plan
 import studies.reproduction.recompute
-import studies.runs.files
+import studies.runs.loading
 import studies.runs.polishing
 import studies.runs.searching
 import studies.study.work
@@ -113,7 +113,7 @@ def test_a_plan_says_what_it_found_and_what_it_wrote(planned):
     assert ran.stdout.splitlines()[-3:] == ["wrote plan.json", "wrote move.csv", "wrote move.svg"]
     assert sorted(path.name for path in where.iterdir()) == ["move.csv", "move.svg", "plan.json"]
     found = Plan.load(where / "plan.json")
-    assert "arm-on-flexible-link, -90deg to 45deg in 1 s" in ran.stdout
+    assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in ran.stdout
     assert f"{found.energy:.6g} J" in ran.stdout
     assert f"{found.motion.peak_torque:.4g} N m" in ran.stdout
     for value in found.coefficients:
@@ -310,7 +310,7 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.cli.commands.evaluate, "evaluate_coefficients", note)
     monkeypatch.setattr(studies.runs.searching, "search", note)
     monkeypatch.setattr(studies.runs.searching, "search_many", note)
-    monkeypatch.setattr(studies.runs.files, "load_front", note)
+    monkeypatch.setattr(studies.runs.loading, "load_front", note)
     monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
     monkeypatch.setattr(studies.study.work, "run_study", note)
     monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import studies.runs.files
+import studies.runs.loading
 import studies.runs.polishing
 from models import ArmOnFlexibleLink
 from ocp import (
@@ -24,7 +24,7 @@ from ocp import (
     epsilon_front,
     polish_front,
 )
-from studies.reports.sweep_figure import polish_figure
+from studies.figures.sweep import polish_figure
 from studies.runs.polishing import thinned
 
 
@@ -113,7 +113,7 @@ def test_points_that_fail_or_are_beaten_are_told(call, monkeypatch, front_of):
     monkeypatch.setattr(
         studies.runs.polishing, "polish_front", lambda *_, **__: Polish(after, gains)
     )
-    monkeypatch.setattr(studies.runs.files, "check_figures", lambda front, name: None)  # invented
+    monkeypatch.setattr(studies.runs.loading, "check_figures", lambda front, name: None)  # invented
     before.save("f.json")
     _, out, _ = call("polish f.json")
     assert out.splitlines()[-4:] == [
