@@ -10,7 +10,7 @@ import numpy as np
 from metaheuristics.objective.population import BLOCK, PopulationObjective
 from ocp import Front, FrontPoint, JointProfile, PointToPoint
 from ocp.answers.provenance import AGREEMENT, REST
-from ocp.base.checks import positive
+from ocp.front.evaluation import refuse_beyond_box
 from ocp.plan.verification import OVERRUN
 from ocp.simulation.rollout import default_steps
 from ocp.task.quantities import QUANTITIES
@@ -18,8 +18,6 @@ from ocp.task.quantities import QUANTITIES
 _SAMPLE = BLOCK
 """Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves
 all of these as they were."""
-_ROUNDING = 1e-9
-"""Share by which a coefficient may pass the bound: what a file in decimals loses, and no more."""
 
 
 @lru_cache(maxsize=4)
@@ -41,13 +39,14 @@ def check_figures(front: Front, name: str) -> None:
     Raises
     ------
     ValueError
-        As `check_points`; or when a motion breaks a limit of the task by more than `OVERRUN`.
+        As `refuse_beyond_box` and `check_points`.
     """
-    bound = front.settings.get("bound")
     try:
         objective = objective_of(front.task, front.profile)
-        most = np.inf if bound is None else positive("its bound", bound)
-        check_points(objective, front.points, most, limited=True)
+        if front.points:
+            table = np.array([point.coefficients for point in front.points])
+            refuse_beyond_box(front.profile, table, front.settings.get("bound"))
+        check_points(objective, front.points, limited=True)
     except ValueError as error:
         raise ValueError(f"{name}: {error}; find the front again") from None
 
@@ -55,7 +54,6 @@ def check_figures(front: Front, name: str) -> None:
 def check_points(
     objective: PopulationObjective,
     points: Sequence[FrontPoint],
-    bound: float = np.inf,
     *,
     limited: bool = False,
 ) -> None:
@@ -68,25 +66,16 @@ def check_points(
     points : sequence of FrontPoint
         The motions with the figures that are claimed; at most `_SAMPLE` of them, spread evenly,
         the first and the last among them, are evaluated.
-    bound : float
-        Largest absolute coefficient, which all must keep.
     limited : bool
         Whether they must keep the limits of the task.
 
     Raises
     ------
     ValueError
-        When a coefficient passes the bound, an energy differs by more than `AGREEMENT`, or a
-        residual by more than that and `REST`, or a limit is broken by more than `OVERRUN`.
+        When an energy differs by more than `AGREEMENT`, or a residual by more than that and
+        `REST`, or a limit is broken by more than `OVERRUN`.
     """
     count = len(points)
-    for i, point in enumerate(points, start=1):
-        largest = max(map(abs, point.coefficients), default=0.0)
-        if largest > bound * (1 + _ROUNDING):
-            raise ValueError(
-                f"point {i} of {count} has the coefficient {largest:.4g}, beyond the stated bound "
-                f"of {bound:g}"
-            )
     if not count:
         return
     places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int)).tolist()

@@ -130,7 +130,7 @@ class Loop:
             X, F, G = known.get("X", "F", "G")
             if not (np.isfinite(F).all() and np.isfinite(G).all()):
                 raise ValueError("F or G has entries that are not finite")
-            if np.any(np.abs(X) > self.spec.settings.bound):
+            if np.any((self.problem.xl > X) | (self.problem.xu < X)):
                 raise ValueError("X has entries beyond the bound")
             usable = (F < UNUSABLE).all(axis=1)
             points = [FrontPoint(x, *f) for x, f in zip(X[usable], F[usable], strict=True)]

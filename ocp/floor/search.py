@@ -15,7 +15,7 @@ from ocp.floor.answer import Floor, FloorSettings, Level
 from ocp.floor.grid import finer, first_grid
 from ocp.floor.program import FloorProgram, FreeSolution
 from ocp.plan.feasibility import rescued, unmet
-from ocp.plan.solver import UNBOUNDED_SPREAD, plan_move
+from ocp.plan.solver import plan_move
 from ocp.plan.verification import refuse_passed, tightened
 from ocp.profiles.joint_profile import JointPath
 from ocp.profiles.polynomial import CycloidPolynomial
@@ -157,9 +157,9 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
     random = np.random.default_rng(settings.seed)
     profile = CycloidPolynomial()
     for i in range(settings.starts):
-        coefficients = random.uniform(-UNBOUNDED_SPREAD, UNBOUNDED_SPREAD, profile.size)
+        coefficients = random.uniform(*profile.start_box(None))
         if i == 0:
-            coefficients = np.zeros(profile.size)
+            coefficients = profile.plain
         elif i == 1:
             with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
                 plan = plan_move(task, profile, starts=1)

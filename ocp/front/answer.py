@@ -206,9 +206,9 @@ class Front(Saved):
             When the array is no table of finite numbers, or does not fit the profile or the bound.
         """
         began, settings = time.perf_counter(), {} if settings is None else dict(settings)
-        table = table_of(coefficients, settings.get("bound"))
+        table = table_of(coefficients)
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
-        found = evaluated(task, profile, table)
+        found = evaluated(task, profile, table, settings.get("bound"))
         return cls(
             task=task,
             profile=profile,

@@ -18,6 +18,9 @@ from ocp.task.point_to_point import PointToPoint
 _KEPT = 1e-9
 """Share of a limit within which a peak that CVODES gives counts as at it."""
 
+_ROUNDING = 1e-9
+"""Share of its size by which a coefficient may pass its box: what decimals in a file may lose."""
+
 
 class Evaluated(NamedTuple):
     """What became of motions: the points of their front, and how many are none of it and why."""
@@ -27,15 +30,13 @@ class Evaluated(NamedTuple):
     infeasible: int
 
 
-def table_of(coefficients: ArrayLike, bound: object = None) -> NDArray[np.float64]:
+def table_of(coefficients: ArrayLike) -> NDArray[np.float64]:
     """Coefficients, a motion a row.
 
     Parameters
     ----------
     coefficients : array_like, shape (motions, size)
         Numbers.
-    bound : float, optional
-        Largest absolute coefficient.
 
     Returns
     -------
@@ -45,7 +46,7 @@ def table_of(coefficients: ArrayLike, bound: object = None) -> NDArray[np.float6
     Raises
     ------
     ValueError
-        When they are no table of numbers, there is no motion, or one passes the bound.
+        When they are no table of numbers, or there is no motion.
     """
     try:
         table = np.asarray(coefficients, dtype=float)
@@ -57,14 +58,46 @@ def table_of(coefficients: ArrayLike, bound: object = None) -> NDArray[np.float6
         raise ValueError(
             f"coefficients have shape {table.shape}; give (motions, coefficients), a motion a row"
         )
-    if bound is not None:
-        largest, most = np.abs(table).max(initial=0.0), positive("bound", bound)
-        if largest > most:
-            raise ValueError(f"a coefficient is {largest:g}, beyond the bound of {most:g}")
     return table
 
 
-def evaluated(task: PointToPoint, profile: JointProfile, table: NDArray[np.float64]) -> Evaluated:
+def refuse_beyond_box(profile: JointProfile, table: NDArray[np.float64], bound: object) -> None:
+    """Refuse coefficients beyond the box of a profile for the bound that is stated.
+
+    Parameters
+    ----------
+    profile : JointProfile
+        How the joint moves.
+    table : ndarray, shape (motions, profile.size)
+        Coefficients, a motion a row.
+    bound : float or None
+        The bound, as `JointProfile.box` takes it; None refuses nothing.
+
+    Raises
+    ------
+    ValueError
+        When the bound is no positive number, or a coefficient is beyond it.
+    """
+    if bound is None:
+        return
+    most = positive("its bound", bound)
+    lower, upper = profile.box(most)
+    room = _ROUNDING * np.maximum(np.abs(lower), np.abs(upper))
+    beyond = np.argwhere((table < lower - room) | (table > upper + room))
+    if len(beyond):
+        row, column = beyond[0]
+        raise ValueError(
+            f"point {row + 1} of {len(table)} has the coefficient {table[row, column]:.4g}, "
+            f"beyond the stated bound of {most:g}"
+        )
+
+
+def evaluated(
+    task: PointToPoint,
+    profile: JointProfile,
+    table: NDArray[np.float64],
+    bound: object = None,
+) -> Evaluated:
     """The front of motions by CVODES; those that fail or break a limit of the task are counted.
 
     Parameters
@@ -75,6 +108,8 @@ def evaluated(task: PointToPoint, profile: JointProfile, table: NDArray[np.float
         How the joint moves.
     table : ndarray, shape (motions, profile.size)
         Coefficients, a motion a row.
+    bound : float, optional
+        What they must keep, as for `refuse_beyond_box`.
 
     Returns
     -------
@@ -84,11 +119,12 @@ def evaluated(task: PointToPoint, profile: JointProfile, table: NDArray[np.float
     Raises
     ------
     ValueError
-        When a row does not fit the profile, or is not finite.
+        When a row does not fit the profile or the bound, or is not finite.
     """
     points, failed, infeasible = list[FrontPoint](), 0, 0
-    for row in table:
-        coefficients = profile.checked(row, task.duration)
+    rows = [profile.checked(row, task.duration) for row in table]
+    refuse_beyond_box(profile, table, bound)
+    for coefficients in rows:
         try:
             motion = resimulate(task, profile, coefficients)
         except SolverFailedError:

@@ -31,8 +31,6 @@ PLAN_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
 more with limits, since these hold only at the nodes."""
 _HIDDEN = 5e-3
 """A sampled minimum can lie above the resolved one beside it by this share of the energy."""
-UNBOUNDED_SPREAD = 0.2
-"""Random starts lie within this of the plain cycloid where the coefficients have no bound."""
 
 
 def plan_move(
@@ -94,7 +92,7 @@ def plan_move(
         return only_motion(task, profile, residual_limit)
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
-    guesses = start_coefficients(profile.size, settings)
+    guesses = start_coefficients(profile, settings)
     problem = Problem(program, {RESIDUAL: residual_limit, **task.limits}, bound, guesses)
     solved, stopped = list[Solution](), None
     try:
@@ -159,12 +157,12 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     return steps
 
 
-def start_coefficients(size: int, settings: SolveSettings) -> list[NDArray[np.float64]]:
-    """Vectors of coefficients to start from: the guess or zeros, then random ones of the seed."""
+def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[NDArray[np.float64]]:
+    """Coefficients to start from: the guess or the plain cycloid, then random ones of the seed."""
     random = np.random.default_rng(settings.seed)
-    spread = UNBOUNDED_SPREAD if settings.bound is None else settings.bound
-    others = [random.uniform(-spread, spread, size) for _ in range(settings.starts - 1)]
-    first = np.zeros(size) if settings.guess is None else np.array(settings.guess)
+    within = profile.start_box(settings.bound)
+    others = [random.uniform(*within) for _ in range(settings.starts - 1)]
+    first = profile.plain if settings.guess is None else np.array(settings.guess)
     return [first, *others]
 
 

@@ -6,7 +6,7 @@ import math
 
 from rich.console import Console
 
-from ocp import Motion, Plan, PointToPoint, ShapedCycloid, Verification
+from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Verification
 from ocp.answers.provenance import AGREEMENT
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
@@ -105,6 +105,8 @@ def _choice(plan: Plan) -> tuple[str, str]:
         shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
         return "profile", f"{plan.profile.label}: {shaper}"
     coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    if not isinstance(plan.profile, CycloidPolynomial):
+        return "profile", f"{plan.profile.label}: {coefficients}"
     return "coefficients", coefficients or "none: the plain cycloid"
 
 

@@ -24,6 +24,7 @@ from studies.paper.printed import (
     ARM_HALF,
     COEFFICIENTS,
     CONDITIONS,
+    EARLIER,
     MENDED,
     PAPER_SEARCH,
     ROWS,
@@ -52,6 +53,13 @@ SOLVES = tuple(product(CONDITIONS, TERMS, (True, False)))
 """What the gradient solves: condition, number of terms, whether in the paper's box."""
 
 
+COMPARED = tuple(row.condition for row in ROWS if row.earlier_energy is not None)
+"""The conditions at which the paper compares itself with an earlier study: its Tables 3 and 6."""
+EARLIER_STUDY = "earlier study"
+EARLIER_STARTS = 3
+"""Starts of the solver for the earlier studies' profiles, which have several minima."""
+
+
 @dataclass(frozen=True)
 class RowResult:
     """A row of the paper beside what is computed here.
@@ -66,6 +74,9 @@ class RowResult:
         The same with a misprint mended, where there is one.
     in_box, free : Plan
         The gradient answer at rest on arrival, in the paper's box and without one.
+    earlier : Plan or None
+        The gradient answer at rest on arrival with the earlier study's profile, as this project
+        reads it, where the paper compares with that study.
     fronts : dict of Method to tuple of Front
         What VEPSO and NSGA-II find with the paper's settings, one front for each seed.
     residual_level : float
@@ -78,6 +89,7 @@ class RowResult:
     mended: Plan | None
     in_box: Plan
     free: Plan
+    earlier: Plan | None
     fronts: Mapping[Method, tuple[Front, ...]]
     residual_level: float
 
@@ -141,8 +153,9 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
     Returns
     -------
     list of Piece
-        Solves under (condition, terms, whether in the box), floors under their condition, and
-        searches under (method, condition, terms, seed).
+        Solves under (condition, terms, whether in the box), those with the earlier study's profile
+        under (condition, `EARLIER_STUDY`), floors under their condition, and searches under
+        (method, condition, terms, seed).
 
     Raises
     ------
@@ -155,6 +168,11 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
         name = f"gradient: {_label(condition, terms)}{', in the box' * boxed}"
         solve = partial(_solved, condition, terms, boxed)
         work.append(Piece((condition, terms, boxed), name, solve))
+    for condition in COMPARED:
+        reference, profile_name, _ = EARLIER[condition.task.plant.name]
+        name = f"{EARLIER_STUDY}: {condition.task.plant.name}, {condition.label}, {profile_name}"
+        solve = partial(_solved_as_earlier, condition)
+        work.append(Piece((condition, EARLIER_STUDY), f"{name} of ref. [{reference}]", solve))
     for condition in CONDITIONS:
         name = f"floor: {condition.task.plant.name}, {condition.label}"
         work.append(Piece(condition, name, partial(_floor, condition)))
@@ -210,6 +228,9 @@ def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
         mended=_evaluated(MENDED, *key),
         in_box=done.answers[*key, True],
         free=done.answers[*key, False],
+        earlier=(
+            None if row.earlier_energy is None else done.answers[row.condition, EARLIER_STUDY]
+        ),
         fronts={
             method: tuple(done.answers[method, *key, seed] for seed in range(seeds))
             for method in SEARCHES
@@ -221,6 +242,11 @@ def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
 def _solved(condition: Case, terms: int, boxed: bool, done: Done) -> Plan:
     bound = condition.bound if boxed else None
     return to_the_end(plan_move(condition.task, CycloidPolynomial(terms), bound=bound))
+
+
+def _solved_as_earlier(condition: Case, done: Done) -> Plan:
+    _, _, profile = EARLIER[condition.task.plant.name]
+    return plan_move(condition.task, profile, starts=EARLIER_STARTS)
 
 
 def _floor(condition: Case, done: Done) -> Floor:

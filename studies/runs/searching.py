@@ -13,7 +13,6 @@ from rich.console import Console
 from metaheuristics import search
 from metaheuristics.ensemble import SEARCH_RESIDUAL, LostSeedsError, search_many, seeds_of
 from ocp import (
-    CycloidPolynomial,
     Front,
     JointProfile,
     Plan,
@@ -128,7 +127,7 @@ def run_front(
     method : Method
         A metaheuristic.
     options : dict
-        The settings of `search`, with ``terms`` for its profile, ``runs`` and ``workers``.
+        The settings of `search`, the profile among them, ``runs`` and ``workers``.
     output, csv_file : Path or None
         Files for the front, whole and its points as a table; with several runs `with_seed` names
         one for every seed.
@@ -143,7 +142,7 @@ def run_front(
         When a search was interrupted, a process died, or the checkpoint could not be written;
         after what was found is written.
     """
-    runs, profile = options["runs"], CycloidPolynomial(options.pop("terms"))
+    runs = options["runs"]
     if runs > 1 and (options["checkpoint"] or options["resume"]):
         raise ValueError("--checkpoint and --resume are for one run, not with --runs")
     seeds = seeds_of(options["seed"], runs)
@@ -151,7 +150,7 @@ def run_front(
     tables = _targets("--csv", csv_file, seeds)
     _refuse_same_files([*targets.values()], [*tables.values()], options, figure)
     errors = Console(stderr=True)
-    found, lost, troubles = _fronts(errors, task, method, {**options, "profile": profile}, quiet)
+    found, lost, troubles = _fronts(errors, task, method, options, quiet)
     fronts = [front for front in found if front.complete or front.points]
     stopped = "" if lost else _interruption(fronts, runs)
     if not any(front.points for front in fronts):

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from ocp import (
-    CycloidPolynomial,
     Front,
     PointToPoint,
     SolverFailedError,
@@ -41,7 +40,7 @@ def run_sweep(
     method : Method
         A method of the gradient.
     options : dict
-        Its settings, with ``terms`` for the profile.
+        Its settings, the profile among them.
     output, csv_file : Path or None
         Files for the front: whole, and its points as a table.
     figure : Path or None
@@ -77,7 +76,6 @@ def run_sweep(
 
 def _swept(task: PointToPoint, method: Method, options: dict[str, Any], quiet: bool) -> Front:
     errors = Console(stderr=True)
-    options["profile"] = CycloidPolynomial(options.pop("terms"))
     weights = options.pop("weights", ())
     if weights:
         options["weights"] = weights

@@ -8,8 +8,19 @@ from typing import Any
 import click
 
 from studies.cli.arguments import refuse_idle, task_of
-from studies.cli.options import INPUT, OUTPUT, PICTURE, STATE, WEIGHTS, quiet_option, task_options
+from studies.cli.options import (
+    INPUT,
+    OUTPUT,
+    PICTURE,
+    STATE,
+    WEIGHTS,
+    family_option,
+    quiet_option,
+    task_options,
+    terms_option,
+)
 from studies.methods import METHODS, WEIGHTED, Kind, methods_of
+from studies.profiles import profile_of
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
@@ -32,8 +43,11 @@ _ONLY_FOR = {
     help="epsilon: the gradient, at one residual limit after another; weighted: the gradient, for "
     "one weighted sum after another; nsga2, vepso: a metaheuristic.",
 )  # fmt: skip
-@click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
-@click.option("--bound", type=float, help="Largest coefficient; a metaheuristic requires it.")
+@family_option
+@terms_option
+@click.option(
+    "--bound", type=float, help="Largest coefficient; for polynomials a metaheuristic requires it."
+)
 @click.option(
     "--points", type=int, default=50, show_default=True,
     help="Gradient: points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
@@ -107,12 +121,14 @@ def front(
     """  # noqa: D301  # \b is click's: do not rewrap
     method = METHODS[rest.pop("method")]
     refuse_idle(context, method.name, _ONLY_FOR)
-    names = ["terms", "bound", "seed"]
+    profile, terms = rest.pop("profile"), rest.pop("terms")
+    names = ["bound", "seed"]
     names += [name for name, methods in _ONLY_FOR.items() if method.name in methods]
     options = {name: rest[name] for name in names}
-    for name in (*_ONLY_FOR, "terms", "bound", "seed"):
+    for name in (*_ONLY_FOR, "bound", "seed"):
         del rest[name]
     task = task_of(rest)
+    options["profile"] = profile_of(profile, task, terms)
     if method.kind is Kind.GRADIENT:
         from studies.runs.sweeping import run_sweep as run
 

@@ -80,7 +80,7 @@ def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
         ([[0.1, "x"]], "give a row of numbers for each motion"),
         ([[0.1], [0.1, 0.2]], "give a row of numbers for each motion"),
         ([[0.1, math.nan]], "coefficient 2 is nan; give a finite number"),
-        ([[0.1, 0.5]], "a coefficient is 0.5, beyond the bound of 0.2"),
+        ([[0.1, 0.5]], "point 1 of 1 has the coefficient 0.5, beyond the stated bound of 0.2"),
     ],
 )
 def test_what_is_no_table_of_coefficients_is_refused(task, rows, words):
