@@ -31,7 +31,15 @@ from studies.paper.printed import (
     SINGLE_LINK_SIXTH,
     Row,
 )
-from studies.runs.pieces import Begin, Done, InterruptedPiece, Piece, run_pieces, searched
+from studies.runs.pieces import (
+    Begin,
+    Done,
+    InterruptedPiece,
+    Piece,
+    run_pieces,
+    searched,
+    to_the_end,
+)
 
 BEYOND_SIX = (8, 10)
 """Numbers of terms that check the paper's 'no gain above six'."""
@@ -233,7 +241,7 @@ def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
 
 def _solved(condition: Case, terms: int, boxed: bool, done: Done) -> Plan:
     bound = condition.bound if boxed else None
-    return plan_move(condition.task, CycloidPolynomial(terms), bound=bound)
+    return to_the_end(plan_move(condition.task, CycloidPolynomial(terms), bound=bound))
 
 
 def _solved_as_earlier(condition: Case, done: Done) -> Plan:
@@ -242,7 +250,7 @@ def _solved_as_earlier(condition: Case, done: Done) -> Plan:
 
 
 def _floor(condition: Case, done: Done) -> Floor:
-    return energy_floor(condition.task)
+    return to_the_end(energy_floor(condition.task))
 
 
 def _searched(condition: Case, method: Method, terms: int, seed: int, done: Done) -> Front:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from metaheuristics.ensemble import search_many
 from ocp import CycloidPolynomial, Front, QuietarmError
@@ -122,6 +122,21 @@ def run_pieces(pieces: Sequence[Piece], begin: Begin, *, go_on: bool = False) ->
             if done.interrupted:
                 break
     return done
+
+
+class _Answer(Protocol):
+    @property
+    def complete(self) -> bool: ...
+
+
+_Whole = TypeVar("_Whole", bound=_Answer)
+
+
+def to_the_end(answer: _Whole) -> _Whole:
+    """The same plan, front or floor; InterruptedPiece where Ctrl-C ended the work on it early."""
+    if not answer.complete:
+        raise InterruptedPiece(answer)
+    return answer
 
 
 def searched(case: Case, method: Method, terms: int, runs: int = 1, **settings: Any) -> list[Front]:

@@ -27,6 +27,7 @@ def run_sweep(
     method: Method,
     options: dict[str, Any],
     output: Path | None,
+    csv_file: Path | None,
     figure: Path | None,
     quiet: bool,
 ) -> None:
@@ -40,8 +41,8 @@ def run_sweep(
         A method of the gradient.
     options : dict
         Its settings, the profile among them.
-    output : Path or None
-        File for the front.
+    output, csv_file : Path or None
+        Files for the front: whole, and its points as a table.
     figure : Path or None
         File for the picture.
     quiet : bool
@@ -52,7 +53,7 @@ def run_sweep(
     QuietarmError
         When it was interrupted, after what was found is written; when nothing was found.
     """
-    refuse_same_file([("--output", output), ("--figure", figure)])
+    refuse_same_file([("--output", output), ("--csv", csv_file), ("--figure", figure)])
     weights = options.get("weights", ())
     asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
     front = _swept(task, method, dict(options), quiet)
@@ -67,7 +68,7 @@ def run_sweep(
         return sweep_figure(front)
 
     finish(
-        [(output, front.save), (figure, drawing(picture))],
+        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
         lambda console: print_sweep(console, front, asked_for),
         trouble=None if front.complete else interruption(),
     )

@@ -38,6 +38,7 @@ from studies.runs.pieces import (
     Piece,
     run_pieces,
     searched,
+    to_the_end,
 )
 
 FLOOR = "floor"
@@ -197,7 +198,7 @@ def pieces_of(case: Case, settings: StudySettings) -> list[Piece]:
     for method in methods_of(Kind.METAHEURISTIC):
         work[method.name] = partial(_searched, case, method, settings)
         work[method.then_polished().name] = partial(_polished, method, settings)
-    work[FLOOR] = lambda done: energy_floor(case.task)
+    work[FLOOR] = lambda done: to_the_end(energy_floor(case.task))
     title = title_of(case.task)
     return [Piece(name, f"{title}: {name}", one) for name, one in work.items()]
 
@@ -252,7 +253,7 @@ def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStu
         if name in done.failures:
             failures.append(f"{name}: {done.failures[name]}")
         elif name in done.parts:
-            fronts += _fronts_of(done.parts[name])
+            fronts += [] if name == FLOOR else _fronts_of(done.parts[name])
             failures.append(f"{name}: interrupted, with what was found until then")
         elif name not in done.answers:
             failures.append(f"{name}: not done before the interruption")
@@ -267,7 +268,7 @@ def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStu
     if len(fronts) < 2 and not done.interrupted:
         where = title_of(case.task)
         raise SolverFailedError(f"{where}: no two fronts to compare; {'; '.join(failures)}")
-    floor = done.answers.get(FLOOR)
+    floor = done.answers.get(FLOOR, done.parts.get(FLOOR))
     polishes = {m.name: done.answers.get(m.then_polished().name) for m in METHODS.values()}
     study = CaseStudy(
         case=case,

@@ -88,12 +88,22 @@ _ONLY_FOR = {
     "front-seed0.json, front-seed1.json, ...",
 )  # fmt: skip
 @click.option(
+    "--csv", "csv_file", type=OUTPUT,
+    help="Write the points to this CSV file: residual, energy, coefficients; with --runs as "
+    "--output.",
+)  # fmt: skip
+@click.option(
     "--figure", type=PICTURE, help="Draw the fronts, all in one picture (.png, .pdf or .svg)."
 )
 @quiet_option
 @click.pass_context
 def front(
-    context: click.Context, output: Path | None, figure: Path | None, quiet: bool, **rest: Any
+    context: click.Context,
+    output: Path | None,
+    csv_file: Path | None,
+    figure: Path | None,
+    quiet: bool,
+    **rest: Any,
 ) -> None:
     """Find the trade-off of residual and energy by the gradient, or with NSGA-II or VEPSO.
 
@@ -102,7 +112,7 @@ def front(
     \b
     Examples; the metaheuristics with the paper's settings:
       quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --method epsilon \\
-          --output epsilon.json --figure epsilon.png
+          --output epsilon.json --csv epsilon.csv --figure epsilon.png
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method weighted
       quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --method nsga2 \\
           --output front.json --figure front.png
@@ -126,4 +136,4 @@ def front(
             refuse_idle(context, "--weights", {"points": ("weights that the sweep chooses",)})
     else:
         from studies.runs.searching import run_front as run
-    run(task, method, options, output, figure, quiet)
+    run(task, method, options, output, csv_file, figure, quiet)

@@ -18,7 +18,7 @@ from studies.cli.options import (
     terms_option,
 )
 from studies.display.progress import working
-from studies.display.saving import finish
+from studies.display.saving import finish, interruption
 from studies.display.words import print_lines
 from studies.methods import METHODS, Kind, methods_of
 from studies.profiles import FAMILIES, profile_of
@@ -104,4 +104,5 @@ def plan(
                 "--polish does",
             )
 
-    finish(plan_files(found, **outputs), show)
+    stopped = None if found.complete else interruption(found.provenance.stopped)
+    finish(plan_files(found, **outputs), show, trouble=stopped)
