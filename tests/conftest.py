@@ -16,11 +16,16 @@ settings.register_profile(
 settings.load_profile("repeatable")
 
 
+COSTLY = ("reproduction", "small", "floor_of")
+"""Fixtures that the tests of several files share and that take long: computed in one process."""
+
+
+@pytest.hookimpl(tryfirst=True)  # before xdist reads the marks
 def pytest_collection_modifyitems(items):
-    """Keep in one process what shares its fixtures: a file, and all that needs the reproduction."""
+    """Keep in one process what shares its fixtures: a file, and all that needs a costly one."""
     for item in items:
-        together = "reproduction" if "reproduction" in item.fixturenames else str(item.path)
-        item.add_marker(pytest.mark.xdist_group(together))
+        costly = [name for name in COSTLY if name in item.fixturenames]
+        item.add_marker(pytest.mark.xdist_group([*costly, str(item.path)][0]))
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,7 @@
 """Joint profiles on the command line: families of cycloids, and input shapers."""
 
 import pytest
+from lines import MOVE
 
 from models import SingleLinkManipulator
 from ocp import (
@@ -15,8 +16,6 @@ from ocp import (
 )
 from ocp.profiles.cycloid import Cycloid
 from studies.profiles import profile_of
-
-MOVE = "single-link --target 30deg --duration 0.8"
 
 
 @pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])

@@ -8,19 +8,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from lines import MOVE
 
 from ocp import Plan
 
-MOVE = "single-link --target 30deg --duration 0.8"
 EVALUATE = f"evaluate {MOVE} --coefficients=0.003347,-0.1697"  # the paper's Table 1
 FULL = Path("/dev/full")
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    """A folder of the test's own, and standing in it."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def shell(line):

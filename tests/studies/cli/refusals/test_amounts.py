@@ -5,19 +5,12 @@ import sys
 from itertools import islice
 
 import pytest
+from lines import MOVE
 
 from studies.display import progress
 
-MOVE = "single-link --target 30deg --duration 0.8"
 FRONT = f"front {MOVE} --bound 0.2 --method"
 HUGE = "100000000000"
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    """A folder of the test's own, and standing in it."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 @pytest.mark.parametrize(
