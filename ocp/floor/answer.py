@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import ClassVar
 
 from ocp.answers.documents import Upgrades
+from ocp.answers.motion_answer import MotionAnswer
 from ocp.answers.older import floor_of_version_1
 from ocp.answers.provenance import Provenance, Verification, number_of_starts
-from ocp.answers.saved import Saved
 from ocp.base.checks import positive, whole
 from ocp.base.ranges import CountFromOne
 from ocp.base.status import SolveStatus
@@ -65,7 +65,7 @@ class FloorSettings:
 
 
 @dataclass(frozen=True)
-class Floor(Saved):
+class Floor(MotionAnswer):
     """The least energy of a move over all joint motions, at rest on arrival.
 
     The energy is that of one motion that does the move, so that the true floor is no higher; how
@@ -111,21 +111,6 @@ class Floor(Saved):
             raise ValueError(f"its times end at {end:g} s, not at the duration {duration:g} s")
         if len(self.levels) < 2 or not self.starts:
             raise ValueError("it has fewer than two levels, or no start")
-
-    @property
-    def energy(self) -> float:
-        """F2: driving energy [J], by the independent integrator."""
-        return self.motion.energy
-
-    @property
-    def residual(self) -> float:
-        """F1: largest absolute tip displacement after arrival [m], that of rest."""
-        return self.motion.residual
-
-    @property
-    def complete(self) -> bool:
-        """Whether the search ran to its end; else it is that of the grids until Ctrl-C."""
-        return self.provenance.stopped is None
 
     @property
     def smooth(self) -> bool:

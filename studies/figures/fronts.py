@@ -115,10 +115,8 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
 
     Parameters
     ----------
-    fronts : sequence of Front
-        Of one method and task, one for every seed.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
+    fronts, ax
+        As for `draw_hypervolume`.
 
     Returns
     -------

@@ -87,12 +87,8 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
 
     Parameters
     ----------
-    before : Front
-        The front that was given.
-    polish : Polish
-        What became of it.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
+    before, polish, ax
+        As for `draw_polish`.
 
     Returns
     -------

@@ -1,14 +1,11 @@
 """A plant that breaks its contract is refused."""
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import casadi as ca
 import pytest
+from sound_plant import Sound
 
 from models import (
     Plant,
-    parameter,
 )
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
@@ -17,26 +14,9 @@ pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 # -- the contract --
 
 
-@dataclass(frozen=True)
-class _Probe(Plant):
-    """A plant whose three equations are given as functions."""
-
-    modes: ClassVar[int] = 1
-    omega: float = parameter(10.0, "rad/s", "a round number")
-
-    def modal_accelerations(self, joint, W, dW):
-        return [-(self.omega**2) * W[0] - joint.acceleration]
-
-    def torque(self, joint, W, dW, ddW):
-        return joint.acceleration + ddW[0]
-
-    def tip_displacements(self, W):
-        return [W[0]]
-
-
 def _broken(**changes):
-    """A class of plants with some of `_Probe`'s members replaced."""
-    return type("Broken", (_Probe,), {"name": "broken", **changes})()
+    """A class of plants with some of `Sound`'s members replaced."""
+    return type("Broken", (Sound,), {"name": "broken", **changes})()
 
 
 def test_a_plant_must_give_its_equations():
