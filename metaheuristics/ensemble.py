@@ -158,7 +158,7 @@ def search_many(
         )
     if runs > 1 and (settings.get("checkpoint") or settings.get("resume")):
         raise ValueError(
-            f"a checkpoint is of one search, and there are {runs} runs; leave checkpoint and "
+            f"a checkpoint holds one search, and there are {runs} runs; leave checkpoint and "
             "resume out, or give 1 run"
         )
     if min(workers, runs) == 1:

@@ -1,4 +1,4 @@
-"""Processes that share out work, and outlive Ctrl-C and each other."""
+"""Processes that share work; neither Ctrl-C nor the death of one ends the others."""
 
 from __future__ import annotations
 
@@ -17,11 +17,10 @@ from ocp.base.interrupts import defer_interrupts
 
 Say = Callable[[Any], None]
 Work = Callable[[Any, Say], Any]
-"""Does one piece, says now and then how far it is, and gives its answer.
+"""Does one piece of work, calls `say` now and then with its progress, and returns the answer.
 
-Whatever `say` is told, it raises KeyboardInterrupt once the work is to stop: the answer is then
-what was found until there, soon. It must go to another process: a function of a module, or a
-`functools.partial` of one.
+`say` raises KeyboardInterrupt once the work is to stop; what was found until then must be returned
+soon. The work is pickled: it is a function of a module, or a `functools.partial` of one.
 """
 
 _CONTEXT = get_context("spawn")  # a fork would carry casadi's and the threads' state into the child
@@ -30,7 +29,7 @@ _PATIENCE = 1.2
 _SAY_SECONDS = 0.2
 MOST_WORKERS = 1000
 _ENDED = "status"
-"""How the end of a process is told that ended by itself, neither killed nor out of memory."""
+"""What is said of a process that ended by itself, neither killed nor out of memory."""
 
 
 _GUARD = (
@@ -60,7 +59,7 @@ def remedy(
 
 
 def death_of_process(how: str) -> str:
-    """Why a piece is missing whose process died, from what `Workers.lost` says of it."""
+    """Why a piece is missing: its process died, as `Workers.lost` says."""
     return f"its process died ({how}); {remedy([how])}"
 
 
@@ -245,7 +244,7 @@ def _serve(link: Connection, work: Work) -> None:
 
     with suppress(EOFError, OSError):  # the parent is gone
         for (piece,) in iter(link.recv, None):
-            said = 0.0  # of every piece the first word is heard
+            said = 0.0  # the first report of every piece is sent at once
             try:
                 link.send(_Answer(work(piece, say)))
             except Exception as error:
@@ -254,9 +253,9 @@ def _serve(link: Connection, work: Work) -> None:
 
 @contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """Let a process that starts here see neither Ctrl-C nor the end of a batch job.
+    """Let a process that starts here ignore Ctrl-C and the end of a batch job.
 
-    Both are sent to every process of a group, and what this one found is to be asked for first.
+    Both are sent to every process of a group; this one is asked for what it found first.
     """
     if sys.platform == "win32":
         yield

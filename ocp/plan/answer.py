@@ -1,4 +1,4 @@
-"""Plan: the answer a person keeps."""
+"""Plan: the coefficients of a motion, its figures and where they come from."""
 
 from __future__ import annotations
 

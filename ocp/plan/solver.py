@@ -114,7 +114,7 @@ def plan_move(
 
 
 def _best_until_now(problem: Problem, solved: Sequence[Solution]) -> tuple[Solution, Motion, int]:
-    """What `verified` gives for the best of the starts until Ctrl-C, without taking long."""
+    """What `verified` gives for the best of the starts until Ctrl-C, in a short time."""
     if not solved:
         raise KeyboardInterrupt
     with note_interrupts():

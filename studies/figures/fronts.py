@@ -121,7 +121,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib.axes.Axes
-        The axes; a seed that never comes so still is a cross.
+        The axes; a seed that never reaches that residual is a cross.
     """
     ax = axes_or_new(ax)
     spread = energies_at(fronts)

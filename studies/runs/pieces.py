@@ -117,7 +117,7 @@ def run_pieces(pieces: Sequence[Piece], begin: Begin, *, go_on: bool = False) ->
                 done.interrupted = True
                 if isinstance(stop, InterruptedPiece):
                     done.parts[piece.key] = stop.part
-            # a piece that ended well in spite of Ctrl-C does not tell of it
+            # a piece that ended well in spite of Ctrl-C raises nothing
             done.interrupted = done.interrupted or bool(came)
             if done.interrupted:
                 break
