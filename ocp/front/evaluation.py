@@ -56,8 +56,8 @@ def table_of(coefficients: ArrayLike) -> NDArray[np.float64]:
         ) from None
     if table.ndim != 2 or len(table) == 0:
         raise ValueError(
-            f"coefficients have shape {table.shape}; give (motions, coefficients), one row for each "
-            "motion"
+            f"coefficients have shape {table.shape}; give (motions, coefficients), one row for "
+            "each motion"
         )
     return table
 
