@@ -24,6 +24,8 @@ from ocp.floor.answer import Level
 from ocp.floor.program import FloorProgram
 
 ROOT = Path(__file__).parents[3]
+GUARD = 240
+"""Seconds after which a process that does not end has hung, on any machine."""
 
 
 # -- other answers --
@@ -251,19 +253,20 @@ def test_settings_out_of_range_are_refused(settings, named):
         energy_floor(ARM, **settings)
 
 
-def test_ctrl_c_ends_it_at_once():
+def test_ctrl_c_ends_it_on_the_first_grid():
+    # The first grid has a thousand starts: it is not done when the signal comes, nor anywhere near.
     code = (
         "import math; from ocp import *; from models import *\n"
         "task = PointToPoint(SingleLinkManipulator(), math.pi / 2, 1.0)\n"
         "print('begun', flush=True)\n"
-        "energy_floor(task, starts=50, tolerance=1e-9)\n"
+        "energy_floor(task, starts=1000)\n"
     )
     process = subprocess.Popen(
         [sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     assert process.stdout.readline()
-    time.sleep(1.5)
+    time.sleep(0.5)
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=20)
+    _, errors = process.communicate(timeout=GUARD)
     assert process.returncode != 0
     assert b"KeyboardInterrupt" in errors

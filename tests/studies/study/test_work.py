@@ -65,7 +65,22 @@ def test_settings_out_of_range_are_refused(wrong):
         StudySettings(**wrong)
 
 
-def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch, let_sweep):
+def searches_that_find(monkeypatch, answer):
+    """Let every search of a study answer so, by its method."""
+    monkeypatch.setattr(pieces, "search_many", lambda task, method, *given, **_: answer(method))
+
+
+@pytest.fixture
+def known(small, monkeypatch, let_sweep):
+    """The fronts of the small study's first task, which every method then finds at once."""
+    fronts = [run.front for run in small.cases[0].comparison.runs]
+    for front in fronts[:2]:
+        let_sweep(front.method, lambda *given, found=front, **_: found)
+    searches_that_find(monkeypatch, lambda method: [f for f in fronts if f.method == method])
+    return fronts
+
+
+def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch, let_sweep, known):
     def fail(*arguments, **settings):
         raise SolverFailedError("it would not")
 
@@ -78,14 +93,12 @@ def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch, let_sweep)
     assert set(found.failures) <= set(case_findings(found))
 
 
-def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(monkeypatch, let_sweep, small):
+def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(let_sweep, known):
     def infeasible(*arguments, **settings):
         raise InfeasibleTaskError("found no motion")
 
-    found = [run.front for run in small.cases[0].comparison.runs if run.front.seed is not None]
     let_sweep("epsilon", infeasible)
     let_sweep("weighted", lambda *given, **_: pytest.fail("asked"))
-    searches_that_find(monkeypatch, lambda method: [f for f in found if f.method == method])
     (case,) = run_study(CASES[:1], QUICK).cases
     assert case.failures == (
         "epsilon: found no motion",
@@ -93,12 +106,7 @@ def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(monkeypatch, let
     )
 
 
-def searches_that_find(monkeypatch, answer):
-    """Let every search of a study answer so, by its method."""
-    monkeypatch.setattr(pieces, "search_many", lambda task, method, *given, **_: answer(method))
-
-
-def test_without_a_front_to_start_from_there_is_no_polish(monkeypatch):
+def test_without_a_front_to_start_from_there_is_no_polish(monkeypatch, known):
     def fail(method):
         raise SolverFailedError("it would not")
 
@@ -115,8 +123,8 @@ def test_without_a_front_to_start_from_there_is_no_polish(monkeypatch):
     assert len(begun) == amount_of_work(CASES[:1], QUICK)
 
 
-def test_the_first_front_that_has_points_is_polished(monkeypatch, small):
-    fronts = {run.front.method: run.front for run in small.cases[0].comparison.runs}
+def test_the_first_front_that_has_points_is_polished(monkeypatch, known):
+    fronts = {front.method: front for front in known}
 
     def first_empty(method):
         return [replace(fronts[method], points=()), fronts[method]]
@@ -128,20 +136,15 @@ def test_the_first_front_that_has_points_is_polished(monkeypatch, small):
         assert len(case.polishes[method].gains) == len(fronts[method].points)
 
 
-def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(
-    monkeypatch, let_sweep, small
-):
-    fronts = [run.front for run in small.cases[0].comparison.runs]
-    for front in fronts[:2]:
-        let_sweep(front.method, lambda *given, found=front, **_: found)
-    cut = replace(fronts[2], complete=False)
+def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(monkeypatch, known):
+    cut = replace(known[2], complete=False)
     searches_that_find(monkeypatch, lambda method: [cut, replace(cut, seed=1, points=())])
     begun = []
     found = run_study(CASES, QUICK, begun.append)
     assert len(begun) == 3
     assert found.done == 2
     (case,) = found.cases
-    assert [run.front for run in case.comparison.runs] == [*fronts[:2], cut]
+    assert [run.front for run in case.comparison.runs] == [*known[:2], cut]
     assert case.failures[0] == "nsga2: interrupted, with what was found until then"
     assert case.failures[1:] == tuple(
         f"{name}: not done before the interruption"
@@ -150,11 +153,7 @@ def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(
     assert "not done before the interruption" in study_page(found)
 
 
-def test_ctrl_c_while_the_last_task_is_put_together_loses_nothing(monkeypatch, let_sweep, small):
-    fronts = [run.front for run in small.cases[0].comparison.runs]
-    for front in fronts[:2]:
-        let_sweep(front.method, lambda *given, found=front, **_: found)
-    searches_that_find(monkeypatch, lambda method: [f for f in fronts if f.method == method])
+def test_ctrl_c_while_the_last_task_is_put_together_loses_nothing(monkeypatch, known):
     compared = study_module.compare_fronts
 
     def interrupted(*given, **settings):
@@ -163,7 +162,7 @@ def test_ctrl_c_while_the_last_task_is_put_together_loses_nothing(monkeypatch, l
 
     monkeypatch.setattr(study_module, "compare_fronts", interrupted)
     (case,) = run_study(CASES[:1], QUICK).cases
-    assert len(case.comparison.runs) == len(fronts)
+    assert len(case.comparison.runs) == len(known)
 
 
 def test_a_study_of_which_one_front_was_found_is_a_page(small):

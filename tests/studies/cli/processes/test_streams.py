@@ -12,7 +12,7 @@ from lines import MOVE
 
 from ocp import Plan
 
-EVALUATE = f"evaluate {MOVE} --coefficients=0.003347,-0.1697"  # the paper's Table 1
+EVALUATE = f"evaluate {MOVE} --coefficients=0.003347,-0.1697 --quiet"  # the paper's Table 1
 FULL = Path("/dev/full")
 
 
@@ -64,7 +64,10 @@ def test_a_reader_that_has_gone_costs_no_file_and_is_no_error(folder, fronts, li
 
 
 def test_a_reader_that_has_gone_costs_no_page_of_a_study(folder):
-    line = f"study {MOVE} --terms 2 --points 3 --runs 1 {SMALL} --fronts fronts"
+    line = (
+        f"study {MOVE} --acceleration-limit 200 --terms 2 --points 3 --runs 1 {SMALL} "
+        "--fronts fronts"
+    )
     ran = shell(f"quietarm {line} --quiet | head -1")
     assert (ran.returncode, ran.stderr) == (0, "")
     assert ran.stdout.startswith("- ")

@@ -1,5 +1,6 @@
 """Amounts that would fill the memory are refused; work that takes long says so."""
 
+import re
 import subprocess
 import sys
 from itertools import islice
@@ -90,7 +91,7 @@ def test_work_that_takes_long_says_so():
         capture_output=True, text=True, timeout=240, check=False,
     )  # fmt: skip
     assert ran.returncode == 0
-    assert ran.stderr.startswith("solving, 0 s so far\n")
+    assert re.match(r"solving, \d+ s so far\n", ran.stderr)
     assert "so far" not in ran.stdout
 
 
