@@ -7,9 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
 
+import casadi as ca
 import numpy as np
 
 from models import Expression, JointMotion, Plant
+from models.contract.calls import Calls
 from ocp.base.checks import positive
 from ocp.base.names import nearest
 from ocp.simulation.collocation import modal_system
@@ -172,21 +174,16 @@ def refuse_unknown(plant: Plant, names: Iterable[str]) -> None:
 
 
 def _check_symbols(plant: Plant, name: str, error: float) -> None:
-    """Whether the equations read the parameter itself, not what was made of it beforehand."""
+    """Whether the equations take a symbol for a parameter, and read it from nowhere else."""
     if name in _OF_MODES:
         return
-    random, modes = np.random.default_rng(0), plant.modes
-    joint = JointMotion(*random.uniform(0.1, 1.0, 3).tolist())
-    W, dW, ddW = random.uniform(0.1, 1.0, (3, modes)).tolist()
-
-    def outputs(of: Plant) -> list[float]:
-        given = [*of.modal_accelerations(joint, W, dW), of.torque(joint, W, dW, ddW)]
-        return [float(value) for value in (*given, *of.tip_displacements(W))]
-
-    value = getattr(plant, name) * (1 + error)
-    anew = outputs(replace(plant, **{name: value}))
-    if not np.allclose(outputs(_with_symbols(plant, {name: value})), anew, rtol=_SAME, atol=0):
+    value, symbol = getattr(plant, name) * (1 + error), ca.SX.sym(name)
+    motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 3 * plant.modes).tolist()
+    expressions = Calls(_with_symbols(plant, {name: symbol}), 1).outputs(motion).all
+    found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
+    anew = Calls(replace(plant, **{name: value}), 1).outputs(motion).all
+    if not np.allclose(found, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):
         raise ValueError(
-            f"plant {plant.name!r} makes something of {name} when it is made; compute it in the "
-            "equations, from self." + name
+            f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "
+            f"compute in them, from self.{name}, with casadi.sqrt and its like"
         )

@@ -25,6 +25,10 @@ from ocp.task.point_to_point import PointToPoint
 _BLOCK = 100
 """Plants a call: their intermediate values fit the processor's cache."""
 
+_STEPS_OF_CSE = 2 * ROLLOUT_STEPS
+"""Common terms are looked for up to these steps: that takes a third off a call, but a time that
+grows with the square of the steps."""
+
 
 @dataclass(frozen=True, eq=False)
 class Figures:
@@ -179,7 +183,8 @@ def _compiled(plant: Plant, steps: int, names: tuple[str, ...]) -> ca.Function:
         rollout.arrival, _rows(transition), _rows(tips), rollout.energy,
         ca.horzcat(*rollout.torque),
     ]  # fmt: skip
-    return ca.Function("errors", [errors, joint, target, duration, between], outputs, {"cse": True})
+    inputs = [errors, joint, target, duration, between]
+    return ca.Function("errors", inputs, outputs, {"cse": steps <= _STEPS_OF_CSE})
 
 
 def _rows(columns: list[Expression]) -> Expression:
