@@ -211,7 +211,6 @@ def _swept(case: Case, method: Method, settings: StudySettings, done: Done) -> l
         CycloidPolynomial(settings.terms),
         bound=case.bound,
         points=settings.points,
-        **({"workers": settings.workers} if method.parallel else {}),
     )
     return _whole(front, [front])
 
@@ -233,7 +232,7 @@ def _polished(method: Method, settings: StudySettings, done: Done) -> Polish:
     first = next((front for front in done.answers.get(method.name, []) if front.points), None)
     if first is None:
         raise NotTriedError(f"not tried, as {method.name} found no front to start from")
-    polish = polish_front(first, workers=settings.workers)
+    polish = polish_front(first)
     return _whole(polish.front, polish)
 
 

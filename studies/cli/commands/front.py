@@ -17,9 +17,8 @@ _ONLY_FOR = {
     "points": GRADIENT,
     "starts": GRADIENT,
     "weights": [WEIGHTED.name],
-    "workers": [method.name for method in METHODS.values() if method.parallel],
     **dict.fromkeys(
-        ("population", "generations", "runs", "checkpoint", "resume"), METAHEURISTICS
+        ("population", "generations", "runs", "workers", "checkpoint", "resume"), METAHEURISTICS
     ),
 }  # fmt: skip
 """For every option that is not for all methods, the methods that it is for."""
@@ -56,7 +55,7 @@ _ONLY_FOR = {
 )
 @click.option(
     "--workers", type=int, default=1, show_default=True,
-    help="Processes: a metaheuristic's share the runs, epsilon's the points.",
+    help="Metaheuristic: processes that share the runs.",
 )  # fmt: skip
 @click.option(
     "--checkpoint", type=STATE, help="Metaheuristic: write the state here every few seconds."
