@@ -8,7 +8,16 @@ from typing import Any
 import click
 
 from studies.cli.arguments import refuse_idle, task_of
-from studies.cli.options import INPUT, OUTPUT, PICTURE, STATE, WEIGHTS, quiet_option, task_options
+from studies.cli.options import (
+    INPUT,
+    OUTPUT,
+    PICTURE,
+    STATE,
+    WEIGHTS,
+    quiet_option,
+    task_options,
+    workers_options,
+)
 from studies.methods import METHODS, WEIGHTED, Kind, methods_of
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
@@ -17,9 +26,8 @@ _ONLY_FOR = {
     "points": GRADIENT,
     "starts": GRADIENT,
     "weights": [WEIGHTED.name],
-    **dict.fromkeys(
-        ("population", "generations", "runs", "workers", "checkpoint", "resume"), METAHEURISTICS
-    ),
+    **dict.fromkeys(("population", "generations", "runs"), METAHEURISTICS),
+    **dict.fromkeys(("workers", "scheduler", "checkpoint", "resume"), METAHEURISTICS),
 }  # fmt: skip
 """For every option that is not for all methods, the methods that it is for."""
 
@@ -53,10 +61,7 @@ _ONLY_FOR = {
 @click.option(
     "--runs", type=int, default=1, show_default=True, help="Metaheuristic: number of seeds."
 )
-@click.option(
-    "--workers", type=int, default=1, show_default=True,
-    help="Metaheuristic: processes that share the runs.",
-)  # fmt: skip
+@workers_options
 @click.option(
     "--checkpoint", type=STATE, help="Metaheuristic: write the state here every few seconds."
 )
