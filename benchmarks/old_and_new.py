@@ -164,10 +164,11 @@ def fronts() -> dict:
         began = time.process_time()
         found = epsilon_front(task, bound=bound)
         seconds = time.process_time() - began
+        iterations = getattr(found, "iterations", found.evaluations)  # once one number
         return {
             "seconds": seconds,
             "energy": found.energies.mean(),
-            "note": f"{len(found.points)} points, {found.evaluations} iterations",
+            "note": f"{len(found.points)} points, {iterations} iterations",
         }
 
     return {

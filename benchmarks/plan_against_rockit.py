@@ -183,7 +183,7 @@ def measure(move: Move, steps: tuple[int, int]) -> Repetition:
     )
 
 
-def show(move: Move, steps: tuple[int, int], repetitions: list[Repetition]) -> Table:
+def move_table(move: Move, steps: tuple[int, int], repetitions: list[Repetition]) -> Table:
     """The table of one move."""
     title = f"{move.title}: {move.best:.6f} J"
     table = Table("", "quietarm", "rockit", "rockit / quietarm", title=title)
@@ -218,7 +218,7 @@ def main() -> None:
             fewest(lambda n: move.above(RockitMove(move, n).found()), arguments.within),  # noqa: B023
         )
         repetitions = [measure(move, steps) for _ in range(arguments.repetitions)]
-        screen.print(show(move, steps, repetitions))
+        screen.print(move_table(move, steps, repetitions))
 
 
 if __name__ == "__main__":

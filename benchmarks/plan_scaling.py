@@ -92,7 +92,7 @@ def measure(case: Case) -> Timing:
     return Timing(first - solve, solve, solution.iterations, plan, used, answer.energy)
 
 
-def show(title: str, cases: Sequence[Case], runs: Sequence[Sequence[Timing]]) -> Table:
+def scaling_table(title: str, cases: Sequence[Case], runs: Sequence[Sequence[Timing]]) -> Table:
     """The table of some cases: `runs` has a row a repetition, a column a case."""
     table = Table(title=title)
     for name in ("terms", "steps", "build", "solve", "iterations", "per iteration", "plan",
@@ -140,7 +140,7 @@ def main() -> None:
                 disable=not screen.is_terminal,
             )
         ]  # fmt: skip
-        screen.print(show(title, cases, runs))
+        screen.print(scaling_table(title, cases, runs))
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ from metaheuristics.sharing.workers import Workers
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.base.checks import whole
 
-STILL = 1e-3
+SEARCH_RESIDUAL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
 MOST_RUNS = 10_000
 
@@ -94,12 +94,12 @@ def hypervolumes(fronts: Sequence[Front]) -> Spread:
     return Spread.of([front.history[-1].hypervolume if front.history else 0.0 for front in fronts])
 
 
-def energies_at(fronts: Sequence[Front], residual_limit: float = STILL) -> Spread:
+def energies_at(fronts: Sequence[Front], residual_limit: float = SEARCH_RESIDUAL) -> Spread:
     """Quartiles of the least energy [J] with a residual within the limit [m]."""
     return Spread.of([energy_at(front, residual_limit) for front in fronts])
 
 
-def energy_at(front: Front, residual_limit: float = STILL) -> float:
+def energy_at(front: Front, residual_limit: float = SEARCH_RESIDUAL) -> float:
     """Least energy [J] of a front with a residual within the limit [m]; NaN where none is."""
     try:
         return front.cheapest(residual_limit).energy

@@ -3,6 +3,7 @@
 from models.arm_on_flexible_link import ArmOnFlexibleLink
 from models.dual_link import DualLinkManipulator
 from models.plant import Expression, JointMotion, Plant, known_plants, parameter
+from models.plant_file import PlantFile, file_of_plant, load_plant_file
 from models.single_link import SingleLinkManipulator
 from models.version import __version__
 
@@ -12,8 +13,11 @@ __all__ = [
     "Expression",
     "JointMotion",
     "Plant",
+    "PlantFile",
     "SingleLinkManipulator",
     "__version__",
+    "file_of_plant",
     "known_plants",
+    "load_plant_file",
     "parameter",
 ]

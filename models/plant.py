@@ -10,11 +10,9 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import Field, field, fields
 from numbers import Real
 from typing import Any, ClassVar, NamedTuple
-
-import casadi as ca
 
 Expression = Any
 """An SX scalar, an MX matrix or a number: casadi gives these no common base class."""
@@ -61,15 +59,14 @@ def parameter(default: float, unit: str, source: str) -> Any:
     return field(default=default, metadata={"unit": unit, "source": source})
 
 
-@dataclass(frozen=True)
 class Plant(ABC):
     """A joint with flexible modes: subclass it as a frozen dataclass, in one file.
 
     A subclass sets `name` and `modes`, declares its parameters as float fields (with `parameter`)
     and gives three equations: `modal_accelerations`, `torque` and `tip_displacements`. For a given
     joint motion the modal accelerations must be affine in the modal amplitudes and their rates, and
-    the tip displacements linear in the amplitudes; the structure at rest must stay at rest.
-    `validate` checks all of it.
+    the tip displacements linear in the amplitudes; with the joint at rest the structure must stay
+    at rest, and no mode may grow. `validate` checks all of it.
 
     Raises
     ------
@@ -85,15 +82,36 @@ class Plant(ABC):
     small_deflection: ClassVar[float | None] = None
     """Largest tip displacement that the equations are made for [m]; None where none is stated."""
 
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if isinstance(cls.__dict__.get("name"), str):
-            Plant._known[cls.name] = cls
+        name = cls.__dict__.get("name")
+        if not isinstance(name, str):
+            return
+        taken = Plant._known.get(name)
+        if taken is not None and taken.__module__ != cls.__module__ and _is_ours(taken):
+            raise ValueError(
+                f"plant name {name!r} is that of quietarm's own {taken.__name__}; give class "
+                f"{cls.__name__} another"
+            )
+        Plant._known[name] = cls
 
     def __post_init__(self) -> None:
+        named: object = getattr(self, "name", None)
+        if not isinstance(named, str) or not named.isprintable() or not named.strip():
+            has = "no name" if named is None else f"name {named!r}"
+            raise ValueError(
+                f"class {type(self).__name__} has {has}; write the plant's name in it, as "
+                "name: ClassVar[str] = 'crane'"
+            )
         for entry in fields(self):
+            if entry.name in _OF_CLASS:
+                raise ValueError(
+                    f"{self.name}: {entry.name} is not a parameter; write it as "
+                    f"{entry.name}: ClassVar[{_OF_CLASS[entry.name]}]"
+                )
             value = getattr(self, entry.name)
             number = isinstance(value, Real) and not isinstance(value, bool)
             if not number or not math.isfinite(value):
@@ -151,51 +169,21 @@ class Plant(ABC):
         Raises
         ------
         ValueError
-            When the number of modal accelerations is not `modes`, the equations are not affine in
-            the modes, the tip is not linear in them, or the structure does not stay at rest.
+            When the class lacks its modes or the dataclass above it, a method takes other arguments
+            or returns something else than it should, does not take symbols or mixes them, is not
+            finite at rest, or the modes are not affine, not at rest with the joint, or unstable.
         """
-        if isinstance(self.modes, bool) or not isinstance(self.modes, int) or self.modes < 1:
-            raise ValueError(f"plant {self.name!r} has {self.modes!r} modes; give it 1 or more")
-        try:
-            self._validate_equations()
-        except IndexError:
-            raise ValueError(
-                f"plant {self.name!r} says modes = {self.modes} but its equations use more; "
-                "set modes to their number"
-            ) from None
+        from models.contract import check_contract  # it builds on this module
 
-    def _validate_equations(self) -> None:
-        angle, speed, acceleration = ca.SX.sym("q"), ca.SX.sym("dq"), ca.SX.sym("ddq")
-        W, dW = ca.SX.sym("W", self.modes), ca.SX.sym("dW", self.modes)
-        state = ca.vertcat(W, dW)
-        accelerations = self.modal_accelerations(
-            JointMotion(angle, speed, acceleration), ca.vertsplit(W), ca.vertsplit(dW)
-        )
-        if len(accelerations) != self.modes:
-            raise ValueError(
-                f"plant {self.name!r} says modes = {self.modes} but gives {len(accelerations)} "
-                "modal accelerations; return one for each mode"
-            )
-        if not ca.is_linear(ca.vertcat(*accelerations), state):
-            raise ValueError(
-                f"plant {self.name!r}: the modal accelerations are not affine in W and W'; "
-                "linearise them: quietarm integrates modes that are linear for a given joint motion"
-            )
-        if self.tips < 1:
-            raise ValueError(f"plant {self.name!r} has no tip displacement; give it 1 or more")
-        tips = ca.vertcat(*self.tip_displacements(ca.vertsplit(W)))
-        if not ca.is_linear(tips, W):
-            raise ValueError(f"plant {self.name!r}: the tip displacement is not linear in W")
-        at_rest = self.modal_accelerations(
-            JointMotion(angle, 0.0, 0.0), [0.0] * self.modes, [0.0] * self.modes
-        )
-        offset = self.tip_displacements([0.0] * self.modes)
-        probe = ca.Function("probe", [angle], [ca.vertcat(*at_rest, *offset)])
-        if any(abs(value) > 0 for value in probe(0.7).full().ravel()):
-            raise ValueError(
-                f"plant {self.name!r} does not stay at rest with the joint at rest and W = 0; "
-                "measure W from the static deflection"
-            )
+        check_contract(self)
+
+
+_OF_CLASS = {"name": "str", "modes": "int", "small_deflection": "float | None"}
+"""What a class of plants sets beside its parameters, with the type."""
+
+
+def _is_ours(plant: type[Plant]) -> bool:
+    return plant.__module__.partition(".")[0] == __name__.partition(".")[0]
 
 
 def known_plants() -> dict[str, type[Plant]]:

@@ -13,7 +13,7 @@ refuse_shadow("models")
 from ocp.answers.provenance import SolveSettings, Verification
 from ocp.base.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
 from ocp.base.status import SolveStatus
-from ocp.floor.answer import Floor
+from ocp.floor.answer import Floor, FloorSettings
 from ocp.floor.search import energy_floor
 from ocp.front.answer import Front, reference_corner
 from ocp.front.epsilon import epsilon_front
@@ -39,6 +39,7 @@ __all__ = [
     "FailedPoint",
     "FileFormatError",
     "Floor",
+    "FloorSettings",
     "Front",
     "FrontPoint",
     "Gain",

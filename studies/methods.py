@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import partial
 
 from ocp import Front, epsilon_front, weighted_front
 
+LEVELS = (1e-4, 1e-3, 5e-3)
+"""Residuals [m] at which energies are compared; fronts by epsilon have a point at each."""
 _POLISHED = ", polished"
 """What `ocp.polish_front` adds to the name of a method."""
 
@@ -56,7 +59,9 @@ class Method:
         return replace(self, name=f"{self.name}{_POLISHED}", label=label, polished=True)
 
 
-EPSILON = Method("epsilon", "epsilon constraint", Kind.GRADIENT, sweep=epsilon_front)
+EPSILON = Method(
+    "epsilon", "epsilon constraint", Kind.GRADIENT, sweep=partial(epsilon_front, at=LEVELS)
+)
 WEIGHTED = Method("weighted", "weighted sum", Kind.GRADIENT, sweep=weighted_front)
 NSGA2 = Method("nsga2", "NSGA-II", Kind.METAHEURISTIC)
 VEPSO = Method("vepso", "VEPSO", Kind.METAHEURISTIC)

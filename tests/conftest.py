@@ -33,3 +33,37 @@ def two_links():
 def _plants_of_this_test_are_forgotten(monkeypatch):
     """Plants that a test defines are known by name during that test only."""
     monkeypatch.setattr(Plant, "_known", dict(Plant._known))
+
+
+CRANE = """
+from dataclasses import dataclass
+from typing import ClassVar
+
+from models import Plant, parameter
+
+
+@dataclass(frozen=True)
+class Crane(Plant):
+    name: ClassVar[str] = "crane"
+    modes: ClassVar[int] = 1
+    omega: float = parameter(3.0, "rad/s", "measured")
+    coupling: float = parameter(0.4, "m", "measured")
+    inertia: float = parameter(2.0, "kg m^2", "drawing")
+
+    def modal_accelerations(self, joint, W, dW):
+        return [-(self.omega**2) * W[0] - self.coupling * joint.acceleration]
+
+    def torque(self, joint, W, dW, ddW):
+        return self.inertia * joint.acceleration + self.coupling * ddW[0]
+
+    def tip_displacements(self, W):
+        return [W[0]]
+"""
+
+
+@pytest.fixture
+def crane_file(tmp_path, _plants_of_this_test_are_forgotten):
+    """A user's file that defines a plant."""
+    path = tmp_path / "crane.py"
+    path.write_text(CRANE)
+    return path

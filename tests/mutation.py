@@ -58,7 +58,10 @@ TESTS = {
         "ocp/simulation/test_rollout.py",
     ],
     "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py"],
-    "ocp/simulation/resimulation.py": ["ocp/simulation/test_resimulation.py"],
+    "ocp/simulation/resimulation.py": [
+        "ocp/simulation/test_resimulation.py",
+        "ocp/simulation/test_free_motions.py",
+    ],
 }
 """The modules to change, and the tests that should notice."""
 

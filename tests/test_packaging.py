@@ -97,7 +97,16 @@ def test_every_requirement_has_a_lower_bound_and_a_pin_that_meets_it(where, text
 def test_the_runtime_requirements_are_few():
     names = {Requirement(text).name for text in REQUIREMENTS["runtime"]}
     # moocore, which pymoo brings, is imported for the hypervolume
-    assert names == {"casadi", "numpy", "matplotlib", "pymoo", "click", "rich", "moocore"}
+    assert names == {
+        "casadi",
+        "numpy",
+        "matplotlib",
+        "pymoo",
+        "click",
+        "rich",
+        "moocore",
+        "msgspec",
+    }
 
 
 def test_python_from_3_11_on():

@@ -1,5 +1,6 @@
 """The README does what it says: its commands, its examples, its files, its figures."""
 
+import inspect
 import os
 import re
 import shlex
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from ocp import Front, Plan
+from studies import figures
 from studies.cli import quietarm
 
 ROOT = Path(__file__).parent.parent
@@ -26,6 +28,7 @@ def blocks(language):
 
 TWO_COMMANDS = [block.strip() for block in blocks("console")[:2]]
 PYTHON = blocks("python")
+NOTEBOOK = next(block.strip() for block in blocks("console") if "jupyter" in block)
 
 
 # The two commands
@@ -53,7 +56,7 @@ def test_the_second_runs_the_tests():
     assert steps[-1].startswith(".venv/bin/pytest")
 
 
-@pytest.mark.parametrize("command", TWO_COMMANDS)
+@pytest.mark.parametrize("command", [*TWO_COMMANDS, NOTEBOOK])
 def test_the_commands_install_with_the_constraints_that_are_here(command):
     (install,) = [step for step in command.split(" && ") if "pip install" in step]
     words = shlex.split(install)
@@ -131,16 +134,49 @@ def test_the_example_in_python_plans_saves_and_exports(tmp_path):
     assert len((tmp_path / "move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
 
 
-def test_the_example_of_a_front_finds_and_saves_it(tmp_path):
+def test_the_example_with_an_algorithm_of_pymoo_searches_and_saves(tmp_path):
     printed = run_python(PYTHON[1], tmp_path)
+    front = Front.load(tmp_path / "sms-emoa.json")
+    point = front.cheapest(10e-3)
+    assert printed == f"{front.method} {len(front.points)} {point.energy}\n"
+    assert front.method == "SMSEMOA"  # the name of its class
+
+
+def test_the_example_of_a_front_finds_and_saves_it(tmp_path):
+    printed = run_python(PYTHON[2], tmp_path)
     front = Front.load(tmp_path / "front.json")
     chosen = [front.stillest(), front.knee(), front.cheapest(5e-3)]
     assert printed == "".join(f"{point.residual} {point.energy}\n" for point in chosen)
     assert len(front.points) == 20
 
 
+def test_the_example_of_a_picture_draws_it(tmp_path):
+    more = """
+assert [ax.get_title(loc="left") for ax in (left, middle)] == [
+    "joint torque [N m]", "tip displacement [mm]"
+]
+assert all(ax.figure is figure and ax.get_lines() for ax in (left, middle, right))
+"""
+    assert run_python(PYTHON[3] + more, tmp_path) == ""
+    assert (tmp_path / "mine.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_functions_that_draw_are_public_and_documented():
+    section = README.split("## Pictures of your own\n", 1)[1].split("\n## ", 1)[0]
+    named = set(re.findall(r"`((?:draw_|compare_)\w+|\w+_figure)`", section))
+    assert named <= set(figures.__all__)
+    assert {name for name in figures.__all__ if name.startswith("draw_")} <= named
+    for name in figures.__all__:
+        if name.startswith("draw_"):
+            function = getattr(figures, name)
+            given = inspect.signature(function).parameters["ax"]
+            assert (given.default, given.annotation) == (None, "Axes | None")
+            assert inspect.signature(function).return_annotation == "Axes"
+            assert len(function.__doc__) > 100
+
+
 def test_the_plant_of_your_own_is_one_file_that_everything_works_with(tmp_path):
-    crane = PYTHON[2]
+    crane = PYTHON[4]
     use = """
 from ocp import PointToPoint, plan_move
 
@@ -153,12 +189,12 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
 
 
 def test_no_example_is_left_untested():
-    assert len(PYTHON) == 3
+    assert len(PYTHON) == 5
     languages = re.findall(r"^```(\w+)$", README, re.MULTILINE)
     assert set(languages) == {"console", "python"}
 
 
-BLOCKS = [block.splitlines() for block in blocks("console")[2:]]
+BLOCKS = [block.splitlines() for block in blocks("console")[2:] if block.strip() != NOTEBOOK]
 COMMANDS = [line for block in BLOCKS for line in block]
 SEARCH = ["--population", "20", "--generations", "5"]
 SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of its own
@@ -182,6 +218,9 @@ def test_the_commands_run_one_after_another(tmp_path, lines):
     for line in lines:
         command, *words = shlex.split(line)
         assert command == ".venv/bin/quietarm"
+        if "--plant-file" in words:  # the README says that its plant's lines are in it
+            asked.add(words[words.index("--plant-file") + 1])
+            (tmp_path / "crane.py").write_text(PYTHON[2])
         ran = subprocess.run(
             [BIN / "quietarm", *shortened(words)],
             cwd=tmp_path,
@@ -196,6 +235,17 @@ def test_the_commands_run_one_after_another(tmp_path, lines):
         options = ("--output", "--csv", "--figure")
         asked |= {words[i + 1] for i, word in enumerate(words) if word in options}
         assert {path.name for path in tmp_path.iterdir()} == asked
+
+
+def test_what_opens_the_notebook_is_installed_before():
+    install, opens = NOTEBOOK.split(" && ")
+    (extra,) = re.findall(r"\.\[(\w+)\]", install)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    brought = [re.match(r"[\w-]+", one)[0] for one in project["optional-dependencies"][extra]]
+    program, command, notebook = opens.split()
+    assert (program, command) == (".venv/bin/jupyter", "lab")
+    assert {"jupyterlab", "ipykernel"} <= set(brought)  # what `jupyter lab` is in, and its Python
+    assert (ROOT / notebook).is_file()
 
 
 def test_there_are_commands_for_a_move_of_your_own():

@@ -25,7 +25,7 @@ from ocp.simulation.residual import residual_rows
 from ocp.simulation.rollout import SymbolicRollout, default_steps
 from ocp.task.quantities import QUANTITIES, ask_for_jerk
 
-LEAST_STEPS = 24
+CANDIDATE_STEPS = 24
 """Steps that keep the energy of nine in ten random candidates of the paper's boxes within 1e-4, and
 W at arrival within 1e-6 m."""
 BLOCK = 100
@@ -64,7 +64,7 @@ class PopulationObjective:
     profile : JointProfile
         How the joint moves.
     steps : int, optional
-        Number of steps; by default `LEAST_STEPS`, or more where the plant's modes need them.
+        Number of steps; by default `CANDIDATE_STEPS`, or more where the plant's modes need them.
     threads : int
         Blocks of candidates that are evaluated at the same time.
 
@@ -84,7 +84,7 @@ class PopulationObjective:
         threads: int = 1,
     ) -> None:
         self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
-        default = default_steps(task, least=LEAST_STEPS)
+        default = default_steps(task, least=CANDIDATE_STEPS)
         self.steps = default if steps is None else whole("steps", steps, 1)
         self._tip_of_state = residual_rows(task).T
         self._limits = np.array(list(task.limits.values()))

@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 
 from ocp import FileFormatError
+from ocp.answers.documents import Document, content_of, read_bytes
+from ocp.answers.older import checkpoint_of_version_1
 from ocp.base.files import write_whole
 
-FORMAT, VERSION = "quietarm-checkpoint", 1
+KIND, VERSION = "checkpoint", 2
 _HEADER, _STATE = "header", "state."
 _DAMAGE = (
     OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, RuntimeError, MemoryError,
@@ -43,7 +45,7 @@ def save_checkpoint(path: str | Path, header: Mapping[str, Any], state: Mapping[
     """
     arrays: dict[str, np.ndarray] = {}
     rest = _split(state, _STATE, arrays)
-    document = {"format": FORMAT, "version": VERSION, **header, "state": rest}
+    document = {"format": f"quietarm-{KIND}", "version": VERSION, **header, "state": rest}
     document["arrays"] = sorted(arrays)
     content = io.BytesIO()
     text = np.frombuffer(json.dumps(document).encode(), dtype=np.uint8)
@@ -69,36 +71,28 @@ def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     FileFormatError
         When the file is not a checkpoint, truncated, or of a newer version.
     """
-    try:
-        content = Path(path).read_bytes()
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileFormatError(f"{path} cannot be read: {reason}") from None
+    content = read_bytes(path)
     broken = FileFormatError(f"{path} is not a checkpoint, or not a whole one")
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         document = json.loads(bytes(arrays.pop(_HEADER)))
-        kind, version = document.pop("format"), document.pop("version")
     except _DAMAGE:
         raise broken from None
-    if kind != FORMAT:
-        raise FileFormatError(f"{path} is not a checkpoint: its format is {kind!r}")
-    if not isinstance(version, int) or version < 1:
-        raise broken
-    if version > VERSION:
-        raise FileFormatError(
-            f"{path} has version {version} of the checkpoint format and this quietarm reads up to "
-            f"{VERSION}; install a newer quietarm"
-        )
+    header = content_of(path, document, KIND, VERSION, {1: _of_version_1})
     try:
-        rest, names = document.pop("state"), document.pop("arrays")
+        rest, names = header.pop("state"), header.pop("arrays")
         state = _join(rest, _STATE, arrays)
     except _DAMAGE:
         raise broken from None
     if names != sorted(arrays):
         raise broken
-    return document, state
+    return header, state
+
+
+def _of_version_1(document: Document) -> Document:
+    kept = {name: document.pop(name) for name in ("state", "arrays")}
+    return {**checkpoint_of_version_1(document), **kept}
 
 
 def _split(state: Mapping[str, Any], prefix: str, arrays: dict[str, np.ndarray]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,18 @@ from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from metaheuristics.runs.loop import Loop
 from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.runs.settings import SearchSpec, search_versions
-from ocp.answers.documents import Document, reading
+from ocp.answers.documents import reading
+from ocp.answers.encoding import plain, typed
 
 CHECKPOINT_SECONDS = 2.0
+
+
+@dataclass(frozen=True)
+class Header:
+    """What the search of a checkpoint is, and the versions of what computed it."""
+
+    search: SearchSpec
+    versions: Mapping[str, str]
 
 
 class Keeper:
@@ -42,7 +52,8 @@ class Keeper:
     def write(self) -> str:
         """Write the state; the reason where it cannot be written, else nothing."""
         try:
-            save_checkpoint(self._path, _header(self._loop.spec), self._loop.state())
+            header = plain(Header(self._loop.spec, _versions()))
+            save_checkpoint(self._path, header, self._loop.state())
         except ValueError as error:
             return str(error)
         return ""
@@ -71,11 +82,11 @@ def resume_from(path: str | Path, loop: Loop) -> None:
     """
     document, state = load_checkpoint(path)
     with reading(path, "checkpoint"):
-        theirs, written_with = SearchSpec.from_document(document), dict(document["versions"])
-    difference = _difference(theirs.to_document(), loop.spec.to_document())
+        theirs, mine = typed(document, Header), Header(loop.spec, _versions())
+    difference = _difference(plain(theirs.search), plain(mine.search))
     if difference:
         raise ValueError(f"{path} is of another search: its {difference}")
-    difference = _difference(written_with, _versions())
+    difference = _difference(theirs.versions, mine.versions)
     if difference:
         raise ValueError(
             f"{path} was written with other software: its version of {difference}; install what "
@@ -83,10 +94,6 @@ def resume_from(path: str | Path, loop: Loop) -> None:
         )
     with reading(path, "checkpoint"):
         loop.restore(state)
-
-
-def _header(spec: SearchSpec) -> Document:
-    return {**spec.to_document(), "versions": _versions()}
 
 
 def _versions() -> dict[str, str]:

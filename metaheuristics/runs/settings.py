@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
 
 from ocp import JointProfile, PointToPoint
-from ocp.answers.documents import (
-    Document,
-    profile_from_document,
-    profile_to_document,
-    task_from_document,
-    task_to_document,
-    versions,
-)
-from ocp.answers.provenance import coefficient_bound
+from ocp.answers.provenance import coefficient_bound, versions
 from ocp.base.checks import whole
 
 MOST_INDIVIDUALS, MOST_GENERATIONS = 100_000, 1_000_000
@@ -95,32 +87,6 @@ class SearchSpec:
         object.__setattr__(self, "seed", whole("seed", self.seed, 0))
         if self.profile.size == 0:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
-
-    def to_document(self) -> Document:
-        """The search in JSON's types, SI units and radians."""
-        return {
-            "method": self.method,
-            "seed": self.seed,
-            "settings": asdict(self.settings),
-            "algorithm": dict(self.algorithm),
-            "profile": profile_to_document(self.profile),
-            **task_to_document(self.task),
-        }
-
-    @classmethod
-    def from_document(cls, document: Document) -> SearchSpec:
-        """The search of a document; KeyError, TypeError or ValueError where it is not one."""
-        settings = document["settings"]
-        return cls(
-            task=task_from_document(document),
-            profile=profile_from_document(document["profile"]),
-            method=document["method"],
-            settings=SearchSettings(
-                settings["bound"], settings["population"], settings["generations"]
-            ),
-            seed=document["seed"],
-            algorithm=dict(document["algorithm"]),
-        )
 
 
 def search_versions() -> dict[str, str]:

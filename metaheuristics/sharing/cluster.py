@@ -6,6 +6,7 @@ import logging
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from distributed import Client, LocalCluster
 
 from metaheuristics.sharing.workers import Workers
 from ocp import QuietarmError
-from ocp.answers.documents import versions
+from ocp.answers.provenance import versions
 from ocp.base.interrupts import note_interrupts
 
 DEATHS = 3
@@ -26,6 +27,9 @@ DEATHS = 3
 _CONFIG = {
     "distributed.scheduler.allowed-failures": DEATHS - 1,
     "distributed.admin.low-level-log-length": 100,  # of every topic the scheduler keeps so many
+    # On a busy machine all takes long, which is nobody's fault and needs no words of dask's.
+    "distributed.comm.timeouts.connect": "300s",
+    "distributed.nanny.pre-spawn-environ.PYTHONWARNINGS": "ignore::UserWarning",
 }
 _CONNECT_SECONDS = 10
 _GUARD = (
@@ -85,7 +89,9 @@ def connected(workers: Workers, pieces: int) -> Iterator[Cluster]:
 @contextmanager
 def _local(number: int) -> Iterator[Cluster]:
     with config.set(_CONFIG), TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        with note_interrupts() as came, _deaf_to_interrupts():  # nothing is left half started
+        # nothing is left half started
+        with note_interrupts() as came, _deaf_to_interrupts(), warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
             try:
                 cluster = LocalCluster(
                     n_workers=number,

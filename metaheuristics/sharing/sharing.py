@@ -19,6 +19,7 @@ from metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, LostPiece
 from metaheuristics.sharing.worker import do_piece
 from metaheuristics.sharing.workers import Workers
 from ocp import Front, QuietarmError
+from ocp.answers.encoding import typed
 from ocp.base.interrupts import note_interrupts
 
 _INSISTENT = 3
@@ -61,7 +62,7 @@ class _Inbox:
         """Take what a piece told."""
         _, said = event
         if "front" in said:
-            self.fronts[said["piece"]] = Front.from_document(json.loads(said["front"]))
+            self.fronts[said["piece"]] = typed(json.loads(said["front"]), Front)
         else:
             progress = SearchProgress(**json.loads(said["progress"]))
             self.news.put((said["piece"], progress))

@@ -13,6 +13,7 @@ from distributed import get_worker
 from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.sharing.pieces import Done, Piece, Say
 from ocp import Front
+from ocp.answers.encoding import plain
 
 _SAY_SECONDS = 0.2
 _ONE_AT_A_TIME = threading.Lock()
@@ -80,7 +81,7 @@ class _Teller:
 
     def found(self, front: Front) -> None:
         """Hand over the front that there is."""
-        self._send(front=json.dumps(front.to_document()))
+        self._send(front=json.dumps(plain(front)))
 
     def _send(self, **content: str) -> None:
         self._worker.log_event(self._topic, {"piece": self._number, **content})

@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
 
-from ocp.answers.documents import Document, made, numbers_of, versions
+import casadi as ca
+import numpy as np
+
+from models import __version__
 from ocp.base.checks import finite, positive, whole
+from ocp.base.ranges import CountFromOne, NotNegative
 from ocp.base.readonly import ReadOnlyDict
 from ocp.simulation.objective import Motion
+from ocp.simulation.rollout import MOST_STEPS
+
+Setting = str | bool | int | float | None
+S = TypeVar("S")
 
 MOST_BOUND = 1e6
 """Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+MOST_STARTS, MOST_POINTS = 10_000, 10_000
 
 
-MOST_STARTS, MOST_POINTS, MOST_STEPS = 10_000, 10_000, 20_000
+def versions() -> dict[str, str]:
+    """Versions of what computed an answer."""
+    return {
+        "quietarm": __version__,
+        "casadi": ca.CasadiMeta.version(),
+        "numpy": np.__version__,
+        "python": platform.python_version(),
+    }
 
 
 @dataclass(frozen=True)
@@ -32,6 +50,7 @@ class SolveSettings:
     starts: int = 4
     seed: int = 0
     steps: int | None = None
+    guess: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         limit = finite("residual limit", self.residual_limit, "m")
@@ -45,6 +64,8 @@ class SolveSettings:
         if self.steps is not None:
             steps = whole("steps", self.steps, 1, MOST_STEPS, "finer ones differ by rounding alone")
             object.__setattr__(self, "steps", steps)
+        if self.guess is not None:
+            object.__setattr__(self, "guess", tuple(finite("guess", a) for a in self.guess))
 
 
 def number_of_starts(value: object) -> int:
@@ -82,7 +103,7 @@ class Verification:
         Those less the independent integrator's [J, m].
     """
 
-    steps: int
+    steps: CountFromOne
     fixed_step_energy: float
     fixed_step_residual: float
     energy_difference: float
@@ -95,7 +116,7 @@ class Verification:
 
 
 @dataclass(frozen=True)
-class Provenance:
+class Provenance(Generic[S]):
     """What is needed to get an answer again.
 
     Attributes
@@ -103,8 +124,10 @@ class Provenance:
     method : str
         ``"ipopt"``, ``"given coefficients"``, ``"evaluated"`` (the only motion of a profile) or
         the name of a metaheuristic.
-    settings : dict
-        What was asked of the method, the seed included.
+    settings : dataclass or None
+        What was asked of the gradient's solver, the seed included; None where it was not used.
+    search : dict
+        Settings of the search that the coefficients come from; empty where there was none.
     versions : dict of str to str
         Versions of quietarm, casadi, numpy and Python.
     seconds : float
@@ -112,25 +135,11 @@ class Provenance:
     """
 
     method: str
-    settings: Mapping[str, str | int | float | None]
+    settings: S
+    search: Mapping[str, Setting] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=versions)
-    seconds: float = field(default=0.0, compare=False)
+    seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
-        for name in ("settings", "versions"):
+        for name in ("search", "versions"):
             object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
-
-
-def verification_of(document: Document) -> Verification:
-    """The verification of a document; KeyError, TypeError or ValueError where it is not one."""
-    names = [entry.name for entry in fields(Verification) if entry.name != "steps"]
-    return Verification(whole("steps", document["steps"], 1), **numbers_of(document, names))
-
-
-def provenance_of(document: Document) -> Provenance:
-    """The provenance of a document; KeyError, TypeError or ValueError where it is not one."""
-    for name in ("settings", "versions"):
-        if not isinstance(document[name], dict):
-            raise ValueError(f"{name} is {document[name]!r}, not a table of names and values")
-    finite("seconds", document["seconds"], "s")
-    return made(Provenance, document)

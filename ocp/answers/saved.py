@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import ClassVar, Self
 
-from ocp.answers.documents import Document, read_document, reading, write_document
+from ocp.answers.documents import NO_UPGRADES, Upgrades, read_document, write_document
+from ocp.answers.encoding import plain
 
 
-class Saved(ABC):
-    """An answer that has a file format: JSON, versioned, never executed."""
+class Saved:
+    """An answer that has a file format: JSON, versioned, never executed.
+
+    A subclass is a dataclass; its file has its attributes.
+    """
 
     kind: ClassVar[str]
     """What it is, in a word; its format is called quietarm- and this."""
-    version: ClassVar[int] = 1
+    version: ClassVar[int]
     """Version of its format; files of later ones are refused."""
-    oldest: ClassVar[int] = 1
-    """Oldest version that is read."""
+    upgrades: ClassVar[Upgrades] = NO_UPGRADES
+    """What makes today's document of one of an older version; by version."""
 
     def save(self, path: str | Path) -> None:
         """Write the answer as JSON, whole or not at all.
@@ -32,7 +35,7 @@ class Saved(ABC):
         ValueError
             When the file cannot be written.
         """
-        write_document(path, f"quietarm-{self.kind}", self.version, self.to_document())
+        write_document(path, self.kind, self.version, plain(self))
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -53,15 +56,4 @@ class Saved(ABC):
         FileFormatError
             When the file holds something else, is not whole, or of a newer version.
         """
-        document = read_document(path, f"quietarm-{cls.kind}", cls.version, cls.oldest)
-        with reading(path, cls.kind):
-            return cls.from_document(document)
-
-    @abstractmethod
-    def to_document(self) -> Document:
-        """The answer in JSON's types, SI units and radians."""
-
-    @classmethod
-    @abstractmethod
-    def from_document(cls, document: Document) -> Self:
-        """The answer of a document; KeyError, TypeError or ValueError where it is not one."""
+        return read_document(path, cls.kind, cls.version, cls, cls.upgrades)

@@ -1,4 +1,4 @@
-"""Numbers that people give: checked once, refused with the value and the remedy."""
+"""Check the numbers that a user gives; a refusal names the value and the remedy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files: found to be writable before the work, written whole or not at all."""
+"""Check that a file can be written before the work begins; write it whole or not at all."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def check_writable(path: str | Path) -> Path:
 
 
 def write_whole(path: str | Path, content: str | bytes) -> None:
-    """Write a file by way of a temporary one beside it, so that it is never half-written.
+    """Write a temporary file beside it, then rename: a file is never half-written.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Ctrl-C: lost nowhere, not even in casadi's own loops, and let in only where nothing breaks."""
+"""Ctrl-C: never lost, also not inside casadi, and delayed where it would break something."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ def defer_interrupts() -> Iterator[None]:
 
 @contextmanager
 def note_interrupts() -> Iterator[list[int]]:
-    """Let the block run to its end when Ctrl-C comes during it, and tell it.
+    """Let the block run to its end when Ctrl-C comes during it; the block can see that it came.
 
     Yields
     ------
     list of int
-        The interrupts until now. To end at them, early or not, is left to the caller.
+        The interrupts until now. The caller decides whether to stop.
     """
     global _deferring
     outer, _deferring = _deferring, True
@@ -84,10 +84,10 @@ def note_interrupts() -> Iterator[list[int]]:
 
 @contextmanager
 def hear_interrupts() -> Iterator[list[int]]:
-    """Tell the block of every interrupt, also of those that work inside it ends well in spite of.
+    """List the interrupts during the block, also those that the work inside handles itself.
 
-    An interrupt acts as it would without this. Work that keeps what it found may come to its end
-    all the same, and its answer then does not tell that the rest is not wanted any more.
+    An interrupt still acts as it would without this block. Work that keeps what it found may return
+    an answer all the same; the list then tells the caller that the user wants to stop.
 
     Yields
     ------
@@ -117,7 +117,7 @@ def _noting(at_once: bool) -> Iterator[list[int]]:
         came.append(number)
         if at_once:
             before[number](number, frame)
-        else:  # it ends here: nobody farther out would hear of it
+        else:  # swallowed here: no outer block would notice it
             for heard in _listeners:
                 heard.append(number)
 

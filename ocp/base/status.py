@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class SolveStatus(Enum):
-    """How a solve ended; `value` stands in files, `text` is for people."""
+    """How a solve ended; `value` is written to files, `text` is shown to the user."""
 
     OPTIMAL = "optimal"
     ACCEPTABLE = "acceptable"

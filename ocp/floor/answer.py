@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
-from ocp.answers.documents import Document, motion_of, task_from_document, task_to_document
-from ocp.answers.provenance import Provenance, Verification, provenance_of, verification_of
+from ocp.answers.documents import Upgrades
+from ocp.answers.older import floor_of_version_1
+from ocp.answers.provenance import Provenance, Verification, number_of_starts
 from ocp.answers.saved import Saved
-from ocp.base.checks import finite, positive, whole
+from ocp.base.checks import positive, whole
+from ocp.base.ranges import CountFromOne
 from ocp.base.status import SolveStatus
-from ocp.floor.motion import FreeMotion, simulate
+from ocp.profiles.free_motion import FreeMotion
 from ocp.simulation.cvodes import Trajectory
 from ocp.simulation.objective import Motion
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.resimulation import resimulated
 from ocp.task.point_to_point import PointToPoint
 
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
@@ -34,8 +38,30 @@ class Level:
         Least energy on it, by the solver's own quadrature [J].
     """
 
-    steps: int
+    steps: CountFromOne
     energy: float
+
+
+@dataclass(frozen=True)
+class FloorSettings:
+    """What was asked of the search beyond the task; see `ocp.energy_floor` for the meanings.
+
+    Raises
+    ------
+    ValueError
+        When a setting is out of range.
+    """
+
+    smooth: bool
+    starts: int
+    seed: int
+    tolerance: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "smooth", bool(self.smooth))
+        object.__setattr__(self, "starts", number_of_starts(self.starts))
+        object.__setattr__(self, "seed", whole("seed", self.seed, 0))
+        object.__setattr__(self, "tolerance", positive("tolerance", self.tolerance))
 
 
 @dataclass(frozen=True)
@@ -67,6 +93,8 @@ class Floor(Saved):
     """
 
     kind: ClassVar[str] = "floor"
+    version: ClassVar[int] = 2
+    upgrades: ClassVar[Upgrades] = {1: floor_of_version_1}
 
     task: PointToPoint
     free: FreeMotion
@@ -75,7 +103,14 @@ class Floor(Saved):
     starts: tuple[float, ...]
     status: SolveStatus
     verification: Verification
-    provenance: Provenance
+    provenance: Provenance[FloorSettings]
+
+    def __post_init__(self) -> None:
+        end, duration = self.free.times[-1], self.task.duration
+        if not math.isclose(end, duration, rel_tol=1e-12):
+            raise ValueError(f"its times end at {end:g} s, not at the duration {duration:g} s")
+        if len(self.levels) < 2 or not self.starts:
+            raise ValueError("it has fewer than two levels, or no start")
 
     @property
     def energy(self) -> float:
@@ -90,7 +125,7 @@ class Floor(Saved):
     @property
     def smooth(self) -> bool:
         """Whether the acceleration is continuous."""
-        return bool(self.provenance.settings["smooth"])
+        return self.provenance.settings.smooth
 
     @property
     def change(self) -> float:
@@ -100,8 +135,7 @@ class Floor(Saved):
     @property
     def settled(self) -> bool:
         """Whether that is within the tolerance; else the refinement ended before."""
-        tolerance = float(self.provenance.settings["tolerance"] or 0.0)
-        return abs(self.change) <= tolerance * self.levels[-1].energy
+        return abs(self.change) <= self.provenance.settings.tolerance * self.levels[-1].energy
 
     @property
     def ratio(self) -> float | None:
@@ -143,47 +177,5 @@ class Floor(Saved):
     @cached_property
     def trajectory(self) -> Trajectory:
         """The move and the residual window by CVODES; times stand twice where the torque jumps."""
-        return simulate(self.task, self.free).trajectory
-
-    def to_document(self) -> Document:
-        """The floor in JSON's types, SI units and radians."""
-        return {
-            **task_to_document(self.task),
-            "motion": {name: values.tolist() for name, values in vars(self.free).items()},
-            "figures": asdict(self.motion),
-            "levels": [asdict(level) for level in self.levels],
-            "starts": list(self.starts),
-            "status": self.status.value,
-            "verification": asdict(self.verification),
-            "provenance": {**vars(self.provenance), "settings": dict(self.provenance.settings)},
-        }
-
-    @classmethod
-    def from_document(cls, document: Document) -> Floor:
-        """The floor of a document; KeyError, TypeError or ValueError where it is not one."""
-        task, free = task_from_document(document), FreeMotion(**document["motion"])
-        if not math.isclose(free.times[-1], task.duration, rel_tol=1e-12):
-            raise ValueError(
-                f"its times end at {free.times[-1]:g} s, not at the duration {task.duration:g} s"
-            )
-        levels = tuple(
-            Level(whole("steps", level["steps"], 1), finite("energy", level["energy"], "J"))
-            for level in document["levels"]
-        )
-        starts = tuple(finite("energy of a start", value, "J") for value in document["starts"])
-        if len(levels) < 2 or not starts:
-            raise ValueError("it has fewer than two levels, or no start")
-        provenance = provenance_of(document["provenance"])
-        if not isinstance(provenance.settings.get("smooth"), bool):
-            raise ValueError("its settings do not say whether it is smooth")
-        positive("tolerance", provenance.settings.get("tolerance"))
-        return cls(
-            task=task,
-            free=free,
-            motion=motion_of(document["figures"]),
-            levels=levels,
-            starts=starts,
-            status=SolveStatus(document["status"]),
-            verification=verification_of(document["verification"]),
-            provenance=provenance,
-        )
+        joint = PiecewiseMotion.of_free_motion(self.task, self.free)
+        return resimulated(self.task, joint).trajectory

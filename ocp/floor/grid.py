@@ -6,12 +6,12 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.floor.motion import FreeMotion
+from ocp.profiles.free_motion import FreeMotion
 from ocp.simulation.collocation import mesh
 
 _AT_AN_END, _SHRINK = 3, 4.0
-"""The first and last interval of the even-handed grid are cut at 1/4, 1/16, 1/64 of their length:
-where no limit forbids it, the least energy starts and stops the joint with a jolt."""
+"""The first and last interval are cut at 1/4, 1/16 and 1/64 of their length: without a limit
+against it, the motion of least energy starts and stops the joint with a jolt."""
 _JOLT, _PARTS_OF_A_JOLT = 0.02, 4
 """An interval that changes the speed by more than this share of its largest is cut in four."""
 _SHORTEST = 4e-5

@@ -13,19 +13,20 @@ from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.status import SolveStatus
 from ocp.floor.grid import first_grid
-from ocp.floor.motion import FreeMotion
 from ocp.floor.transcription import FreePoint, FreeProgram
+from ocp.profiles.free_motion import FreeMotion
 from ocp.profiles.joint_profile import JointPath
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.ipopt import OPTIONS
 from ocp.program.solution import ENERGY
-from ocp.simulation.collocation import GAUSS_WEIGHTS
+from ocp.program.step_model import by_group
+from ocp.simulation.collocation import GAUSS_WEIGHTS, NODES
 from ocp.task.point_to_point import PointToPoint
 from ocp.task.quantities import ask_for_jerk
 
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400}
 _WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
-"""From a coarser grid's solution, which a larger barrier would let the solver leave."""
+"""From a coarser grid's solution; with a larger barrier the solver would move away from it."""
 _SCALE_STEPS = 40
 _SLACK_ROOM = 1e-2
 """How far the slacks of |power| start inside their constraints, as a share of the peak power."""
@@ -128,7 +129,7 @@ class FloorProgram:
         program = self._program(free.steps, warm)
         weights = [float(name == minimise) for name in (ENERGY, *program.peaks)]
         parameters = np.concatenate([free.lengths, self._scale, weights])
-        point, status, iterations = program.solve(
+        point, stop = program.solve(
             self._start(program, free), *self._bounds(program, limits), parameters
         )
         reference = self._reference(program)
@@ -146,8 +147,8 @@ class FloorProgram:
                 name: float(peak * reference[name])
                 for name, peak in zip(program.peaks, point.peaks, strict=True)
             },
-            status=SolveStatus.from_ipopt(status),
-            iterations=iterations,
+            status=SolveStatus.from_ipopt(stop.return_status),
+            iterations=stop.iterations,
         )
 
     def _program(self, steps: int, warm: bool) -> FreeProgram:
@@ -161,8 +162,7 @@ class FloorProgram:
         program = self._program(free.steps, warm=False)
         model = program.model
         unknowns, outputs = self._simulate(program, free, np.ones(model.scales))
-        counts = np.cumsum(list(model.outputs.values()))
-        peaks = [np.abs(rows).max() for rows in np.split(outputs, counts[:-1])]
+        peaks = [np.abs(rows).max() for rows in by_group(model.groups, outputs).values()]
         measures = np.array([*np.abs(unknowns).max(axis=1), *peaks])
         measures[0] = abs(self.task.span)
         measures[measures == 0] = 1.0
@@ -191,8 +191,7 @@ class FloorProgram:
     def _start(self, program: FreeProgram, free: FreeMotion) -> FreePoint:
         """Unknowns that agree with the motion: its own modes, slacks and peaks."""
         unknowns, outputs = self._simulate(program, free, self._scale)
-        counts = np.cumsum(list(program.model.outputs.values()))
-        values = dict(zip(program.model.outputs, np.split(outputs, counts[:-1]), strict=True))
+        values = by_group(program.model.groups, outputs)
         values |= {name: unknowns[row] for name, row in program.of_joint.items()}
         return FreePoint(
             peaks=np.array([np.abs(values[name]).max() for name in program.peaks]),
@@ -206,7 +205,7 @@ class FloorProgram:
         model, reference = program.model, self._reference(program)
         free, slack = (
             np.full((model.unknowns, program.steps + 1), np.inf),
-            np.full(3 * program.steps, np.inf),
+            np.full(NODES * program.steps, np.inf),
         )
         peaks = np.array([limits.get(name, np.inf) / reference[name] for name in program.peaks])
         lower, upper = -free, free

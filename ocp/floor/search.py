@@ -8,29 +8,32 @@ from contextlib import suppress
 
 import numpy as np
 
-from ocp.answers.provenance import Provenance, Verification, number_of_starts
-from ocp.base.checks import positive, whole
+from ocp.answers.provenance import Provenance, Verification
 from ocp.base.errors import SolverFailedError
-from ocp.floor.answer import Floor, Level
+from ocp.floor.answer import Floor, FloorSettings, Level
 from ocp.floor.grid import finer, first_grid
-from ocp.floor.motion import FreeSimulation, simulate
 from ocp.floor.program import FloorProgram, FreeSolution
-from ocp.plan.feasibility import unmet
+from ocp.plan.feasibility import rescued, unmet
 from ocp.plan.solver import UNBOUNDED_SPREAD, plan_move
+from ocp.plan.verification import refuse_passed, tightened
 from ocp.profiles.joint_profile import JointPath
 from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.residual import residual_samples
+from ocp.simulation.resimulation import Resimulation, resimulated
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-FIRST_STEPS = 80
-MOST_FIRST_STEPS, MOST_STEPS = 1500, 6000
-"""Intervals of the first grid, and those beyond which it is refined no further."""
+FIRST_INTERVALS = 80
+MOST_FIRST_INTERVALS, MOST_INTERVALS = 1500, 6000
+"""Most intervals of the first grid, and of any finer one."""
 _MOST_COLD = 600
-"""Where a warm solve fails, intervals up to which a cold one is worth its time."""
+"""After a failed warm solve a cold one is tried on grids of up to this many intervals."""
 _LEAST_LEVELS = 3
-"""As many as show whether the falls of the energy become smaller, and how fast."""
+"""Two falls of the energy at least, to see whether they become smaller, and how fast."""
 _SAME = 1e-5
-_ROUNDS, _KEPT, _OVERRUN = 4, 1e-6, 1e-3
+_ROUNDS, _KEPT = 4, 1e-6
+"""Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
 
 
 def energy_floor(
@@ -83,21 +86,27 @@ def energy_floor(
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    starts, seed = number_of_starts(starts), whole("seed", seed, 0)
-    tolerance = positive("tolerance", tolerance)
+    settings = FloorSettings(smooth, starts, seed, tolerance)
     began = time.perf_counter()
-    program = FloorProgram(task, bool(smooth))
+    program = FloorProgram(task, settings.smooth)
     fractions = first_grid(_first_steps(task))
     tried = [
         program.solve(program.along(path, fractions), task.limits)
-        for path in _paths(task, starts, seed)
+        for path in _paths(task, settings)
     ]
+    tried, least = rescued(
+        tried,
+        task.limits,
+        [found.free for found in tried[:2]],
+        program.solve,
+        lambda found: program.solve(found.free, task.limits),
+    )
     solved = [found for found in tried if found.status.solved]
     if not solved:
-        solved = _rescued(program, tried)
+        raise unmet("motion at all", task.limits, tried, least, "a longer duration")
     improved = _refined_once(program, solved)
     grids = [min(solved, key=_energy), min(improved, key=_energy)]
-    while not _settled(grids, tolerance) and 2 * grids[-1].free.steps <= MOST_STEPS:
+    while not _settled(grids, settings.tolerance) and 2 * grids[-1].free.steps <= MOST_INTERVALS:
         following = _refined(program, grids[-1])
         if not following.status.solved:
             break
@@ -113,32 +122,33 @@ def energy_floor(
         verification=Verification.between(best.free.steps, best.energy, 0.0, simulation.motion),
         provenance=Provenance(
             f"ipopt, free {'jerk' if smooth else 'acceleration'}",
-            {"smooth": bool(smooth), "starts": starts, "seed": seed, "tolerance": tolerance},
+            settings,
             seconds=time.perf_counter() - began,
         ),
     )
 
 
 def _first_steps(task: PointToPoint) -> int:
-    steps = default_steps(task, least=FIRST_STEPS)
-    if steps > MOST_FIRST_STEPS:
+    residual_samples(task)  # a window that is too long is refused before the solves, not after
+    steps = default_steps(task, least=FIRST_INTERVALS)
+    if steps > MOST_FIRST_INTERVALS:
         raise ValueError(
             f"duration {task.duration:g} s takes {steps} intervals of the plant's fastest mode; "
-            f"a floor begins with up to {MOST_FIRST_STEPS}: give a shorter duration"
+            f"a floor begins with up to {MOST_FIRST_INTERVALS}: give a shorter duration"
         )
     return steps
 
 
-def _paths(task: PointToPoint, starts: int, seed: int) -> Iterator[JointPath]:
+def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
     """Motions to start from: plain cycloid, the plan of six terms, random ones."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(settings.seed)
     profile = CycloidPolynomial()
-    for i in range(starts):
+    for i in range(settings.starts):
         coefficients = random.uniform(-UNBOUNDED_SPREAD, UNBOUNDED_SPREAD, profile.size)
         if i == 0:
             coefficients = np.zeros(profile.size)
         elif i == 1:
-            with suppress(SolverFailedError):  # limits that allow no such plan may allow a motion
+            with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
                 coefficients = np.array(plan_move(task, profile, starts=1).coefficients)
         yield profile.path(coefficients, *task.move)
 
@@ -162,7 +172,7 @@ def _refined(program: FloorProgram, found: FreeSolution) -> FreeSolution:
 
 
 def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[FreeSolution]:
-    """Every solution on its next grid; those that are the same are refined once."""
+    """Every solution on its next grid; solutions of equal energy are refined once."""
     refined: dict[float, FreeSolution] = {}
     for found in solved:
         if not any(abs(found.energy - energy) <= _SAME * energy for energy in refined):
@@ -179,7 +189,7 @@ def _refined_once(program: FloorProgram, solved: list[FreeSolution]) -> list[Fre
 
 def _least_verified(
     program: FloorProgram, grids: list[FreeSolution]
-) -> tuple[FreeSolution, FreeSimulation]:
+) -> tuple[FreeSolution, Resimulation]:
     """The last grid's motion, or that of a coarser grid where it is verified to need less."""
     least = _within_limits(program, grids[-1])
     for found in grids[:-1]:
@@ -189,56 +199,26 @@ def _least_verified(
     return least
 
 
-def _verified(found: tuple[FreeSolution, FreeSimulation]) -> float:
+def _verified(found: tuple[FreeSolution, Resimulation]) -> float:
     return found[1].motion.energy
 
 
-def _within_limits(
-    program: FloorProgram, best: FreeSolution
-) -> tuple[FreeSolution, FreeSimulation]:
+def _within_limits(program: FloorProgram, best: FreeSolution) -> tuple[FreeSolution, Resimulation]:
     """Verify; tighten limits that are passed between the solver's nodes."""
     limits = program.task.limits
-    used, simulation = dict(limits), simulate(program.task, best.free)
+    used, simulated = dict(limits), _resimulated(program, best)
     for _ in range(_ROUNDS):
-        over = {name: simulation.motion.peak(name) / limit for name, limit in limits.items()}
-        if all(ratio <= 1 + _KEPT for ratio in over.values()):
+        if not simulated.motion.passed(limits, _KEPT):
             break
-        used = {name: limit / max(over[name], 1.0) for name, limit in used.items()}
+        used = tightened(used, simulated.motion, limits)
         again = program.solve(best.free, used, warm=True)
         if not again.status.solved:
             break
-        best, simulation = again, simulate(program.task, again.free)
-    for name, limit in limits.items():
-        if simulation.motion.peak(name) > limit * (1 + _OVERRUN):
-            raise SolverFailedError(
-                f"the verified {name} is {simulation.motion.peak(name):.4g}, above its limit of "
-                f"{limit:g}: the grid is too coarse for this motion; give a smaller tolerance"
-            )
-    return best, simulation
+        best, simulated = again, _resimulated(program, again)
+    remedy = "the grid is too coarse for this motion; give a smaller tolerance"
+    refuse_passed(simulated.motion, limits, remedy)
+    return best, simulated
 
 
-def _rescued(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSolution]:
-    """Solutions from motions of least peaks, where no other start was solved; or the error."""
-    limits = program.task.limits
-    least: dict[str, FreeSolution] = {}
-    for name in limits:
-        others = {key: value for key, value in limits.items() if key != name}
-        found = [program.solve(one.free, others, minimise=name) for one in tried[:2]]
-        solved = [one for one in found if one.status.solved]
-        if solved:
-            least[name] = min(solved, key=lambda one, name=name: one.peaks[name])
-    again = [
-        program.solve(found.free, limits)
-        for name, found in least.items()
-        if found.peaks[name] <= limits[name]
-    ]
-    solved = [one for one in again if one.status.solved]
-    if solved:
-        return solved
-    raise unmet(
-        "motion at all",
-        limits,
-        [one.status for one in [*tried, *again]],
-        {name: found.peaks[name] for name, found in least.items()},
-        "a longer duration",
-    )
+def _resimulated(program: FloorProgram, found: FreeSolution) -> Resimulation:
+    return resimulated(program.task, PiecewiseMotion.of_free_motion(program.task, found.free))

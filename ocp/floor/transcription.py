@@ -1,17 +1,14 @@
 """From a task to a nonlinear program over all joint motions.
 
-With no profile: on every interval the acceleration (or the jerk) is an unknown of its own beside
-the joint's angle and speed and the modes before the interval, so that nothing is dense. Intervals
-and limits are numbers of the compiled program. The power has a slack at the three Gauss nodes of
+There is no profile. Unknowns of every interval are its acceleration (or jerk), and the joint's
+angle and speed and the modes before it, so that all derivatives are sparse. Lengths of intervals
+and limits are parameters of the compiled program. The power has a slack at the three Gauss nodes of
 every interval, where it is smooth: sampled only at the grid, the solver would hide energy between
 the samples.
 """
 
 from __future__ import annotations
 
-import io
-from collections.abc import Mapping
-from contextlib import redirect_stderr
 from dataclasses import dataclass
 
 import casadi as ca
@@ -19,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import Plant
-from ocp.base.interrupts import keep_interrupts
-from ocp.floor.motion import joint_after
+from ocp.profiles.free_motion import joint_after
+from ocp.program.ipopt import LagrangianHessian, Options, Point, Stop, ipopt, run_ipopt
 from ocp.program.step_model import JOINT, LiftedStep, groups_of
 from ocp.program.symbols import split
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
@@ -43,8 +40,9 @@ class FreeStep:
         """What is handed on to the next interval: all but the last derivative of the joint."""
         groups = groups_of(plant, quantities)
         self.scales = self.unknowns + len(groups) - 1
-        rows = [(group.name, group.rows) for group in groups[1:]]
-        self.outputs = dict(rows)
+        self.groups = groups[1:]
+        """Power and limited quantities: the outputs at the nodes."""
+        self.outputs = {group.name: group.rows for group in self.groups}
 
         w, h = ca.SX.sym("w", self.unknowns), ca.SX.sym("h")
         scale = ca.SX.sym("scale", self.scales)
@@ -89,7 +87,7 @@ class FreePoint:
 
     @property
     def flat(self) -> NDArray[np.float64]:
-        """The unknowns one after the other, as the solver has them."""
+        """All unknowns in one vector, as the solver takes them."""
         return np.concatenate([self.peaks, self.intervals.ravel(order="F"), self.slack])
 
 
@@ -105,7 +103,7 @@ class FreeProgram:
         smooth: bool,
         steps: int,
         quantities: tuple[str, ...],
-        options: Mapping[str, str | int | float],
+        options: Options,
     ) -> None:
         self.steps, self.peaks = steps, quantities
         derivatives = {name: QUANTITIES[name].derivative for name in quantities}
@@ -129,23 +127,11 @@ class FreeProgram:
         self.lower, self.upper = np.zeros(constraints.numel()), np.full(constraints.numel(), np.inf)
         self.upper[: len(model.after) * steps] = 0.0
         self._sizes = sizes
-        jacobian = ca.Function(
-            "nlp_jac_g",
-            [x, p],
-            [constraints, self._jacobian(arguments)],
-            ["x", "p"],
-            ["g", "jac_g_x"],
-        )
-        self._solver = ca.nlpsol(
-            "floor",
-            "ipopt",
+        self._solver = ipopt(
             {"x": x, "p": p, "f": objective, "g": constraints},
-            {
-                "jac_g": jacobian,
-                "hess_lag": self._hessian(x, p, arguments, constraints.numel()),
-                "print_time": False,
-                "ipopt": dict(options),
-            },
+            self._jacobian(arguments),
+            self._hessian(arguments, constraints.numel()),
+            options,
         )
         self._march = self._chain()
 
@@ -155,22 +141,12 @@ class FreeProgram:
         lower: FreePoint,
         upper: FreePoint,
         parameters: NDArray[np.float64],
-    ) -> tuple[FreePoint, str, int]:
-        """Run IPOPT: where it stopped, its own status, and its iterations."""
-        with keep_interrupts(), redirect_stderr(io.StringIO()):
-            result = self._solver(
-                x0=start.flat,
-                lbx=lower.flat,
-                ubx=upper.flat,
-                lbg=self.lower,
-                ubg=self.upper,
-                p=parameters,
-            )
-        x = result["x"].full().ravel()
-        peaks, flat, slack = np.split(x, np.cumsum(self._sizes)[:-1])
-        stopped = FreePoint(peaks, flat.reshape(self.steps + 1, -1).T, slack)
-        stats = self._solver.stats()
-        return stopped, str(stats["return_status"]), int(stats["iter_count"])
+    ) -> tuple[FreePoint, Stop]:
+        """Run IPOPT: the unknowns where it stopped, and how it ended."""
+        bounds, of_constraints = (lower.flat, upper.flat), (self.lower, self.upper)
+        stop = run_ipopt(self._solver, Point(start.flat), bounds, of_constraints, parameters)
+        peaks, flat, slack = np.split(stop.point.unknowns, np.cumsum(self._sizes)[:-1])
+        return FreePoint(peaks, flat.reshape(self.steps + 1, -1).T, slack), stop
 
     def simulate(
         self,
@@ -257,9 +233,7 @@ class FreeProgram:
             two_sided(name, ca.MX(ca.DM.eye(columns)[places, :]))
         return ca.vertcat(*rows)
 
-    def _hessian(
-        self, x: ca.MX, p: ca.MX, arguments: tuple[ca.MX, ...], constraints: int
-    ) -> ca.Function:
+    def _hessian(self, arguments: tuple[ca.MX, ...], constraints: int) -> LagrangianHessian:
         model, steps = self.model, self.steps
         n_peaks, _, n_slack = self._sizes
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
@@ -276,13 +250,7 @@ class FreeProgram:
         inner = _block_diagonal(blocks, model.unknowns, model.unknowns, steps)
         rest = model.unknowns + n_slack
         hessian = ca.diagcat(ca.MX(n_peaks, n_peaks), inner, ca.MX(rest, rest))
-        return ca.Function(
-            "nlp_hess_l",
-            [x, p, of_objective, multipliers],
-            [ca.triu(hessian)],
-            ["x", "p", "lam_f", "lam_g"],
-            ["triu_hess_gamma_x_x"],
-        )
+        return LagrangianHessian(of_objective, multipliers, hessian)
 
 
 def _rows_of(after: list[int], unknowns: int, steps: int) -> list[int]:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.answers.documents import Document, profile_to_document, task_to_document, versions
+from ocp.answers.documents import Upgrades
+from ocp.answers.older import front_of_version_2
+from ocp.answers.provenance import Setting, versions
 from ocp.answers.saved import Saved
+from ocp.base.ranges import Count, NotNegative, Positive
 from ocp.base.readonly import ReadOnlyDict
-from ocp.front.document import front_from_document
-from ocp.front.points import FailedPoint, FrontPoint, Generation, Setting
+from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.simulation.rollout import rollout
@@ -44,7 +46,9 @@ class Front(Saved):
     reference : tuple of float
         Residual [m] and energy [J] of the corner that hypervolumes are measured from.
     evaluations : int
-        Candidates evaluated; for the gradient, iterations of its solver.
+        Candidates that a search evaluated.
+    iterations : int
+        Iterations of the gradient's solver.
     failed : int
         Candidates whose figures were not finite, or absurdly large; they never enter a front.
     infeasible : int
@@ -64,29 +68,34 @@ class Front(Saved):
     """
 
     kind: ClassVar[str] = "front"
-    version: ClassVar[int] = 2  # 1, before any release, had the task's entries among the rest
-    oldest: ClassVar[int] = 2
+    version: ClassVar[int] = 3
+    upgrades: ClassVar[Upgrades] = {2: front_of_version_2}  # 1 was before any release
 
     task: PointToPoint
     profile: JointProfile
     points: tuple[FrontPoint, ...]
     method: str
     settings: Mapping[str, Setting]
-    seed: int | None
-    reference: tuple[float, float]
-    evaluations: int
-    failed: int = 0
-    infeasible: int = 0
+    seed: Count | None
+    reference: tuple[Positive, Positive]
+    evaluations: Count = 0
+    iterations: Count = 0
+    failed: Count = 0
+    infeasible: Count = 0
     failures: tuple[FailedPoint, ...] = ()
-    gaps: tuple[tuple[float, float], ...] = ()
+    gaps: tuple[tuple[NotNegative, NotNegative], ...] = ()
     history: tuple[Generation, ...] = ()
     complete: bool = True
     versions: Mapping[str, str] = field(default_factory=versions)
-    seconds: float = field(default=0.0, compare=False)
+    seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
         for name in ("settings", "versions"):
             object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
+        for point in self.points:
+            self.profile.checked(point.coefficients)
+        if self.points != non_dominated(self.points):
+            raise ValueError("its points are out of order, or one is better than another")
 
     @property
     def residuals(self) -> NDArray[np.float64]:
@@ -139,32 +148,6 @@ class Front(Saved):
             return points[0]
         scaled = np.column_stack([self.residuals, self.energies]) / spans
         return points[int(np.argmin(scaled.sum(axis=1)))]
-
-    def to_document(self) -> Document:
-        """The front in JSON's types, SI units and radians."""
-        return {
-            "task": task_to_document(self.task),
-            "profile": profile_to_document(self.profile),
-            "method": self.method,
-            "settings": dict(self.settings),
-            "seed": self.seed,
-            "points": [asdict(point) for point in self.points],
-            "reference": list(self.reference),
-            "evaluations": self.evaluations,
-            "failed": self.failed,
-            "infeasible": self.infeasible,
-            "failures": [asdict(failure) for failure in self.failures],
-            "gaps": [list(gap) for gap in self.gaps],
-            "history": [asdict(generation) for generation in self.history],
-            "complete": self.complete,
-            "versions": dict(self.versions),
-            "seconds": self.seconds,
-        }
-
-    @classmethod
-    def from_document(cls, document: Document) -> Front:
-        """The front of a document; KeyError, TypeError or ValueError where it is not one."""
-        return cls(**front_from_document(document))
 
     def _nonempty(self) -> Sequence[FrontPoint]:
         if len(self.points) == 0:

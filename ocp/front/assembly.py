@@ -58,7 +58,7 @@ def front_of(
                   "steps": sweep.steps},
         seed=settings.seed,
         reference=reference_corner(sweep.task),
-        evaluations=sweep.iterations + iterations,
+        iterations=sweep.iterations + iterations,
         failed=len(failures),
         failures=failures,
         gaps=tuple(gaps),

@@ -17,14 +17,14 @@ from ocp.program.transcription import RESIDUAL
 from ocp.simulation.objective import Motion
 
 RESIDUAL_LIMIT = "residual_limit"
-_PATIENCE = 0.6
+_TIME_AFTER_CTRL_C = 0.6
 """How long [s] points are still checked after Ctrl-C."""
 SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""
 
 
 def care_of(sweep: Sweep) -> Care:
-    """A point between the ends may be off by more than a plan; its steps are doubled once."""
+    """How exact a point between the ends must be: less than a plan; its steps are doubled once."""
     return Care(agreement=1e-4, enough_steps=2 * sweep.steps, most_steps=2 * sweep.steps)
 
 
@@ -78,7 +78,7 @@ def all_checked(
     *,
     interrupted: bool = False,
 ) -> tuple[list[FrontPoint | FailedPoint], bool]:
-    """Check many solutions; after Ctrl-C those that there is time for, spread evenly.
+    """Check many solutions; after Ctrl-C as many as there is time for, spread evenly.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def all_checked(
         evenly = sorted(range(len(found)), key=lambda i: f"{i:032b}"[::-1])  # ever finer
         for i in evenly:
             if interrupted or came:
-                until = min(until, time.monotonic() + _PATIENCE)
+                until = min(until, time.monotonic() + _TIME_AFTER_CTRL_C)
             if time.monotonic() > until:
                 break
             done[i] = checked(sweep, *found[i])

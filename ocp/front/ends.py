@@ -12,7 +12,7 @@ from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import SAME, Sweep
 from ocp.plan.feasibility import least_peaks
 from ocp.plan.solver import least_energy
-from ocp.plan.verification import MOST_STEPS, STILL, verified
+from ocp.plan.verification import MOST_SOLVER_STEPS, STILL, verified
 from ocp.program.solution import Solution
 from ocp.program.transcription import RESIDUAL
 
@@ -79,7 +79,7 @@ def find_ends(sweep: Sweep) -> Ends:
     cheapest = least_energy(free)
     sweep.iterations += cheapest.iterations
     if still is None:
-        least = least_peaks(free)
+        least = least_peaks(free.limits, free.guesses, free.least)
         if RESIDUAL not in least:
             return Ends(
                 cheapest,
@@ -96,7 +96,7 @@ def find_ends(sweep: Sweep) -> Ends:
 def _at_rest(sweep: Sweep) -> tuple[Solution, FrontPoint] | None:
     try:
         found = least_energy(sweep.problem(0.0))
-        care = replace(care_of(sweep), enough_steps=sweep.steps, most_steps=MOST_STEPS)
+        care = replace(care_of(sweep), enough_steps=sweep.steps, most_steps=MOST_SOLVER_STEPS)
         found, motion, sweep.steps = verified(sweep.problem(0.0), found, care=care)
         end, motion, _ = verified(sweep.problem(0.0), found)
     except SolverFailedError:

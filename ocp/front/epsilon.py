@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings, number_of_points
+from ocp.base.checks import positive
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
 from ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
@@ -20,17 +22,19 @@ from ocp.program.solution import Solution
 from ocp.task.point_to_point import PointToPoint
 
 _DOUBT = 1e-4
-"""Share of the energy by which sweeps must differ for random starts to join; below it lies the
-error of the fixed steps, and the better of the two is taken."""
+"""Random starts are added where the two sweeps differ by more than this share of the energy.
+Smaller differences are within the error of the fixed steps: the better of the two is taken."""
 _SCOUTS = 12
-"""Most steps along the front, about, that tell how its points are to be spaced."""
-
+"""About how many steps along the front are taken at most to find the spacing of its points."""
+_JUST_BELOW = 1 - 1e-4
+"""The residual limit is this share of the residual wanted: the verified one may be a little
+above."""
 _STRIDE = 4
 """Points from one to the next at which the sweep back compares, as long as both sweeps agree, and
 at which random starts join where they do not; what is found better is carried on to the others."""
 
 _Points = tuple[list[FrontPoint | FailedPoint], bool]
-"""Points, and whether these are all."""
+"""The points, and whether all were done."""
 
 
 def epsilon_front(
@@ -39,6 +43,7 @@ def epsilon_front(
     *,
     bound: float | None = None,
     points: int = 50,
+    at: Sequence[float] = (),
     starts: int = 4,
     seed: int = 0,
     steps: int | None = None,
@@ -49,7 +54,7 @@ def epsilon_front(
     Both ends are found first, from several starts. A few points along the front tell how to space
     the limits so that the points lie evenly in both objectives. The limits are swept from the cheap
     end, each solve starting from the solution beside it, and swept back from the still end; where
-    the two disagree, random starts join, and what is found better is carried on to its neighbours.
+    the two disagree, random starts are added, and neighbours start again from any better solution.
 
     Parameters
     ----------
@@ -61,6 +66,8 @@ def epsilon_front(
         Largest absolute coefficient; none by default.
     points : int
         Number of points, the ends included.
+    at : sequence of float, optional
+        Residuals [m] at which there is to be a point as well, where they lie between the ends.
     starts : int
         Starts of the ends, and of points that the sweeps do not agree on.
     seed : int
@@ -87,19 +94,25 @@ def epsilon_front(
     """
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)
+    at = [positive("residual", residual, "m") for residual in at]
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = find_ends(sweep)
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
     found.append(checked(sweep, ends.cheapest, asked, free=True))
-    report(2, points)
+    also = _between(ends, at)
+    total = points + len(also)
+    report(2, total)
     try:
-        stretch = _Stretch(sweep, _spaced_limits(sweep, ends, points), points, report)
+        limits = sorted([*_spaced_limits(sweep, ends, points), *also], reverse=True)
+        stretch = _Stretch(sweep, limits, total, report)
         between, complete = stretch.run(ends.cheapest, ends.still.coefficients)
         found += between
     except KeyboardInterrupt:
         complete = False
-    return front_of(sweep, "epsilon", found, points, complete=complete)
+    front = front_of(sweep, "epsilon", found, points, complete=complete)
+    extra = {"at": ", ".join(f"{residual:g}" for residual in at)} if at else {}
+    return replace(front, settings={**front.settings, **extra})
 
 
 def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> list[float]:
@@ -128,8 +141,14 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> list[float]:
     return spaced.tolist()
 
 
+def _between(ends: Ends, at: Sequence[float]) -> list[float]:
+    """Residual limits for those of these residuals that lie between the ends."""
+    limits = [_JUST_BELOW * residual for residual in at]
+    return [one for one in limits if ends.still.residual < one < ends.cheapest.residual]
+
+
 def _differ(one: Solution, other: Solution) -> bool:
-    """Whether two solutions at one limit are told apart by more than the steps' own error."""
+    """Whether two solutions at one limit differ by more than the error of the fixed steps."""
     if not (one.status.solved and other.status.solved):
         return True
     return abs(one.energy - other.energy) > _DOUBT * one.energy
@@ -147,7 +166,7 @@ class _Stretch:
         self.done = 0
 
     def run(self, above: Guess, below: Guess) -> _Points:
-        """Sweep down from the guess above and up from that below; what was found, checked."""
+        """Sweep down from the guess above and up from the one below; return the checked points."""
         complete = True
         try:
             self._sweep(above, below)
@@ -162,7 +181,7 @@ class _Stretch:
             found = self._try(i, above, done=(i + 1) // 2)
             above = found if found.status.solved else above
         doubtful = self._back(below)
-        # many terms have many minima that differ by a hair: at most double the sweeps' work
+        # many terms have many minima that hardly differ: spend at most as much again as the sweeps
         most = 2 * self.sweep.iterations - before_sweeps
         for i, guess in product(sorted(doubtful)[::_STRIDE], self.sweep.guesses):
             if self.sweep.iterations < most:
@@ -208,7 +227,7 @@ class _Stretch:
         return found
 
     def _carry_on(self, changed: Iterable[int], most: int) -> None:
-        """Start the neighbours of what changed from there, and theirs where that helps."""
+        """Start the neighbours of changed points from these, and so on where that helps."""
         waiting = list(changed)
         while waiting and self.sweep.iterations < most:
             i = waiting.pop()

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ocp.base.ranges import Count, NotNegative, Share
 from ocp.base.readonly import ReadOnlyDict
-
-Setting = str | int | float | None
 
 
 @dataclass(frozen=True)
@@ -17,8 +16,8 @@ class FrontPoint:
     """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J]."""
 
     coefficients: tuple[float, ...]
-    residual: float
-    energy: float
+    residual: NotNegative
+    energy: NotNegative
 
 
 @dataclass(frozen=True)
@@ -52,12 +51,12 @@ class Generation:
         Share of the reference box (`Front.reference`) that the points found dominate.
     """
 
-    evaluations: int
-    hypervolume: float
+    evaluations: Count
+    hypervolume: Share
 
 
 def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
-    """The points that no other beats in both objectives, stillest first.
+    """The points that no other beats in both objectives, in order of residual.
 
     Parameters
     ----------

@@ -100,7 +100,7 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
 
 
 class _Tried(NamedTuple):
-    """What became of a point: itself or a better one, or the reason why not; and its gain."""
+    """The point or a better one, or the reason of a failure; and the gain."""
 
     found: Sequence[FrontPoint | FailedPoint]
     gain: Gain
@@ -138,19 +138,20 @@ def _no_gain(point: FrontPoint, tried: bool = True) -> Gain:
 
 
 def _together(front: Front, sweep: Sweep, tried: Sequence[_Tried], complete: bool) -> Polish:
-    """The improved front, by its points' places along the given one."""
+    """The improved front; points keep their order along the given one."""
     polished = front_of(
         sweep,
         f"{front.method}, polished",
         [found for one in tried for found in one.found],
         len(front.points),
-        iterations=front.evaluations, complete=complete, seconds=front.seconds,
+        iterations=front.iterations, complete=complete, seconds=front.seconds,
     )  # fmt: skip
     with_origin = replace(
         polished,
         settings={**front.settings, "steps": polished.settings["steps"]},
         seed=front.seed,
         reference=front.reference,
+        evaluations=front.evaluations,
         history=front.history,
     )
     return Polish(with_origin, tuple(one.gain for one in tried))

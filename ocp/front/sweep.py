@@ -1,4 +1,4 @@
-"""A task's program that is asked again and again: what the gradient's fronts have in common."""
+"""A task's program solved again and again: what all fronts by the gradient share."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Guess = NDArray[np.float64] | Solution
 Report = Callable[[int, int], None]
 """Called with the number of points done and asked for."""
 SAME = 1e-5
-"""Energies that differ by less than this share are of one motion."""
+"""Solutions whose energies differ by less than this share count as one motion."""
 
 
 def no_report(done: int, total: int) -> None:

@@ -21,7 +21,7 @@ from ocp.program.transcription import RESIDUAL
 from ocp.task.point_to_point import PointToPoint
 
 _FLAT = 1e-5
-"""A minimum nearer to its chord than this share of the chord's length is an end of it."""
+"""A minimum closer to the chord than this share of its length counts as one of the chord's ends."""
 _DIAGONAL = 2**0.5
 
 

@@ -6,22 +6,17 @@ import io
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ocp.answers.documents import (
-    Document,
-    motion_of,
-    profile_from_document,
-    profile_to_document,
-    task_from_document,
-    task_to_document,
-)
-from ocp.answers.provenance import Provenance, Verification, provenance_of, verification_of
+from ocp.answers.documents import Upgrades
+from ocp.answers.older import plan_of_version_1
+from ocp.answers.provenance import Provenance, Setting, SolveSettings, Verification
 from ocp.answers.saved import Saved
 from ocp.base.checks import positive
 from ocp.base.files import write_whole
@@ -35,6 +30,8 @@ from ocp.simulation.rollout import rollout
 from ocp.task.point_to_point import PointToPoint
 
 _LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
+_SAMPLES = 1500
+"""Of the trajectory of a plan."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +57,8 @@ class Plan(Saved):
     """
 
     kind: ClassVar[str] = "plan"
+    version: ClassVar[int] = 2
+    upgrades: ClassVar[Upgrades] = {1: plan_of_version_1}
 
     task: PointToPoint
     profile: JointProfile
@@ -67,7 +66,10 @@ class Plan(Saved):
     motion: Motion
     status: SolveStatus
     verification: Verification
-    provenance: Provenance
+    provenance: Provenance[SolveSettings | None]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
 
     @property
     def residual(self) -> float:
@@ -84,43 +86,15 @@ class Plan(Saved):
         """The joint's motion as a callable of time and derivative order."""
         return self.profile.path(self.coefficients, *self.task.move)
 
-    def trajectory(self, times: ArrayLike) -> Trajectory:
-        """Sample the motion with CVODES; see `ocp.sample_trajectory`."""
+    @cached_property
+    def trajectory(self) -> Trajectory:
+        """The move and the residual window after it, by CVODES; `sampled` gives any times."""
+        arrival, window = self.task.duration, self.task.residual_window
+        return self.sampled(np.union1d(np.linspace(0.0, arrival + window, _SAMPLES), [arrival]))
+
+    def sampled(self, times: ArrayLike) -> Trajectory:
+        """The motion at given times by CVODES; see `ocp.sample_trajectory`."""
         return sample_trajectory(self.task, self.profile, self.coefficients, times)
-
-    def to_document(self) -> Document:
-        """The plan in JSON's types, SI units and radians."""
-        diagnostics = asdict(self.motion)
-        return {
-            **task_to_document(self.task),
-            "profile": profile_to_document(self.profile),
-            "coefficients": list(self.coefficients),
-            "residual": diagnostics.pop("residual"),
-            "energy": diagnostics.pop("energy"),
-            "diagnostics": diagnostics,
-            "status": self.status.value,
-            "verification": asdict(self.verification),
-            "provenance": vars(self.provenance),
-        }
-
-    @classmethod
-    def from_document(cls, document: Document) -> Plan:
-        """The plan of a document; KeyError, TypeError or ValueError where it is not one."""
-        profile = profile_from_document(document["profile"])
-        figures = {
-            "residual": document["residual"],
-            "energy": document["energy"],
-            **document["diagnostics"],
-        }
-        return cls(
-            task=task_from_document(document),
-            profile=profile,
-            coefficients=profile.checked(document["coefficients"]),
-            motion=motion_of(figures),
-            status=SolveStatus(document["status"]),
-            verification=verification_of(document["verification"]),
-            provenance=provenance_of(document["provenance"]),
-        )
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
         """Write the move as a table to drive a joint with.
@@ -139,7 +113,7 @@ class Plan(Saved):
             When the rate is out of range or the file cannot be written.
         """
         ticks = ticks_of_move(self.task.duration, sample_rate)
-        sampled = self.trajectory(np.arange(ticks + 1) / sample_rate)
+        sampled = self.sampled(np.arange(ticks + 1) / sample_rate)
         tips = sampled.tips.shape[1]
         tip_names = ["tip_m"] if tips == 1 else [f"tip_{i + 1}_m" for i in range(tips)]
         header = ["t_s", "theta_rad", "dtheta_rad_s", "ddtheta_rad_s2", *tip_names]
@@ -158,7 +132,7 @@ def evaluate_coefficients(
     *,
     profile: JointProfile | None = None,
     method: str = "given coefficients",
-    settings: Mapping[str, str | int | float | None] | None = None,
+    settings: Mapping[str, Setting] | None = None,
 ) -> Plan:
     """The figures of one motion of a profile.
 
@@ -205,7 +179,7 @@ def evaluate_coefficients(
         verification=Verification.between(
             fixed.steps, fixed.motion.energy, fixed.motion.residual, motion
         ),
-        provenance=Provenance(method, settings or {}, seconds=time.perf_counter() - began),
+        provenance=Provenance(method, None, settings or {}, seconds=time.perf_counter() - began),
     )
 
 

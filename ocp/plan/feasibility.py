@@ -1,8 +1,9 @@
-"""When a task cannot be met: find out which limit is in the way, and what would do."""
+"""When no start is solved: start from motions of least peaks, or say what would be feasible."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -13,63 +14,103 @@ from ocp.program.solution import Solution
 from ocp.program.transcription import RESIDUAL
 from ocp.task.quantities import QUANTITIES
 
-_UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
+UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
+"""Unit of every quantity that may be limited."""
 _ROOM = 1.001
 """A found least value is quoted with this room, so that asking for it is feasible."""
 
 
-def least_peaks(problem: Problem, starts: int | None = None) -> dict[str, Solution]:
+class Attempt(Protocol):
+    """A run of the solver: over coefficients, or over all joint motions."""
+
+    @property
+    def status(self) -> SolveStatus:
+        """How it ended."""
+        ...
+
+    @property
+    def peaks(self) -> Mapping[str, float]:
+        """Each limited quantity [SI units]."""
+        ...
+
+
+Start = TypeVar("Start")
+Found = TypeVar("Found", bound=Attempt)
+
+
+def least_peaks(
+    limits: Mapping[str, float],
+    starts: Sequence[Start],
+    solve: Callable[[Start, Mapping[str, float], str], Found],
+) -> dict[str, Found]:
     """Make each limited quantity in turn as small as it can be while the other limits are kept.
 
     Parameters
     ----------
-    problem : Problem
-        What was not solved.
-    starts : int, optional
-        How many of its starts; all by default.
+    limits : mapping of str to float
+        Residual [m] and peaks [SI units] that were asked for.
+    starts : sequence
+        Where to start from.
+    solve : callable
+        (start, other limits, name of the quantity) -> run of the solver.
 
     Returns
     -------
-    dict of str to Solution
+    dict of str to run
         The best solution found for each quantity; a quantity without any is left out.
     """
-    best: dict[str, Solution] = {}
-    for name in problem.limits:
-        others = {key: value for key, value in problem.limits.items() if key != name}
-        rest = problem.within(others)
-        found = [rest.solve(guess, {name: 1.0}) for guess in problem.guesses[:starts]]
-        solved = [solution for solution in found if solution.status.solved]
+    best: dict[str, Found] = {}
+    for name in limits:
+        others = {key: value for key, value in limits.items() if key != name}
+        found = [solve(start, others, name) for start in starts]
+        solved = [one for one in found if one.status.solved]
         if solved:
-            best[name] = min(solved, key=lambda solution: solution.peaks[name])
+            best[name] = min(solved, key=lambda one, name=name: one.peaks[name])
     return best
+
+
+def rescued(
+    runs: Sequence[Found],
+    limits: Mapping[str, float],
+    starts: Sequence[Start],
+    solve: Callable[[Start, Mapping[str, float], str], Found],
+    again: Callable[[Found], Found],
+) -> tuple[list[Found], dict[str, Found]]:
+    """Where no run was solved, start again from motions of least peaks.
+
+    Parameters
+    ----------
+    runs : sequence of run
+        The runs of the solver.
+    limits, starts, solve
+        As for `least_peaks`.
+    again : callable
+        (motion of a least peak) -> run of the solver from there, with all limits.
+
+    Returns
+    -------
+    list of run
+        The given runs and those from motions of least peaks.
+    dict of str to run
+        What `least_peaks` found; empty where it was not needed.
+    """
+    if any(run.status.solved for run in runs):
+        return list(runs), {}
+    least = least_peaks(limits, starts, solve)
+    within = [found for name, found in least.items() if found.peaks[name] <= limits[name]]
+    return [*runs, *map(again, within)], least
 
 
 def explain(
     problem: Problem, solutions: Sequence[Solution], least: Mapping[str, Solution]
 ) -> SolverFailedError:
-    """The error for a problem that no start solved, to be raised by the caller.
-
-    Parameters
-    ----------
-    problem : Problem
-        What was not solved.
-    solutions : sequence of Solution
-        The runs that failed.
-    least : mapping of str to Solution
-        What `least_peaks` found.
-
-    Returns
-    -------
-    SolverFailedError
-        An InfeasibleTaskError where the runs ended at infeasible motions.
-    """
+    """The error for a problem that no start solved; other arguments as for `unmet`."""
     size, bound = problem.program.profile.size, problem.bound
-    terms = f"{size} term{'s' if size > 1 else ''}"
     return unmet(
-        f"motion of {terms}",
+        f"motion of {size} term{'s' if size > 1 else ''}",
         problem.limits,
-        [solution.status for solution in solutions],
-        {name: found.peaks[name] for name, found in least.items()},
+        solutions,
+        least,
         "more terms or a longer duration",
         "" if bound is None else f", coefficients within +-{bound:g}",
     )
@@ -78,12 +119,12 @@ def explain(
 def unmet(
     motion: str,
     limits: Mapping[str, float],
-    statuses: Sequence[SolveStatus],
-    least: Mapping[str, float],
+    runs: Sequence[Attempt],
+    least: Mapping[str, Attempt],
     remedy: str,
     box: str = "",
 ) -> SolverFailedError:
-    """The error for limits that no start met, in words.
+    """The error for limits that no start met, in words, to be raised by the caller.
 
     Parameters
     ----------
@@ -91,10 +132,10 @@ def unmet(
         What was looked for.
     limits : mapping of str to float
         Residual [m] and peaks [SI units] that were asked for.
-    statuses : sequence of SolveStatus
-        How the runs ended.
-    least : mapping of str to float
-        The least that was found possible of each quantity, the others kept.
+    runs : sequence of Attempt
+        The runs that failed.
+    least : mapping of str to Attempt
+        What `least_peaks` found.
     remedy : str
         What else may do.
     box : str
@@ -105,15 +146,16 @@ def unmet(
     SolverFailedError
         An InfeasibleTaskError where a run ended at an infeasible motion.
     """
+    statuses = [run.status for run in runs]
     if SolveStatus.INFEASIBLE not in statuses:
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {statuses[0].text}")
     asked = ", ".join(
-        f"{name} <= {limit:g} {_UNITS[name]}" for name, limit in limits.items() if limit < np.inf
+        f"{name} <= {limit:g} {UNITS[name]}" for name, limit in limits.items() if limit < np.inf
     )
     remedies = [
-        f"{name} limit {peak * _ROOM:.4g} {_UNITS[name]}"
-        for name, peak in least.items()
-        if peak > limits[name]
+        f"{name} limit {found.peaks[name] * _ROOM:.4g} {UNITS[name]}"
+        for name, found in least.items()
+        if found.peaks[name] > limits[name]
     ]
     feasible = (
         f"feasible with the rest kept: {' or '.join(remedies)}"

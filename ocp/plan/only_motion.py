@@ -5,10 +5,10 @@ from __future__ import annotations
 from ocp.answers.provenance import SolveSettings
 from ocp.base.errors import InfeasibleTaskError
 from ocp.plan.answer import Plan, evaluate_coefficients
+from ocp.plan.feasibility import UNITS
 from ocp.plan.verification import OVERRUN
 from ocp.profiles.joint_profile import JointProfile
 from ocp.task.point_to_point import PointToPoint
-from ocp.task.quantities import QUANTITIES
 
 
 def only_motion(task: PointToPoint, profile: JointProfile, residual_limit: float = 0.0) -> Plan:
@@ -42,11 +42,9 @@ def only_motion(task: PointToPoint, profile: JointProfile, residual_limit: float
         task, [], profile=profile, method="evaluated", settings={"residual_limit": residual_limit}
     )
     limits = {**({"residual": residual_limit} if residual_limit else {}), **task.limits}
-    units = {"residual": "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
     broken = [
-        f"its {name} reaches {plan.motion.peak(name):.4g} {units[name]}, above {limit:g}"
-        for name, limit in limits.items()
-        if plan.motion.peak(name) > limit * (1 + OVERRUN)
+        f"its {name} reaches {plan.motion.peak(name):.4g} {UNITS[name]}, above {limits[name]:g}"
+        for name in plan.motion.passed(limits, OVERRUN)
     ]
     if broken:
         raise InfeasibleTaskError(

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import time
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ocp.answers.provenance import Provenance, SolveSettings, Verification
 from ocp.plan.answer import Plan
-from ocp.plan.feasibility import explain, least_peaks
+from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
-from ocp.plan.verification import MOST_STEPS, verified
+from ocp.plan.verification import MOST_SOLVER_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.problem import Problem
@@ -22,11 +22,11 @@ from ocp.program.transcription import RESIDUAL
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-LEAST_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
-"""Steps that a profile needs: more where more terms let the power change sign more often, and where
-limits hold only at the nodes."""
-_HIDDEN = 2e-3
-"""Share of the energy by which sampled minima can lie above the resolved ones beside them."""
+PLAN_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
+"""Steps that a profile needs: more with more terms, since the power changes sign more often, and
+more with limits, since these hold only at the nodes."""
+_HIDDEN = 5e-3
+"""A sampled minimum can lie above the resolved one beside it by this share of the energy."""
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
 
@@ -80,15 +80,14 @@ def plan_move(
         When no start ended at an optimum for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    settings = SolveSettings(residual_limit, bound, starts, seed, steps)
+    if guess is not None:
+        guess = profile.checked(guess)
+    settings = SolveSettings(residual_limit, bound, starts, seed, steps, guess)
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
-    guesses, asked = start_coefficients(profile.size, settings), asdict(settings)
-    if guess is not None:
-        guesses[0] = np.array(profile.checked(guess))
-        asked["guess"] = ", ".join(repr(value) for value in profile.checked(guess))
+    guesses = start_coefficients(profile.size, settings)
     problem = Problem(program, {RESIDUAL: residual_limit, **task.limits}, bound, guesses)
     best, motion, steps_used = verified(problem, least_energy(problem))
     return Plan(
@@ -98,7 +97,7 @@ def plan_move(
         motion=motion,
         status=best.status,
         verification=Verification.between(steps_used, best.energy, best.residual, motion),
-        provenance=Provenance("ipopt", asked, seconds=time.perf_counter() - began),
+        provenance=Provenance("ipopt", settings, seconds=time.perf_counter() - began),
     )
 
 
@@ -124,23 +123,24 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = max(LIMITED_STEPS if task.limits else LEAST_STEPS, STEPS_A_TERM * (profile.size - 2))
+    least = max(LIMITED_STEPS if task.limits else PLAN_STEPS, STEPS_A_TERM * (profile.size - 2))
     least = min(least, MOST_LEAST_STEPS)
     steps = settings.steps or default_steps(task, least=least)
-    if steps > MOST_STEPS and settings.steps is None:
+    if steps > MOST_SOLVER_STEPS and settings.steps is None:
         raise ValueError(
             f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
-            f"mode; the solver resolves up to {MOST_STEPS // 2}: give a shorter duration"
+            f"mode; the solver resolves up to {MOST_SOLVER_STEPS // 2}: give a shorter duration"
         )
     return steps
 
 
 def start_coefficients(size: int, settings: SolveSettings) -> list[NDArray[np.float64]]:
-    """Vectors of coefficients to start from: zeros, then random ones from the seed."""
+    """Vectors of coefficients to start from: the guess or zeros, then random ones of the seed."""
     random = np.random.default_rng(settings.seed)
     spread = UNBOUNDED_SPREAD if settings.bound is None else settings.bound
     others = [random.uniform(-spread, spread, size) for _ in range(settings.starts - 1)]
-    return [np.zeros(size), *others]
+    first = np.zeros(size) if settings.guess is None else np.array(settings.guess)
+    return [first, *others]
 
 
 def least_energy(problem: Problem) -> Solution:
@@ -164,19 +164,20 @@ def least_energy(problem: Problem) -> Solution:
         When no start ended at an optimum for another reason.
     """
     solutions = [problem.solve(guess, finish=False) for guess in problem.guesses]
+    solutions, least = rescued(
+        solutions,
+        problem.limits,
+        problem.guesses[:2],
+        problem.least,
+        lambda found: problem.solve(found.coefficients, finish=False),
+    )
     solved = [solution for solution in solutions if solution.status.solved]
     if not solved:
-        least = least_peaks(problem, starts=2)
-        rescues = [found.coefficients for name, found in least.items()
-                   if found.peaks[name] <= problem.limits[name]]  # fmt: skip
-        solutions += [problem.solve(guess, finish=False) for guess in rescues]
-        solved = [solution for solution in solutions if solution.status.solved]
-        if not solved:
-            raise explain(problem, solutions, least)
+        raise explain(problem, solutions, least)
     before = sum(solution.iterations for solution in solutions)
-    least, finished = min(map(_energy, solved)), list[Solution]()
+    lowest, finished = min(map(_energy, solved)), list[Solution]()
     for found in sorted(solved, key=_energy):
-        near = found.energy <= least * (1 + _HIDDEN)
+        near = found.energy <= lowest * (1 + _HIDDEN)
         if near and not any(same_minimum(found, other) for other in finished):
             finished.append(problem.finished(replace(found, iterations=0)))
     best = min(finished, key=_energy)

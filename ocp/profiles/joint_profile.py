@@ -1,4 +1,4 @@
-"""What every joint profile is: theta(t; a) and its time derivatives; one member as a path."""
+"""The base class of joint profiles, theta(t; a) with its time derivatives; one motion as a path."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 from models import Expression, JointMotion
 
 
-@dataclass(frozen=True)
 class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
 
-    A new family is one subclass: it says how many coefficients it has and gives theta and its
-    first two time derivatives, in operations that work element by element. casadi derives the jerk.
+    A new family is one subclass, a frozen dataclass: it says how many coefficients it has and gives
+    theta and its first two time derivatives, in operations that work element by element. casadi
+    derives the jerk.
     """
 
     name: ClassVar[str]
@@ -46,7 +46,7 @@ class JointProfile(ABC):
 
     @property
     def least_duration(self) -> float:
-        """The shortest duration for which the profile has a motion [s]; 0 where all will do."""
+        """The shortest duration for which the profile has a motion [s]; 0 where any will do."""
         return 0.0
 
     @abstractmethod
@@ -203,7 +203,7 @@ def _with_rates(
 ) -> tuple[list[Expression], list[Expression]]:
     """What a method of a profile gives, and time derivatives of some of it by casadi.
 
-    casadi differentiates by symbols only: another fraction is put in the place of one afterwards.
+    casadi differentiates by symbols only: the fraction is a symbol first, replaced afterwards.
     """
     coefficients, fraction, *move = arguments
     kinds = {type(one) for one in (*coefficients, fraction, *move)}

@@ -14,9 +14,9 @@ from models import Expression, JointMotion
 from ocp.profiles.joint_profile import JointProfile
 
 MAX_TERMS = 32
-"""Most terms of the polynomial. Its powers of T on [-1, 1] are told apart by double precision with
-a condition number that grows like (1 + sqrt 2)^N: 4e11 at 32 terms, which leaves four digits of a
-coefficient. The solver works along other axes, in which that does not matter."""
+"""Most terms of the polynomial. The condition number of the powers of T on [-1, 1] grows like (1 +
+sqrt 2)^N: 4e11 at 32 terms, where double precision leaves four digits of a coefficient. The solver
+works along other axes, in which that does not matter."""
 
 
 @dataclass(frozen=True)

@@ -87,7 +87,7 @@ class ShapedCycloid(JointProfile):
 
     @property
     def size(self) -> int:
-        """None: the plant says all there is to know."""
+        """None: the shaper is known from the plant."""
         return 0
 
     @property

@@ -64,7 +64,7 @@ SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {"zv": zv, "zvd": zv
 
 
 def convolved(shapers: Sequence[Impulses]) -> Impulses:
-    """One shaper that does what several do one after another, as for several modes.
+    """Several shapers one after another as a single one, as for several modes.
 
     Parameters
     ----------

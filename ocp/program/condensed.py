@@ -3,9 +3,9 @@
 The modes are linear in the state before a step and in what forces them at its nodes, by matrices
 that only the joint determines. So the states follow by a recursion over the steps; the same
 matrices carry first derivatives forwards, a row for each coefficient, and multipliers backwards.
-What is not linear happens at a node: forcing and outputs by the joint and the modes there. Its
-second derivatives are small blocks. The matrices of all steps or nodes stand on the diagonal of one
-that is sparse.
+All nonlinear terms, forcing and outputs, belong to a single node: they depend on the joint and the
+modes there. Their second derivatives are small blocks. The matrices of all steps or nodes are the
+diagonal blocks of one sparse matrix.
 """
 
 from __future__ import annotations

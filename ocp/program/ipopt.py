@@ -1,7 +1,20 @@
-"""Options of IPOPT."""
+"""IPOPT: its options, a compiled program for it, and a run."""
 
 from __future__ import annotations
 
+import io
+from collections.abc import Mapping
+from contextlib import redirect_stderr
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.base.interrupts import keep_interrupts
+
+Options = Mapping[str, str | int | float]
 OPTIONS: dict[str, str | int | float] = {
     "print_level": 0,
     "sb": "yes",
@@ -19,19 +32,18 @@ OPTIONS: dict[str, str | int | float] = {
     "expect_infeasible_problem": "yes",
 }
 SAMPLED = {**OPTIONS, "tol": 1e-5}
-"""From coefficients in a box. What remains of the sampled program's error is much less than its own
-distance to the truth."""
+"""From coefficients in a box. The tolerance is much finer than the error of the samples."""
 UNBOXED = {**SAMPLED, "mu_strategy": "monotone", "mu_init": 1e-3}
-"""Without a box the adaptive barrier loses its way with ten terms or more; with one it takes a
-fifth less iterations."""
+"""Without a box the adaptive barrier loses its way with ten terms or more; with a box it takes a
+fifth fewer iterations."""
 PEAK = OPTIONS
 """The least peak, from coefficients alone."""
 _BARRIER = 2e-9
 RESOLVED = {
     **OPTIONS,
     "tol": 1e-7,
-    # IPOPT keeps the barrier above an eleventh of this; what the barrier is times the rows of a
-    # residual limit is energy that is not saved.
+    # IPOPT keeps the barrier above an eleventh of this. The barrier times the rows of a residual
+    # limit is energy lost.
     "compl_inf_tol": 10 * _BARRIER,
     "mu_strategy": "monotone",
     "mu_init": _BARRIER,
@@ -42,7 +54,7 @@ RESOLVED = {
                      "mult_bound_push")
     },
     "max_iter": 30,
-    # Else a constraint that is kept a little better pays for more energy.
+    # Else more energy is accepted in exchange for slightly less constraint violation.
     "delta": 1e-12,
     "acceptable_tol": 1e3,
     "acceptable_dual_inf_tol": 1e10,
@@ -52,5 +64,130 @@ RESOLVED = {
     "acceptable_iter": 3,
 }  # fmt: skip
 """From the minimum beside it, with its multipliers. Where zeros of the power meet, second
-derivatives are of no more use: the iterations end when the energy has hardly changed three times.
+derivatives do not help any more: the iterations end when the energy has hardly changed three times.
 """
+
+
+@dataclass(frozen=True)
+class Point:
+    """Where the solver starts or stops: the unknowns, and the multipliers where they are known.
+
+    Attributes
+    ----------
+    unknowns : ndarray
+        Scaled unknowns.
+    bound_multipliers, multipliers : ndarray, empty where unknown
+        Of the bounds on the unknowns (positive at an upper one), and of the constraints.
+    """
+
+    unknowns: NDArray[np.float64]
+    bound_multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+
+
+class Stop(NamedTuple):
+    """How a run of IPOPT ended: where, its own status, iterations, and how far a bound is passed.
+
+    `passed` is the largest amount by which a constraint is not kept, scaled.
+    """
+
+    point: Point
+    return_status: str
+    iterations: int
+    passed: float
+
+
+class LagrangianHessian(NamedTuple):
+    """Second derivatives of the Lagrangian by the unknowns, with the symbols of its multipliers."""
+
+    of_objective: ca.MX
+    of_constraints: ca.MX
+    hessian: ca.MX
+
+
+def ipopt(
+    problem: Mapping[str, ca.MX],
+    jacobian: ca.MX,
+    hessian: LagrangianHessian,
+    options: Options,
+    gradient: ca.MX | None = None,
+) -> ca.Function:
+    """Compile a nonlinear program with derivatives of its own for IPOPT.
+
+    Parameters
+    ----------
+    problem : mapping of str to MX
+        ``x`` (unknowns), ``p`` (parameters), ``f`` (objective) and ``g`` (constraints).
+    jacobian : MX
+        Of the constraints by the unknowns.
+    hessian : LagrangianHessian
+        Of the Lagrangian.
+    options : mapping
+        IPOPT's.
+    gradient : MX, optional
+        Of the objective; casadi's own by default.
+
+    Returns
+    -------
+    Function
+        The solver.
+    """
+    x, p, f, g = (problem[name] for name in "xpfg")
+    of_objective, multipliers, second = hessian
+    functions = {
+        "jac_g": ca.Function("nlp_jac_g", [x, p], [g, jacobian], ["x", "p"], ["g", "jac_g_x"]),
+        "hess_lag": ca.Function(
+            "nlp_hess_l", [x, p, of_objective, multipliers], [ca.triu(second)],
+            ["x", "p", "lam_f", "lam_g"], ["triu_hess_gamma_x_x"],
+        ),
+    }  # fmt: skip
+    if gradient is not None:
+        names = ["x", "p"], ["f", "grad_f_x"]
+        functions["grad_f"] = ca.Function("nlp_grad_f", [x, p], [f, gradient], *names)
+    chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
+    return ca.nlpsol(
+        "program", "ipopt", dict(problem), {**functions, **chosen, "ipopt": dict(options)}
+    )
+
+
+Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def run_ipopt(
+    solver: ca.Function,
+    start: Point,
+    bounds: Bounds,
+    constraint_bounds: Bounds,
+    parameters: NDArray[np.float64],
+) -> Stop:
+    """Run IPOPT.
+
+    Parameters
+    ----------
+    solver : Function
+        A program by `ipopt`.
+    start : Point
+        Where to start.
+    bounds, constraint_bounds : tuple of ndarray
+        Lower and upper bounds of the unknowns, and of the constraints.
+    parameters : ndarray
+        The program's parameters.
+
+    Returns
+    -------
+    Stop
+        Where and how it ended.
+    """
+    lower, upper = constraint_bounds
+    known = {}
+    if start.multipliers.size:
+        known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
+    with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
+        result = solver(
+            x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper, p=parameters,
+            **known,
+        )  # fmt: skip
+    point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
+    g, stats = result["g"].full().ravel(), solver.stats()
+    passed = float(np.max([lower - g, g - upper]))
+    return Stop(point, str(stats["return_status"]), int(stats["iter_count"]), passed)

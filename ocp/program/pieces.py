@@ -21,7 +21,7 @@ from ocp.simulation.objective import energy_derivatives, resolved_energy
 _INNER = 3
 """Values by `JointProfile.inner` at a node."""
 _LEAST_SLOPE = 1e-3
-"""Least slope of the power that its zeros' curvature counts with, in peak powers a duration."""
+"""Smaller slopes of the power at its zeros count as this one [peak power / duration]."""
 
 
 class ProfilePieces:

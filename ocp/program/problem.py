@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,9 @@ from ocp.base.interrupts import keep_interrupts
 from ocp.program.run import Run
 from ocp.program.solution import LEAST_ENERGY, Solution
 from ocp.program.task_program import TaskProgram
+
+_LEAST_STEPS, _STEPS_A_TERM = 24, 6
+"""Least steps of cold runs: with fewer, some end at other minima."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,22 @@ class Problem:
         program = self.program
         return replace(self, program=TaskProgram(program.task, program.profile, 2 * program.steps))
 
+    @cached_property
+    def coarse(self) -> TaskProgram:
+        """The program that cold runs begin with.
+
+        Half the steps lead to the sampled minimum as well, unless limits hold at the nodes or a
+        second mode bends the power more.
+        """
+        task, profile, steps = self.program.task, self.program.profile, self.program.steps
+        coarse = max(_LEAST_STEPS, steps // 2, _STEPS_A_TERM * (profile.size - 2))
+        if task.limits or task.plant.modes > 1 or coarse >= steps:
+            return self.program
+        return TaskProgram(task, profile, coarse)
+
+    def _run(self, minimise: Mapping[str, float], program: TaskProgram | None = None) -> Run:
+        return Run.of(program or self.program, self.limits, self.bound, minimise)
+
     @keep_interrupts()
     def solve(
         self,
@@ -70,7 +90,7 @@ class Problem:
         Solution
             The solution, whatever its status.
         """
-        run, iterations = Run.of(self.program, self.limits, self.bound, minimise), 0
+        run, iterations = self._run(minimise), 0
         if isinstance(guess, Solution):
             if guess.form == run.resolved:
                 beside = run.beside(replace(guess, iterations=0))
@@ -78,13 +98,19 @@ class Problem:
                     return beside
                 iterations = beside.iterations
             guess = guess.coefficients
-        found = run.solve(guess, finish)
+        found = self._run(minimise, self.coarse).cold(guess)
+        if finish and found.form.sampled and found.status.solved:
+            found = run.finished(found)
         return replace(found, iterations=iterations + found.iterations)
+
+    def least(self, guess: NDArray[np.float64], limits: Mapping[str, float], name: str) -> Solution:
+        """Make one peak as small as it can be within other limits."""
+        return self.within(limits).solve(guess, {name: 1.0})
 
     @keep_interrupts()
     def finished(self, found: Solution) -> Solution:
         """Go on from a sampled minimum of the energy to the resolved one."""
-        return Run.of(self.program, self.limits, self.bound, LEAST_ENERGY).finished(found)
+        return self._run(LEAST_ENERGY).finished(found)
 
     @keep_interrupts()
     def corrected(self, found: Solution, arrival: NDArray[np.float64]) -> Solution:
@@ -108,13 +134,15 @@ class Problem:
         after = run.beside(found) if found.form == run.resolved else None
         if after is not None and after.status.solved:
             return after
-        again = run.solve(found.coefficients)
+        again = run.cold(found.coefficients)
+        if again.status.solved:
+            again = run.finished(again)
         return replace(again, iterations=(after or found).iterations + again.iterations)
 
     @keep_interrupts()
     def refined(self, found: Solution) -> Solution:
         """Solve on from a solution of least energy that was found with other steps."""
-        run = Run.of(self.program, self.limits, self.bound, LEAST_ENERGY)
+        run = self._run(LEAST_ENERGY)
         if found.form == run.resolved and not self.program.task.limits:
             # limits hold at the nodes, whose multipliers are others then
             unknowns = run.start(found.coefficients, run.resolved).unknowns

@@ -13,20 +13,20 @@ from models import Plant
 from ocp.base.status import SolveStatus
 from ocp.profiles.joint_profile import JointProfile
 from ocp.program.condensed import condensed
-from ocp.program.ipopt import PEAK, RESOLVED, SAMPLED, UNBOXED
+from ocp.program.ipopt import PEAK, RESOLVED, SAMPLED, UNBOXED, Point, Stop
 from ocp.program.solution import ENERGY, Solution
 from ocp.program.task_program import TaskProgram
-from ocp.program.transcription import RESIDUAL, Form, NonlinearProgram, Point, Stop
+from ocp.program.transcription import RESIDUAL, Form, NonlinearProgram
 from ocp.simulation.collocation import NODES
 from ocp.simulation.objective import two_samples
 
 _SLACK_ROOM = 1e-2
-"""How far the parts of the power start from zero, as a share of the peak power."""
+"""The unknowns of |power| start this far from their bound 0, as a share of the peak power."""
 _FIRST_REACH = 0.25
 """How far the unknowns along even axes may move from a cold start at first: minima of the paper's
 conditions lie within 0.2 of the cycloid."""
 _REACH = 0.1
-"""How far they may move from a neighbouring minimum, against 1 or their own size."""
+"""How far they may move from a neighbouring minimum, relative to 1 or to their own size."""
 _KEPT = 1e-7
 """A motion that passes a scaled constraint by no more than this keeps it."""
 
@@ -108,20 +108,13 @@ class Run:
         """The same program with the energy resolved."""
         return self.form._replace(energy="resolved")
 
-    def solve(self, guess: NDArray[np.float64], finish: bool = True) -> Solution:
-        """Solve from coefficients alone, unless told otherwise to the resolved energy's minimum."""
-        found = self.cold(guess)
-        return (
-            self.finished(found) if finish and found.form.sampled and found.status.solved else found
-        )
-
     def cold(self, guess: NDArray[np.float64]) -> Solution:
         """Solve from coefficients alone, at first not too far from them where nothing bounds them.
 
         IPOPT's first steps are the longest, and far from the cycloid it loses its way.
         """
         start = self.start(guess, self.form)
-        if self.axes is not self.program.even_axes:
+        if np.isfinite(self.bound):
             return self.solution(self.form, self.stop(self.form, start))
         stop = self.stop(self.form, start, _FIRST_REACH)
         iterations = stop.iterations
@@ -135,16 +128,19 @@ class Run:
     def finished(self, found: Solution) -> Solution:
         """Go on from a sampled minimum to that of the resolved energy.
 
-        What is found must keep the constraints and be better, else the given solution stands.
+        What is found must keep the constraints and be better, else the given solution stands; one
+        found with other steps, whose energy cannot be compared, stands only if this run fails.
         """
-        samples = 2 * self.program.steps  # each with two unknowns and a constraint
+        start = self.start(found.coefficients, self.resolved)
+        power = len(found.point.unknowns) - len(start.unknowns)  # two for each sample
         start = Point(
-            found.point.unknowns[: -2 * samples],
-            found.point.bound_multipliers[: -2 * samples],
-            found.point.multipliers[samples:],
-        )
+            start.unknowns, found.point.bound_multipliers[:-power],
+            found.point.multipliers[power // 2 :],
+        )  # fmt: skip
         after = self.beside(replace(found, form=self.resolved, point=start))
-        better = after.status.solved and self._value(after) <= self._value(found)
+        comparable = power == 4 * self.program.steps
+        better = not comparable or self._value(after) <= self._value(found)
+        better = better and after.status.solved
         return replace(after if better else found, iterations=after.iterations)
 
     def beside(self, found: Solution) -> Solution:

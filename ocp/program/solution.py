@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.base.status import SolveStatus
-from ocp.program.transcription import RESIDUAL, Form, Point
+from ocp.program.ipopt import Point
+from ocp.program.transcription import RESIDUAL, Form
 
 ENERGY = "energy"
 LEAST_ENERGY = {ENERGY: 1.0}

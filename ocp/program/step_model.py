@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
 
 from models import Expression, JointMotion, Plant
 from ocp.simulation.collocation import NODES, NodeState, step
 from ocp.task.quantities import QUANTITIES
 
 JOINT = 3
-"""Numbers that say how the joint moves at one time, to the plant: angle, speed, acceleration."""
+"""How many numbers describe the joint to the plant at one time: angle, speed, acceleration."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,17 @@ def grouped(plant: Plant, quantities: Sequence[str], times: int) -> list[Group]:
         rows = times * (QUANTITIES[name].rows(plant) if name in QUANTITIES else 1)
         groups.append(Group(name, groups[-1].first + groups[-1].rows, rows))
     return groups
+
+
+def by_group(
+    groups: Sequence[Group], outputs: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]:
+    """Rows of outputs by the quantity's name, from the first of these groups on."""
+    first = groups[0].first
+    return {
+        group.name: outputs[group.first - first : group.first - first + group.rows]
+        for group in groups
+    }
 
 
 def quantities_at(

@@ -10,12 +10,13 @@ from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
 from ocp.program.condensed import condensed
 from ocp.program.solution import ENERGY
+from ocp.program.step_model import by_group
 from ocp.program.transcription import RESIDUAL
 from ocp.simulation.residual import residual_rows
 from ocp.task.point_to_point import PointToPoint
 
 _ROWS_AT_ONCE = 32
-"""Residual rows are filled up to a multiple of this: tasks that differ by a row share a program."""
+"""Residual rows are padded to a multiple of this, so that similar tasks share a program."""
 
 
 class TaskProgram:
@@ -70,11 +71,7 @@ class TaskProgram:
 
     def by_group(self, outputs: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Outputs by the quantity's name."""
-        first = self.motion.states
-        return {
-            group.name: outputs[group.first - first : group.first - first + group.rows]
-            for group in self.motion.groups[1:]
-        }
+        return by_group(self.motion.groups[1:], outputs)
 
     def peaks(self, arrival: NDArray[np.float64], outputs: NDArray[np.float64]) -> dict[str, float]:
         """The residual of a scaled state on arrival, and the peaks of scaled outputs."""

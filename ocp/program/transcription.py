@@ -5,8 +5,8 @@ a residual is limited (its many rows then have few entries). The energy comes in
 
 - sampled: the power at two samples of every step is the difference of two unknowns that are not
   negative, and their sum is |power| there. The solver decides sample by sample, as in a linear
-  program, and comes to the minimum from far away in 15 to 40 iterations; but between the samples a
-  little energy can hide;
+  program, and finds the minimum from far away in 15 to 40 iterations; but the samples miss a little
+  energy between them;
 - resolved: the energy with its sign changes resolved, a smooth function of the coefficients. From
   the sampled minimum, or from that of a neighbouring problem, a few iterations lead to its own.
 
@@ -15,10 +15,7 @@ Limits are bounds on the quantities' values at the nodes.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
-from contextlib import redirect_stderr
-from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 import casadi as ca
@@ -27,12 +24,12 @@ from numpy.typing import NDArray
 
 from ocp.base.interrupts import keep_interrupts
 from ocp.program.condensed import Condensed, Inputs, March, Sensitivities
+from ocp.program.ipopt import LagrangianHessian, Options, Point, Stop, ipopt, run_ipopt
 from ocp.program.symbols import split
 from ocp.simulation.collocation import NODES
 from ocp.simulation.objective import two_samples
 
 RESIDUAL = "residual"
-Options = Mapping[str, str | int | float]
 
 
 class Form(NamedTuple):
@@ -56,35 +53,6 @@ class Form(NamedTuple):
     def sampled(self) -> bool:
         """Whether |power| is taken at samples."""
         return self.energy == "sampled"
-
-
-@dataclass(frozen=True)
-class Point:
-    """Where the solver starts or stops: the unknowns, and the multipliers where they are known.
-
-    Attributes
-    ----------
-    unknowns : ndarray
-        Scaled unknowns.
-    bound_multipliers, multipliers : ndarray, empty where unknown
-        Of the bounds on the unknowns (positive at an upper one), and of the constraints.
-    """
-
-    unknowns: NDArray[np.float64]
-    bound_multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-    multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-
-
-class Stop(NamedTuple):
-    """How a run of IPOPT ended: where, its own status, iterations, and how far a bound is passed.
-
-    `passed` is the largest amount by which a constraint is not kept, scaled.
-    """
-
-    point: Point
-    return_status: str
-    iterations: int
-    passed: float
 
 
 class NonlinearProgram:
@@ -118,16 +86,9 @@ class NonlinearProgram:
         f, gradient = self._objective(march, first, parts, weights)
         g = self._constraints(march, parts, offset, residual)
         jacobian = self._jacobian(march, first, residual)
-        functions = {
-            "grad_f": ca.Function("nlp_grad_f", [x, p], [f, gradient], ["x", "p"],
-                                  ["f", "grad_f_x"]),
-            "jac_g": ca.Function("nlp_jac_g", [x, p], [g, jacobian], ["x", "p"], ["g", "jac_g_x"]),
-            "hess_lag": self._hessian(x, p, weights, inputs, linearised, g.numel()),
-        }  # fmt: skip
-        chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
-        problem = {"x": x, "p": p, "f": f, "g": g}
-        self._solver = ca.nlpsol(
-            "program", "ipopt", problem, {**functions, **chosen, "ipopt": dict(options)}
+        hessian = self._hessian(weights, inputs, linearised, g.numel())
+        self._solver = ipopt(
+            {"x": x, "p": p, "f": f, "g": g}, jacobian, hessian, options, gradient=gradient
         )
 
     @property
@@ -167,19 +128,7 @@ class NonlinearProgram:
         Stop
             Where and how it ended.
         """
-        lower, upper = self._constraint_bounds(limits)
-        known = {}
-        if start.multipliers.size:
-            known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
-        with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
-            result = self._solver(
-                x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper,
-                p=parameters, **known,
-            )  # fmt: skip
-        point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
-        g, stats = result["g"].full().ravel(), self._solver.stats()
-        passed = float(np.max([lower - g, g - upper]))
-        return Stop(point, str(stats["return_status"]), int(stats["iter_count"]), passed)
+        return run_ipopt(self._solver, start, bounds, self._constraint_bounds(limits), parameters)
 
     def _objective(
         self, march: March, first: Sensitivities, parts: Mapping[str, ca.MX], weights: ca.MX
@@ -282,13 +231,11 @@ class NonlinearProgram:
 
     def _hessian(
         self,
-        x: ca.MX,
-        p: ca.MX,
         weights: ca.MX,
         inputs: Inputs,
         linearised: tuple[March, Sensitivities],
         constraints: int,
-    ) -> ca.Function:
+    ) -> LagrangianHessian:
         motion, form = self.motion, self.form
         of_objective, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", constraints)
         sizes = [self._samples if form.sampled else 0, motion.states]
@@ -316,10 +263,5 @@ class NonlinearProgram:
             of_outputs.append(ca.reshape(weight, group.rows, motion.nodes))
         curvature = motion.curvature(inputs, linearised, of_arrival, ca.vertcat(*of_outputs))
         rest = self.unknowns - motion.size
-        return ca.Function(
-            "nlp_hess_l",
-            [x, p, of_objective, multipliers],
-            [ca.triu(ca.diagcat(curvature + by_energy, ca.MX(rest, rest)))],
-            ["x", "p", "lam_f", "lam_g"],
-            ["triu_hess_gamma_x_x"],
-        )
+        hessian = ca.diagcat(curvature + by_energy, ca.MX(rest, rest))
+        return LagrangianHessian(of_objective, multipliers, hessian)

@@ -265,8 +265,9 @@ def eliminate(
 ) -> list[list[Expression]]:
     """Solve `matrix` x = `right` by Gaussian elimination, element by element.
 
-    Without pivoting, which elements of different candidates could not share; the matrix is the
-    identity plus terms of the order of a step over the shortest period, small by `default_steps`.
+    Without pivoting, since candidates computed together must share the order of elimination. The
+    matrix is the identity plus terms of the order of a step over the shortest period, which
+    `default_steps` keeps small.
 
     Parameters
     ----------

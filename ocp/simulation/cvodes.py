@@ -1,7 +1,6 @@
-"""CVODES as every verification uses it: a plant's equations, samples by name, and the rest after.
+"""CVODES with its options, a plant's equations for it, and what happens after arrival.
 
-Nothing here knows how the joint moves; `resimulation` drives it along a profile, `ocp.floor.motion`
-along a motion of free acceleration.
+Nothing here knows how the joint moves: `resimulation` drives it along a profile or a free motion.
 """
 
 from __future__ import annotations
@@ -55,8 +54,7 @@ class Trajectory:
     power : ndarray, shape (samples,)
         torque * speed [W].
     jerk : ndarray, shape (samples,)
-        Rate of change of the joint's acceleration [rad/s^3]; where that jumps the jerk tells of
-        the time between.
+        Rate of change of the joint's acceleration [rad/s^3]; between jumps of the acceleration.
     """
 
     time: NDArray[np.float64]
@@ -160,7 +158,7 @@ def cvodes_for(motion: str) -> Iterator[None]:
         When CVODES fails in the block.
     """
     try:
-        with _ONE_AT_A_TIME, redirect_stderr(io.StringIO()):  # the error below says it for people
+        with _ONE_AT_A_TIME, redirect_stderr(io.StringIO()):  # the error below is enough
             yield
     except RuntimeError as error:
         raise SolverFailedError(f"CVODES could not follow this motion{motion}") from error
@@ -192,8 +190,8 @@ def after_arrival(plant: Plant, target: float, times: NDArray[np.float64]) -> ca
 class _Rest:
     """Constant matrices from the state at arrival to the states in the residual window.
 
-    A sample comes a long time and then a short one after arrival, so that s samples take about
-    2 sqrt(s) matrices: with many modes one for every sample would fill the memory.
+    The time of a sample is the sum of a long and a short time, so that s samples take about 2
+    sqrt(s) matrices: with many modes, one for every sample would fill the memory.
     """
 
     short: NDArray[np.float64]  # (short times, 2 * modes, 2 * modes)

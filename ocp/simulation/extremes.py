@@ -9,22 +9,23 @@ _POINTS = 7
 """Samples of the polynomial through an extreme and its neighbours."""
 _NEWTON = 3
 _SMOOTH = 0.02
-"""The polynomial's two highest terms may be this share of what its samples span; more, and the
-function jumps or bends sharply there, so that the samples stand."""
+"""If the polynomial's two highest terms exceed this share of the range of its samples, the function
+jumps or bends sharply there, and the largest sample is taken instead."""
 
 
 def extremes(times: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Least and largest value of each row, where the derivative is zero between the samples.
 
     A polynomial of degree six goes through the extreme sample and its neighbours; Newton's method
-    finds the root of its derivative. Where a row jumps or bends sharply, its samples stand.
+    finds the root of its derivative. Where a row jumps or bends sharply, its extreme sample is
+    returned. A function in pieces may jump from one to the next.
 
     Parameters
     ----------
     times : ndarray, shape (samples,)
-        Times of the samples, increasing.
-    rows : ndarray, shape (rows, samples)
-        Values.
+        Times of the samples of a piece, increasing.
+    rows : ndarray, shape (rows, pieces * samples)
+        Values, one piece after another.
 
     Returns
     -------
@@ -45,11 +46,13 @@ def _between(
     times: NDArray[np.float64], rows: NDArray[np.float64], at: NDArray[np.intp]
 ) -> NDArray[np.float64]:
     """The largest value beside a sample of each row; minus infinity where it is not smooth."""
+    piece, at = np.divmod(at, len(times))
     first = np.clip(at - _POINTS // 2, 0, len(times) - _POINTS)
     near = first[:, None] + np.arange(_POINTS)
     centre = times[at][:, None]
     width = (times[near[:, -1]] - times[near[:, 0]])[:, None]
-    x, values = (times[near] - centre) / width, np.take_along_axis(rows, near, axis=1)
+    values = np.take_along_axis(rows, piece[:, None] * len(times) + near, axis=1)
+    x = (times[near] - centre) / width
     powers = np.arange(_POINTS)
     by_power = np.linalg.solve(x[:, :, None] ** powers, values[:, :, None])[:, :, 0]
     below = ((times[np.maximum(at - 1, 0)])[:, None] - centre) / width

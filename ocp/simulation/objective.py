@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -27,11 +27,11 @@ def resolved_energy(
 ) -> Expression:
     """Integral of |power| with its sign changes resolved: F2 of eqs (11) and (16).
 
-    The power on a step is the quadratic through its three Gauss nodes; its integral is split at
-    the quadratic's zeros. Splitting where the power keeps its sign changes nothing, so that zeros
-    that are complex or outside the step need no case of their own. Terms of third and fourth degree
-    that vanish at the nodes move work across a zero and add none to the step; the zeros stay those
-    of the quadratic, since the work hardly changes near a zero.
+    The power on a step is the quadratic through its three Gauss nodes; its integral is split at the
+    quadratic's zeros. Splitting where the power keeps its sign changes nothing, so that complex
+    zeros and zeros outside the step need no special case. Terms of third and fourth degree that
+    vanish at the nodes move work across a zero and add none to the step; the zeros stay those of
+    the quadratic, since the work hardly changes near a zero.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def _quadratic(power: Sequence[Expression]) -> list[Expression]:
 
 
 def _breaks(c: Sequence[Expression]) -> list[Expression]:
-    """The zeros of a quadratic on a step, in order; twice its least value's place without zeros."""
+    """The zeros of a quadratic on a step, in order; without zeros its extreme's place, twice."""
     discriminant = c[1] * c[1] - 4 * c[0] * c[2]
     half = -(c[1] + ca.copysign(ca.sqrt(ca.fmax(discriminant, 0)), c[1])) / 2  # no cancellation
     first, second = (
@@ -174,8 +174,8 @@ class Motion:
     overshoot : float
         How far the joint passes the target on its way [rad], 0 where it does not.
     peak_jerk : float or None
-        Largest absolute value during the move [rad/s^3]; None where the acceleration jumps, and
-        in a file from before it was told.
+        Largest absolute value during the move [rad/s^3]; None where the acceleration jumps, and in
+        older files.
     """
 
     residual: float
@@ -192,6 +192,11 @@ class Motion:
         """The residual, or the peak of a quantity, by name: infinite where it is not known."""
         value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
         return math.inf if value is None else float(value)
+
+    def passed(self, limits: Mapping[str, float], room: float = 0.0) -> dict[str, float]:
+        """What passes its limit by more than a share `room`: its peak over the limit, by name."""
+        of_limit = {name: self.peak(name) / limit for name, limit in limits.items() if limit > 0}
+        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + room}
 
     @classmethod
     def from_samples(

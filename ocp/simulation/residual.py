@@ -16,7 +16,7 @@ from ocp.task.point_to_point import PointToPoint
 
 MOST_SAMPLES = 200_000
 RADIANS_A_SAMPLE = 0.02
-"""Phase of the fastest mode between samples: a peak between two is missed by 5e-5 of it at most."""
+"""Phase of the fastest mode between samples: these miss at most 5e-5 of a peak."""
 
 
 def fastest_mode(task: PointToPoint) -> float:

@@ -1,22 +1,24 @@
-"""The independent integrator along a profile: CVODES, sampled at the nodes of a fine quadrature.
+"""The independent integrator: CVODES along any joint motion, and the figures of what it finds.
 
-Every figure that a plan reports comes from here, not from the optimiser's own fixed steps. CVODES
-is built once for a plant and a profile: what differs between moves is a parameter, and time is the
-fraction of the duration, so that one grid of samples serves every move.
+Every figure that a plan or a floor reports comes from here, not from the optimiser's own fixed
+steps. A motion is smooth pieces one after another: a profile is one, a free motion has one for
+every interval. CVODES starts anew at every piece, since the acceleration (or the jerk) jumps there,
+and gives the modes at the nodes of a fine quadrature, which finds the power's sign changes. It is
+built once for a plant and a kind of piece: what differs between moves is a parameter, and time is
+the fraction of the piece.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models import Expression, JointMotion, Plant
+from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
@@ -29,16 +31,20 @@ from ocp.simulation.cvodes import (
     outputs_of,
     rates_of,
     residual_of,
+    rest_of,
 )
 from ocp.simulation.extremes import extremes
 from ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
+from ocp.simulation.piecewise import Law, PiecewiseMotion
 from ocp.simulation.residual import fastest_mode, residual_samples
 from ocp.task.point_to_point import PointToPoint
 
 _STEPS = 500
 """Steps of the quadrature, or a multiple: its nodes are a thousandth of the move apart at most."""
 _STEPS_A_RADIAN = 10
-"""The same in radians of the plant's fastest mode."""
+"""Steps a radian of the plant's fastest mode, where these are more."""
+_LEAST_STEPS_OF_A_PIECE = 2
+"""So that every piece has the seven samples that `extremes` needs."""
 
 
 @keep_interrupts()  # casadi loses a Ctrl-C
@@ -75,11 +81,11 @@ def sample_trajectory(
     ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
     if not (ordered and np.all(np.isfinite(grid))):
         raise ValueError("sample times must be finite and increase from 0 or later")
-    checked = profile.checked(coefficients, task.duration)
+    joint = PiecewiseMotion.of_profile(task, profile, coefficients)
     moving, later = grid[grid <= task.duration], grid[grid > task.duration] - task.duration
     fractions, at = np.unique(np.append(moving / task.duration, [0.0, 1.0]), return_inverse=True)
-    with _cvodes_along(checked):
-        states, outputs = _along(task.plant, profile, fractions)([*checked, *task.move])
+    with cvodes_for(joint.remedy):
+        states, outputs = _along(task.plant, joint.law, joint.given.shape, fractions)(joint.given)
         rows = outputs.full()[:, at[:-2]]
         if later.size:
             resting = after_arrival(task.plant, task.target, later)(x0=states[:, -1])["xf"]
@@ -89,19 +95,6 @@ def sample_trajectory(
 
 def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Motion:
     """Residual, energy and diagnostics of a motion by CVODES.
-
-    Arguments and errors as for `resimulated`, whose figures it returns.
-    """
-    return resimulated(task, profile, coefficients)[0]
-
-
-@keep_interrupts()
-def resimulated(
-    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
-) -> tuple[Motion, NDArray[np.float64]]:
-    """Residual, energy and diagnostics of a motion by CVODES, and its state on arrival.
-
-    CVODES gives the modes at the nodes of a fine quadrature, which finds the power's sign changes.
 
     Parameters
     ----------
@@ -116,8 +109,6 @@ def resimulated(
     -------
     Motion
         The figures.
-    ndarray, shape (2 * modes,)
-        W (m) and then W' (m/s) on arrival.
 
     Raises
     ------
@@ -126,72 +117,148 @@ def resimulated(
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    residual_samples(task)  # refuses a window beyond reason
-    checked = profile.checked(coefficients, task.duration)
+    return resimulated(task, PiecewiseMotion.of_profile(task, profile, coefficients)).motion
+
+
+@dataclass(frozen=True, eq=False)
+class Resimulation:
+    """What CVODES makes of a joint motion.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move.
+    joint : PiecewiseMotion
+        How the joint moves.
+    motion : Motion
+        Residual, energy and diagnostics; peaks are those between the samples.
+    arrival : ndarray, shape (2 * modes,)
+        W (m) and then W' (m/s) on arrival.
+    outputs : ndarray, shape (rows of `outputs_of`, pieces * samples)
+        Samples of every piece: at its ends, and at the nodes of the quadrature.
+    """
+
+    task: PointToPoint
+    joint: PiecewiseMotion
+    motion: Motion
+    arrival: NDArray[np.float64]
+    outputs: NDArray[np.float64]
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """Samples of the move and of the residual window after it.
+
+        Where two pieces meet there are two samples of the same time: before and after a jump of
+        torque or acceleration.
+        """
+        lengths = self.joint.given[-1]
+        steps = self.outputs.shape[1] // len(lengths) // NODES
+        begins = np.append(0.0, np.cumsum(lengths[:-1]))
+        times = (begins[:, None] + np.outer(lengths, _fractions(steps))).ravel()
+        times = np.minimum(times, self.task.duration)  # beyond it by rounding
+        moving = vars(Trajectory.from_outputs(self.task.plant, times, self.outputs))
+        resting = vars(rest_of(self.task, self.arrival))
+        return Trajectory(
+            **{name: np.concatenate([moving[name], resting[name]]) for name in moving}
+        )
+
+
+@keep_interrupts()
+def resimulated(task: PointToPoint, joint: PiecewiseMotion) -> Resimulation:
+    """Simulate a joint motion with CVODES.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    joint : PiecewiseMotion
+        How the joint moves.
+
+    Returns
+    -------
+    Resimulation
+        Figures, state on arrival and samples.
+
+    Raises
+    ------
+    ValueError
+        When the residual window is too long.
+    SolverFailedError
+        When CVODES cannot follow the motion.
+    """
+    residual_samples(task)  # refuses a window that is too long
     blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / _STEPS)
-    steps = _STEPS * max(1, blocks)
-    fractions = np.concatenate([[0.0], _nodes(steps), [1.0]])
-    with _cvodes_along(checked):
-        figures = _figures(task.plant, profile, steps)
-        values = [value.full() for value in figures([*checked, *task.move])]
-    outputs, arrival, energy, net_work = values
-    extreme = Trajectory.from_outputs(task.plant, np.zeros(2), extremes(fractions, outputs))
+    of_a_piece = math.ceil(_STEPS * max(1, blocks) / joint.given.shape[1])
+    steps = max(of_a_piece, _LEAST_STEPS_OF_A_PIECE)
+    with cvodes_for(joint.remedy):
+        figures = _figures(task.plant, joint.law, joint.given.shape, steps)
+        outputs, arrival, energy, net_work = (value.full() for value in figures(joint.given))
+    largest = extremes(_fractions(steps), outputs)
+    extreme = Trajectory.from_outputs(task.plant, np.zeros(2), largest)
     motion = Motion.from_samples(
         task,
-        extreme.motion,
+        extreme.motion if joint.has_jerk else extreme.motion._replace(jerk=None),
         extreme.tips,
         extreme.torque,
         residual=residual_of(task, arrival[:, 0]),
         energy=energy.item(),
         net_work=net_work.item(),
     )
-    return motion, arrival[:, 0]
-
-
-def _cvodes_along(coefficients: Sequence[float]) -> AbstractContextManager[None]:
-    largest = max(map(abs, coefficients), default=0.0)
-    return cvodes_for(f"; are the coefficients far out of scale? (largest is {largest:g})")
+    return Resimulation(task, joint, motion, arrival[:, 0], outputs)
 
 
 @lru_cache(maxsize=16)
-def _nodes(steps: int) -> NDArray[np.float64]:
-    """When the Gauss nodes of all steps come, as shares of the duration."""
+def _fractions(steps: int) -> NDArray[np.float64]:
+    """When the Gauss nodes of all steps of a piece come, and its ends, as shares of its length."""
     begin, length = (entry.full() for entry in mesh(ca.DM(np.arange(steps)), steps))
-    return (begin + length * np.array(GAUSS_NODES)).ravel()
+    return np.concatenate([[0.0], (begin + length * np.array(GAUSS_NODES)).ravel(), [1.0]])
 
 
 @lru_cache(maxsize=16)
 @keep_interrupts()
-def _figures(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
-    """(coefficients and move) -> outputs at the nodes and ends, state at arrival, energy, work."""
-    length = mesh(ca.DM(np.arange(steps)).T, steps)[1]
-    given = ca.MX.sym("p", profile.size + 3)
-    states, outputs = _along(plant, profile, np.concatenate([[0.0], _nodes(steps), [1.0]]))(given)
+def _figures(plant: Plant, law: Law, shape: tuple[int, int], steps: int) -> ca.Function:
+    """(given) -> outputs at nodes and ends of all pieces, state on arrival, energy, net work."""
+    given, fractions = ca.MX.sym("p", *shape), _fractions(steps)
+    states, outputs = _along(plant, law, shape, fractions)(given)
     rows = ca.vertsplit(outputs)
-    power, h = (rows[-1] * rows[1])[1:-1], given[-1] * length
-    at_nodes = ca.vertsplit(ca.reshape(power, NODES, steps))
+    power = ca.reshape(rows[-1] * rows[1], len(fractions), shape[1])[1:-1, :]
+    h = given[-1, :].T @ mesh(ca.DM(np.arange(steps)).T, steps)[1]
+    at_nodes = [power[node::NODES, :].T for node in range(NODES)]
     beyond = (ca.horzcat(*at_nodes) @ weights for weights in beyond_quadratic(steps))
-    energy = resolved_energy(at_nodes, h, *beyond)
-    net_work = ca.sum2(h * sum(w * p for w, p in zip(GAUSS_WEIGHTS, at_nodes, strict=True)))
-    return ca.Function("figures", [given], [outputs, states[:, -1], energy, net_work])
+    energy = ca.sum1(resolved_energy(at_nodes, h, *beyond))
+    net_work = h * sum(w * p for w, p in zip(GAUSS_WEIGHTS, at_nodes, strict=True))
+    return ca.Function(
+        "figures", [given], [outputs, states[:, -1], energy, ca.sum1(ca.sum2(net_work))]
+    )
 
 
-def _along(plant: Plant, profile: JointProfile, fractions: NDArray[np.float64]) -> ca.Function:
-    """(coefficients and move) -> states and outputs at these fractions of the move, from 0 on."""
+def _along(
+    plant: Plant, law: Law, shape: tuple[int, int], fractions: NDArray[np.float64]
+) -> ca.Function:
+    """(given) -> states and outputs at these fractions of every piece, from 0 on."""
+    (numbers, pieces), size, count = shape, 2 * plant.modes, len(fractions)
+    integrate = _over_a_piece(plant, law, numbers, fractions)
+    given = ca.MX.sym("p", numbers, pieces)
+    _, states = integrate.mapaccum(pieces)(ca.DM.zeros(size), given)
+    at_samples = [
+        row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T for row in ca.vertsplit(given)
+    ]
+    joint = law(at_samples, ca.DM(np.tile(fractions, pieces)).T, jerk=True)
+    return ca.Function("along", [given], [states, outputs_of(plant, joint, states)])
 
-    def joint(given: Expression, fraction: Expression, jerk: bool = False) -> JointMotion:
-        entries = ca.vertsplit(given)
-        return profile.motion(entries[:-3], fraction, *entries[-3:], jerk=jerk)
 
-    size, count = 2 * plant.modes, len(fractions)
-    state, fraction, given = ca.SX.sym("x", size), ca.SX.sym("t"), ca.SX.sym("p", profile.size + 3)
-    rates = given[-1] * rates_of(plant, joint(given, fraction), state)
+def _over_a_piece(
+    plant: Plant, law: Law, numbers: int, fractions: NDArray[np.float64]
+) -> ca.Function:
+    """CVODES: (state before, given) -> state after a piece, states at these fractions of it."""
+    state, fraction, given = (
+        ca.SX.sym("x", 2 * plant.modes),
+        ca.SX.sym("t"),
+        ca.SX.sym("p", numbers),
+    )
+    rates = given[-1] * rates_of(plant, law(ca.vertsplit(given), fraction, jerk=False), state)
     problem = {"t": fraction, "x": state, "p": given, "ode": rates}
-    integrate = ca.integrator("move", "cvodes", problem, 0.0, fractions[1:].tolist(), CVODES)
-    states, fraction = ca.MX.sym("x", size, count), ca.MX.sym("t", 1, count)
-    given = ca.MX.sym("p", profile.size + 3)
-    outputs = outputs_of(plant, joint(given, fraction, jerk=True), states)
-    observe = ca.Function("observe", [fraction, states, given], [outputs])
-    at_rest = ca.DM.zeros(size)
-    states = ca.horzcat(at_rest, integrate(x0=at_rest, p=given)["xf"])
-    return ca.Function("along", [given], [states, observe(ca.DM(fractions).T, states, given)])
+    integrate = ca.integrator("piece", "cvodes", problem, 0.0, fractions[1:].tolist(), CVODES)
+    before, given = ca.MX.sym("x", state.numel()), ca.MX.sym("p", numbers)
+    states = ca.horzcat(before, integrate(x0=before, p=given)["xf"])
+    return ca.Function("over", [before, given], [states[:, -1], states])

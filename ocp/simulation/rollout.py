@@ -29,7 +29,8 @@ from ocp.simulation.residual import fastest_mode, residual_matrix
 from ocp.task.point_to_point import PointToPoint
 
 MOST_STEPS = 20_000
-LEAST_STEPS = 140
+"""Of any simulation by fixed steps: finer ones differ by rounding alone."""
+ROLLOUT_STEPS = 140
 """Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
 
 
@@ -164,7 +165,7 @@ def _march(
     return rows[:modes], rows[modes:], ca.horzcat(*state)
 
 
-def default_steps(task: PointToPoint, least: int = LEAST_STEPS) -> int:
+def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
     """Steps that resolve the profile (`least`) and the plant's fastest mode (2 a radian)."""
     radians = fastest_mode(task) * task.duration
     if 2 * radians > MOST_STEPS:

@@ -63,8 +63,9 @@ def _say_version(ctx: click.Context, param: click.Parameter, wanted: bool) -> No
 def quietarm() -> None:
     """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
 
-    PLANT is single-link, arm-on-flexible-link or dual-link. Angles are radians, or 30deg, pi/6,
-    -pi/2; lengths are metres, or 1mm; times are seconds, or 800ms.
+    PLANT is single-link, arm-on-flexible-link or dual-link, or that of a --plant-file. Angles are
+    radians, or 30deg, pi/6, -pi/2; speeds rad/s, or 60deg; lengths metres, or 1mm; times seconds,
+    or 800ms.
 
     \b
     Examples:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from models import Plant
 from ocp import Plan, PointToPoint
 from ocp.plan.answer import ticks_of_move
 from studies.cli.options import bare_angles
+from studies.cli.plants import chosen_plant
 from studies.display.saving import File, drawing
 from studies.runs.files import refuse_same_file
 
@@ -37,7 +37,7 @@ def split_options(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
 
 def task_of(rest: dict[str, Any]) -> PointToPoint:
     """The task of the options that `task_options` adds; ValueError where it is none."""
-    plant: Plant = rest.pop("plant")
+    plant = chosen_plant(rest.pop("plant"), rest.pop("plant_file"), rest.pop("set"))
     task = PointToPoint(plant, **rest)
     _ask_for_degrees(task)
     return task
@@ -60,9 +60,9 @@ def plan_files(
     """The files of a plan that were asked for."""
 
     def picture() -> Figure:
-        from studies.reports.motion_figure import four_panels
+        from studies.figures import motion_figure
 
-        return four_panels(found)
+        return motion_figure(found)
 
     return [
         (output, found.save),

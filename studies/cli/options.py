@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-import difflib
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from models import Plant, known_plants
+from models import Plant, load_plant_file
 from ocp.base.files import check_writable
 from ocp.profiles.shapers import SHAPERS
 from ocp.task.quantities import QUANTITIES, Quantity
+from studies.cli.plants import parse_plant, parse_setting
 from studies.cli.quantities import (
     is_number,
     parse_angle,
     parse_coefficients,
     parse_length,
+    parse_rate,
     parse_time,
     parse_weights,
 )
-from studies.display.picture_names import check_figure
+from studies.display.pictures import check_figure
 from studies.display.saving import STDOUT
 
 _BARE = "quietarm.bare_angles"
@@ -58,17 +60,6 @@ class _Angle(Parsed):
 def bare_angles(context: click.Context) -> dict[str, str]:
     """The angles that were typed without a unit, by the name of their option."""
     return context.meta.get(_BARE, {})
-
-
-def parse_plant(name: str) -> Plant:
-    """A plant by its name, with the paper's parameters; ValueError suggests the nearest name."""
-    plants = known_plants()
-    if name in plants:
-        return plants[name]()
-    part = [plant for plant in plants if name and name.lower() in plant]
-    near = part or difflib.get_close_matches(name.lower(), plants, n=1, cutoff=0.3)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    raise ValueError(f"unknown plant {name!r}; {hint}(known: {', '.join(sorted(plants))})")
 
 
 def _is_file(text: str) -> Path:
@@ -117,13 +108,19 @@ def _is_input(text: str) -> Path:
     return Path(_named(text))
 
 
+def _is_plant_file(text: str) -> Mapping[str, type[Plant]]:
+    return load_plant_file(_named(text))
+
+
 PLANT = Parsed("plant", parse_plant)
+SETTING = Parsed("parameter=value", parse_setting)
 ANGLE = _Angle("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
 COEFFICIENTS = Parsed("numbers", parse_coefficients)
 WEIGHTS = Parsed("weights", parse_weights)
 INPUT = Parsed("file", _is_input)
+PLANT_FILE = Parsed("file", _is_plant_file)
 OUTPUT = Parsed("file", _is_output)
 STATE = Parsed("file", _is_file)
 PICTURE = Parsed("picture", _is_picture)
@@ -141,11 +138,25 @@ def _limit_option(quantity: Quantity) -> Callable[[F], F]:
     option, words = f"--{quantity.name}-limit", f"Largest {quantity.label} on the way"
     if quantity.unit == "m":
         return click.option(option, type=LENGTH, help=f"{words}.")
+    if quantity.derivative is not None:
+        parse = partial(parse_rate, order=quantity.derivative)
+        help_text = f"{words} [{quantity.unit}], or as 60deg."
+        return click.option(option, type=Parsed(quantity.name, parse), help=help_text)
     return click.option(option, type=float, help=f"{words} [{quantity.unit}].")
 
 
+plant_file_option = partial(
+    click.option, "--plant-file", type=PLANT_FILE,
+    is_eager=True,  # the plants in it are then known by name
+    help="A plant of your own: a file in Python, which is run.",
+)  # fmt: skip
+
+
 _TASK_OPTIONS = (
-    click.argument("plant", type=PLANT),
+    click.argument("plant", type=PLANT, required=False, metavar="PLANT"),
+    plant_file_option(),
+    click.option("--set", type=SETTING, multiple=True,
+                 help="Set a parameter of the plant, as omega=9 (SI units); may be repeated."),
     click.option("--start", type=ANGLE, default=0.0, show_default=True,
                  help="Joint angle at the start."),
     click.option("--target", type=ANGLE, required=True, help="Joint angle at the end."),
@@ -160,7 +171,8 @@ _OUTPUT_OPTIONS = (
     click.option("--csv", "csv_file", type=OUTPUT, help="Write the move to this CSV file."),
     click.option("--sample-rate", type=float, default=1000.0, show_default=True,
                  help="Rows per second of the CSV file [Hz]."),
-    click.option("--figure", type=PICTURE, help="Draw the four panels (.png, .pdf or .svg)."),
+    click.option("--figure", type=PICTURE,
+                 help="Draw the move over the plain cycloid (.png, .pdf or .svg)."),
 )  # fmt: skip
 _WORKERS_OPTIONS = (
     click.option("--workers", type=int, default=1, show_default=True,

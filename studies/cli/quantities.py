@@ -1,4 +1,4 @@
-"""Angles, lengths and times as they are typed: 30deg, -pi/2, 1mm, 800ms."""
+"""Quantities as they are typed: 30deg, -pi/2, 60deg/s, 1mm, 800ms."""
 
 from __future__ import annotations
 
@@ -39,6 +39,35 @@ def parse_angle(text: str) -> float:
             size = float(factor or 1) * math.pi / float(divisor or 1)
             return -size if sign == "-" else size
     return _with_unit(text, _ANGLES, "an angle", "radians (0.5), 30deg, pi/6 or -pi/2")
+
+
+def parse_rate(text: str, order: int) -> float:
+    """Read a speed, acceleration or jerk of the joint.
+
+    Parameters
+    ----------
+    text : str
+        An angle as for `parse_angle`, with or without the time: ``2``, ``60deg``, ``60deg/s``.
+    order : int
+        Which power of a second it is divided by: 1 for a speed, 2 for an acceleration.
+
+    Returns
+    -------
+    float
+        The rate [rad/s^order].
+
+    Raises
+    ------
+    ValueError
+        When it is none of these.
+    """
+    per = "/s" if order == 1 else f"/s^{order}"
+    try:
+        return parse_angle(text.strip().removesuffix(per))
+    except ValueError:
+        raise ValueError(
+            f"{text!r} is not a number in rad{per}; give that (2), 60deg, 60deg{per} or pi/2"
+        ) from None
 
 
 def is_number(text: str) -> bool:

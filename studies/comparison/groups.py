@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 
 from ocp import Front
-from ocp.answers.documents import profile_to_document
+from ocp.answers.encoding import plain
 from studies.methods import method_of
 from studies.paper.tasks import task_difference
 
@@ -82,7 +82,7 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 
 
 def _settings(front: Front) -> dict[str, object]:
-    profile = profile_to_document(front.profile)
+    profile = plain(front.profile)
     return {**front.settings, "profile": profile.pop("name"), **profile, "whole": front.complete}
 
 

@@ -14,10 +14,8 @@ from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
 from studies.comparison.groups import check_fronts, grouped
 from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
-from studies.methods import Method, method_of
+from studies.methods import LEVELS, Method, method_of
 
-LEVELS = (1e-4, 1e-3, 5e-3)
-"""Residuals [m] at which energies are compared."""
 FILL = 1000
 """About how many points a filled front has."""
 _MARGIN = 1.1

@@ -37,7 +37,8 @@ def _fronts(comparison: Comparison) -> Table:
         *_quartile_columns(_MISS),
         Column("epsilon (less is better)", _MISS),
         *_quartile_columns(_MISS),
-        Column("candidates, or solver iterations", "{:.0f}".format),
+        Column("candidates", "{:.0f}".format),
+        Column("solver iterations", "{:.0f}".format),
         Column("time of a run [s]", "{:.1f}".format),
     )
     rows: list[list[Cell]] = []
@@ -51,7 +52,8 @@ def _fronts(comparison: Comparison) -> Table:
             row += _quartiles(group.spread(figure), several)
             if figure == "hypervolume":
                 row.append(group.spread("hypervolume_found").median if filling else None)
-        row += [group.spread(figure).median for figure in ("evaluations", "seconds")]
+        row += [group.spread(figure).median or None for figure in ("evaluations", "iterations")]
+        row.append(group.spread("seconds").median)
         rows.append(row)
     return Table("Fronts", columns, rows)
 
@@ -114,7 +116,7 @@ def runs_table(comparison: Comparison) -> Table:
         "name", "label", "method", "seed", "bound", "coefficients", "points", "hypervolume",
         "hypervolume_found", "igd_plus", "epsilon",
         *(f"{name}_at_{at}" for name in ("energy_J", "gap", "gap_between") for at in levels),
-        "evaluations", "seconds", "complete",
+        "evaluations", "iterations", "seconds", "complete",
     ]  # fmt: skip
     rows: list[list[Cell]] = []
     for group in comparison.groups:
@@ -124,7 +126,12 @@ def runs_table(comparison: Comparison) -> Table:
             row += [front.settings.get("bound"), front.profile.size, len(front.points)]
             row += [run.hypervolume, run.hypervolume_found, run.igd_plus, run.epsilon]
             row += [figure if isfinite(figure) else None for figure in figures]
-            row += [front.evaluations, front.seconds, "yes" if front.complete else "no"]
+            row += [
+                front.evaluations,
+                front.iterations,
+                front.seconds,
+                "yes" if front.complete else "no",
+            ]
             rows.append(row)
     return Table("Runs", [Column(name) for name in names], rows)
 

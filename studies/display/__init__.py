@@ -1,4 +1,4 @@
-"""How anything is shown: tables, progress, pictures and pages, whatever they hold.
+"""What the terminal shows and how files are written: words, tables, progress, saving.
 
 May import no other room of `studies`.
 """

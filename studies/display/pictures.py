@@ -1,14 +1,25 @@
-"""Pictures, written whole or not at all."""
+"""Pictures, written whole or not at all; the drawing library is not loaded here."""
 
 from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from matplotlib.figure import Figure
+from ocp.base.files import check_writable, write_whole
 
-from ocp.base.files import write_whole
-from studies.display.picture_names import check_figure
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SUFFIXES = (".png", ".pdf", ".svg")
+
+
+def check_figure(path: str | Path) -> Path:
+    """Make sure that a picture can be written under this name; ValueError otherwise."""
+    target = check_writable(path)
+    if target.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{target} is no picture; end its name in {', '.join(SUFFIXES)}")
+    return target
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:

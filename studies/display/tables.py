@@ -82,6 +82,15 @@ class Table:
         """Write the table as CSV, whole or not at all."""
         write_whole(path, self.csv())
 
+    def turned(self) -> Table:
+        """The table with rows and columns exchanged, as it is shown."""
+        first, *others = self.columns
+        heads = [Column(first.heading), *(Column(str(row[0])) for row in self.rows)]
+        rows = [
+            [c.heading.strip(), *(row[i] for row in self.rows)] for i, c in enumerate(others, 1)
+        ]
+        return Table(self.title, heads, rows)
+
     def upright(self) -> list[list[str]]:
         """The table turned: one line for each quantity, its heading first; the names on top."""
         return [

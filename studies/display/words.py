@@ -1,8 +1,15 @@
-"""Words on the screen: lines that stay whole, lengths in millimetres."""
+"""Words on the screen: lines that stay whole, lengths in millimetres, plants, moves and tasks."""
 
 from __future__ import annotations
 
+from dataclasses import fields
+from math import degrees
+
 from rich.console import Console
+
+from models import Plant
+from ocp import PointToPoint
+from ocp.task.quantities import QUANTITIES
 
 
 def print_lines(console: Console, *lines: str) -> None:
@@ -18,3 +25,26 @@ def counted(number: int, what: str) -> str:
 def millimetres(length: float) -> str:
     """A length [m] in millimetres."""
     return f"{length * 1e3:.3g} mm"
+
+
+def plant_words(plant: Plant) -> str:
+    """A plant's name, with the parameters that differ from those of its class."""
+    changed: list[str] = []
+    for entry in fields(plant):
+        value, unit = plant.parameters[entry.name], entry.metadata.get("unit", "-")
+        if value != entry.default:
+            changed.append(f"{entry.name} = {value:.6g}{'' if unit == '-' else f' {unit}'}")
+    return f"{plant.name} with {', '.join(changed)}" if changed else plant.name
+
+
+def move_of(task: PointToPoint) -> str:
+    """The move of a task: "0 to 30 deg in 0.8 s"."""
+    return f"{degrees(task.start):.6g} to {degrees(task.target):.6g} deg in {task.duration:g} s"
+
+
+def title_of(task: PointToPoint) -> str:
+    """A task in a line: its plant and move; its limits where it has any."""
+    limits = [
+        f"{name} within {value:g} {QUANTITIES[name].unit}" for name, value in task.limits.items()
+    ]
+    return ", ".join([plant_words(task.plant), move_of(task), *limits])

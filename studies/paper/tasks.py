@@ -1,4 +1,4 @@
-"""Tasks in words: where two of them differ, which are the paper's, and what to call one."""
+"""Where two tasks differ, in words, and which are the paper's."""
 
 from __future__ import annotations
 
@@ -61,15 +61,3 @@ def _words(value: float | None, unit: str) -> str:
 def condition_of(task: PointToPoint) -> Case | None:
     """The condition of the paper that a task is; None where it is none of them."""
     return next((c for c in CONDITIONS if not task_difference(task, c.task)), None)
-
-
-def title_of(task: PointToPoint) -> str:
-    """A task in a line: its plant, move and duration; its limits where it has any."""
-    condition = condition_of(task)
-    if condition is not None:
-        return f"{task.plant.name}, {condition.label}"
-    limits = "".join(
-        f", {name} within {value:g} {QUANTITIES[name].unit}" for name, value in task.limits.items()
-    )
-    move = f"{task.start:.4g} to {task.target:.4g} rad, {task.duration:g} s"
-    return f"{task.plant.name}, {move}{limits}"

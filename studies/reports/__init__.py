@@ -1,4 +1,4 @@
-"""One answer on the screen and as a picture: a plan, a floor, a front.
+"""One answer on the screen and in files: a plan, a floor, a front, a comparison.
 
-May import `comparison`, `paper`, `methods` and `display`.
+May import `figures`, `comparison`, `paper`, `methods` and `display`.
 """

@@ -64,7 +64,7 @@ def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
 
 
 def _unsolved(floor: Floor) -> str:
-    missing = int(floor.provenance.settings["starts"] or 0) - len(floor.starts)
+    missing = floor.provenance.settings.starts - len(floor.starts)
     return f"; {missing} not solved" if missing > 0 else ""
 
 

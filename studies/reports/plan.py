@@ -9,7 +9,7 @@ from rich.console import Console
 from ocp import Motion, Plan, PointToPoint, ShapedCycloid
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
-from studies.display.words import millimetres
+from studies.display.words import millimetres, move_of, plant_words
 
 Row = tuple[str, str]
 
@@ -44,12 +44,14 @@ def print_plan(console: Console, plan: Plan) -> None:
 
 def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     """The move and its limits, and where the motion breaks one."""
-    move = f"{_angle(task.start)} to {_angle(task.target)} in {task.duration:g} s"
     limits = ", ".join(
         f"{name} {_quantity(name, value)}{_broken(name, motion.peak(name), value)}"
         for name, value in task.limits.items()
     )
-    return [("move", f"{task.plant.name}, {move}"), *([("limits", limits)] if limits else [])]
+    return [
+        ("move", f"{plant_words(task.plant)}, {move_of(task)}"),
+        *([("limits", limits)] if limits else []),
+    ]
 
 
 def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
@@ -94,10 +96,6 @@ def _choice(plan: Plan) -> tuple[str, str]:
 def _tip(task: PointToPoint) -> str:
     tips = task.plant.tips
     return "tip" if tips == 1 else f"worst of {tips} tips"
-
-
-def _angle(value: float) -> str:
-    return f"{math.degrees(value):.6g}deg"
 
 
 def _quantity(name: str, value: float) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
-from metaheuristics.ensemble import STILL, Spread, energies_at, hypervolumes
+from metaheuristics.ensemble import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from ocp import Front
 from studies.display.words import counted, millimetres, print_lines
 
@@ -29,7 +29,7 @@ def print_fronts(console: Console, fronts: Sequence[Front]) -> None:
         print_lines(
             console,
             f"hypervolume: {quartiles(hypervolumes(complete), '.4f')}",
-            f"energy at {millimetres(STILL)}: {quartiles(energies, '.4g', ' J')}; "
+            f"energy at {millimetres(SEARCH_RESIDUAL)}: {quartiles(energies, '.4g', ' J')}; "
             f"{reached(energies)}",
         )
 
@@ -45,8 +45,8 @@ def quartiles(spread: Spread, form: str, unit: str = "") -> str:
 
 
 def reached(spread: Spread) -> str:
-    """How many seeds have an energy at `STILL`."""
-    return f"{spread.count} of {spread.seeds} seeds reach {millimetres(STILL)}"
+    """How many seeds have an energy at `SEARCH_RESIDUAL`."""
+    return f"{spread.count} of {spread.seeds} seeds reach {millimetres(SEARCH_RESIDUAL)}"
 
 
 def _front_lines(front: Front) -> list[str]:

@@ -7,8 +7,8 @@ from rich.console import Console
 from metaheuristics.ensemble import energy_at
 from ocp import FailedPoint, Front
 from ocp.front.checking import RESIDUAL_LIMIT
-from studies.comparison.measures import LEVELS
 from studies.display.words import counted, millimetres, print_lines
+from studies.methods import LEVELS
 
 
 def print_sweep(console: Console, front: Front, asked_for: int) -> None:
@@ -27,7 +27,7 @@ def print_sweep(console: Console, front: Front, asked_for: int) -> None:
     print_lines(
         console,
         f"{front.method}: {counted(len(front.points), 'point')}, "
-        f"{counted(front.evaluations, 'iteration')} of the solver "
+        f"{counted(front.iterations, 'iteration')} of the solver "
         f"in {front.seconds:.1f} s{state}",
         *point_lines(front),
         *failure_lines(front, asked_for),

@@ -17,9 +17,11 @@ from ocp import Plan
 from ocp.base.files import write_whole
 from studies.display.saving import File, drawing, inside
 from studies.display.tables import Cell, Column, Table, print_table
+from studies.display.words import title_of
+from studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
+from studies.figures.looks import ORANGE
 from studies.paper.case import Case
 from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
-from studies.reports.motion_figure import Line, four_panels
 from studies.reproduction.claims import Claim
 from studies.reproduction.floor_dots import floor_dots
 from studies.reproduction.floor_table import LEGEND as FLOOR_LEGEND
@@ -53,7 +55,7 @@ _TITLES = {
     5: "Table 5: number of terms, arm on a flexible link",
     6: "Table 6: against ref. [24], arm on a flexible link",
 }
-_COLOURS = {2: "tab:green", 4: "tab:red", 6: "tab:blue"}  # those of the paper's Figs 2 and 5
+_STYLES = {2: (GREEN, "-."), 4: (RED, "--"), 6: (BLUE, "-")}  # hues of the paper's Figs 2 and 5
 LEGEND = (
     "Printed: as in the paper; printed coefficients: the same recomputed here. Gradient: the least "
     "energy at rest on arrival, within the paper's bound on the coefficients or without one; "
@@ -109,15 +111,15 @@ def _figures(plan: Plan | None, timed: bool = False) -> list[Cell]:
 def redrawn(result: Reproduction, condition: Case, title: str) -> Figure:
     """Fig. 2 or Fig. 5 from the printed coefficients, with the gradient's N = 6 over it."""
     lines = [Line(result.cycloids[condition], "cycloid", "black")]
-    for terms, colour in _COLOURS.items():
+    for terms, (colour, style) in _STYLES.items():
         row = result.result(condition, terms)
         plan = row.mended_or_printed
         if plan is not None:
             mended = ", a_5 mended" if row.mended else ""
-            lines.append(Line(plan, f"paper, N = {terms}{mended}", colour))
+            lines.append(Line(plan, f"paper, N = {terms}{mended}", colour, style))
     gradient = result.more_terms[condition, 6, True]
-    lines.append(Line(gradient, "gradient, N = 6, same box", "tab:orange", "--"))
-    return four_panels(lines, title)
+    lines.append(Line(gradient, "gradient, N = 6, same box", ORANGE, (0, (7, 2))))
+    return motion_figure(lines, title, PAPER_PANELS)
 
 
 def print_reproduction(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> None:
@@ -142,7 +144,7 @@ def reproduction_files(folder: Path, result: Reproduction, verdicts: Sequence[Cl
     writes: dict[str, Callable[[Path], object]] = {}
     for name, condition in (("figure_2.png", SINGLE_LINK_SIXTH), ("figure_5.png", ARM_HALF)):
         number = name.removesuffix(".png").replace("figure_", "Fig. ")
-        title = f"{number} redrawn: {condition.task.plant.name}, {condition.label}"
+        title = f"{number} redrawn: {title_of(condition.task)}"
         writes[name] = drawing(partial(redrawn, result, condition, title))
     paper_tables = tables(result)
     for number, table in zip(_TITLES, paper_tables, strict=True):

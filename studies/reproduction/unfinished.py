@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from metaheuristics.ensemble import STILL
+from metaheuristics.ensemble import SEARCH_RESIDUAL
 from metaheuristics.sharing.pieces import Done, Piece
 from ocp import Floor, Front, Plan
 from studies.display.tables import Cell, Column, Table
@@ -25,7 +25,7 @@ def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
     Returns
     -------
     Table
-        Of a search the cheapest point within `STILL`, where it has one.
+        Of a search the cheapest point within `SEARCH_RESIDUAL`, where it has one.
     """
     columns = [
         Column("piece of work", key="piece"),
@@ -43,5 +43,5 @@ def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
 def _figures(answer: Plan | Floor | Front) -> list[Cell]:
     if not isinstance(answer, Front):
         return [answer.energy, 1e3 * answer.motion.residual]
-    still = [point for point in answer.points if point.residual <= STILL]
+    still = [point for point in answer.points if point.residual <= SEARCH_RESIDUAL]
     return [still[-1].energy, 1e3 * still[-1].residual] if still else [None, None]

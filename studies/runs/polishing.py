@@ -68,7 +68,7 @@ def run_polish(
         raise KeyboardInterrupt
 
     def picture() -> Figure:
-        from studies.reports.sweep_figure import polish_figure
+        from studies.figures import polish_figure
 
         return polish_figure(front, polish)
 
@@ -130,7 +130,7 @@ def _print_gains(
     state = "" if len(gains) == number else f" (interrupted after {len(gains)} of them)"
     shares = np.array([gain.share for gain in gains])
     lines = [
-        f"{polished.method}: {points}, {polished.evaluations - front.evaluations} iterations of "
+        f"{polished.method}: {points}, {polished.iterations - front.iterations} iterations of "
         f"the solver in {polished.seconds - front.seconds:.1f} s{state}",
         f"{'residual':>12}{'before':>12}{'after':>12}{'saved':>9}",
         *(_row(gain) for gain in _spread(gains, _ROWS)),

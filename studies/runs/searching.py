@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from metaheuristics import search
-from metaheuristics.ensemble import STILL, LostSeedsError, search_many, seeds_of
+from metaheuristics.ensemble import SEARCH_RESIDUAL, LostSeedsError, search_many, seeds_of
 from ocp import (
     CycloidPolynomial,
     Front,
@@ -26,7 +26,6 @@ from ocp import (
 from ocp.base.files import check_writable
 from studies.display.saving import STDOUT, drawing, finish
 from studies.display.search_progress import search_display
-from studies.display.words import counted
 from studies.methods import Method
 from studies.reports.search import print_fronts
 from studies.runs.files import refuse_same_file, warn_of_workers
@@ -58,7 +57,7 @@ def plan_by_search(
     bound : float or None
         Largest absolute coefficient; required, None gives the error that says so.
     residual_limit : float
-        Largest residual [m]; 0 stands for `STILL`, since no search arrives quite at rest.
+        Largest residual [m]; 0 stands for `SEARCH_RESIDUAL`, since no search arrives quite at rest.
     seed : int
         Seed of the search.
     polish : bool
@@ -80,10 +79,10 @@ def plan_by_search(
             "keeps what a search has found until Ctrl-C"
         )
     try:
-        point = front.cheapest(residual_limit or STILL)
+        point = front.cheapest(residual_limit or SEARCH_RESIDUAL)
     except ValueError as error:
         raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
-    settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or STILL}
+    settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or SEARCH_RESIDUAL}
     if polish:
         polished = plan_move(
             task,
@@ -97,7 +96,7 @@ def plan_by_search(
         provenance = replace(
             polished.provenance,
             method=f"{method.name}, polished by ipopt",
-            settings={**settings, **polished.provenance.settings},
+            search=settings,
             seconds=front.seconds + polished.provenance.seconds,
         )
         return replace(polished, provenance=provenance)
@@ -153,10 +152,9 @@ def run_front(
         raise lost or SolverFailedError(f"{method.name}: {fronts[0].why_empty()}")
 
     def picture() -> Figure:
-        from studies.reports.search_figure import front_figure
+        from studies.figures import front_figure
 
-        title = f"{method.name}, {task.plant.name}, {counted(len(fronts), 'seed')}"
-        return front_figure(fronts, title)
+        return front_figure(fronts)
 
     trouble = lost
     if stopped or troubles:

@@ -57,12 +57,13 @@ def run_sweep(
     weights = options.get("weights", ())
     asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
     front = _swept(task, method, dict(options), quiet)
+    asked_for = max(asked_for, len(front.points) + len(front.failures))  # epsilon's own residuals
     if not front.points:
         reasons = (line.strip() for line in failure_lines(front, asked_for)[1:])
         raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
 
     def picture() -> Figure:
-        from studies.reports.sweep_figure import sweep_figure
+        from studies.figures import sweep_figure
 
         return sweep_figure(front)
 

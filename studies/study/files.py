@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ocp.base.files import write_whole
 from studies.display.saving import File, inside
-from studies.paper.tasks import title_of
+from studies.display.words import title_of
 from studies.study.page import study_page
 from studies.study.work import Study
 

@@ -9,9 +9,8 @@ import numpy as np
 
 from studies.comparison.measures import Comparison, Group
 from studies.comparison.staircase import within
-from studies.display.words import millimetres
+from studies.display.words import millimetres, title_of
 from studies.methods import WEIGHTED, Kind, Method, methods_of
-from studies.paper.tasks import title_of
 from studies.study.work import CaseStudy, Study
 
 SEARCHES = methods_of(Kind.METAHEURISTIC)
@@ -19,6 +18,8 @@ STILL_LEVEL = 1
 """Which of the comparison's residual levels the summary speaks of."""
 _ALIKE = 1e-4
 """Energies within this share of each other count as equal: filled fronts are no finer."""
+_SAME_HYPERVOLUME = 1e-3
+"""Hypervolumes nearer to each other count as equal: the number of points decides about them."""
 _REST = 1e-6
 """A residual within this [m] counts as rest."""
 
@@ -38,7 +39,9 @@ def gap(
 
 def percent(share: float) -> str:
     """A share in words."""
-    return f"{100 * share:.2g} %" if abs(share) >= 1e-4 else "less than 0.01 %"
+    if abs(share) < 1e-4:
+        return "less than 0.01 %"
+    return f"{float(f'{100 * share:.2g}'):g} %"  # 120 %, not 1.2e+02 %
 
 
 def percents(shares: Sequence[float]) -> str:
@@ -63,7 +66,11 @@ def case_findings(found: CaseStudy) -> list[str]:
 def _best(comparison: Comparison) -> str:
     level, best = comparison.levels[STILL_LEVEL], comparison.best[STILL_LEVEL]
     if not isfinite(best):
-        return f"No method arrives within {millimetres(level)}."
+        residual, energy = comparison.best_front[0]
+        return (
+            f"No method arrives within {millimetres(level)}: the stillest motion leaves "
+            f"{millimetres(residual)} and takes {energy:.4g} J."
+        )
     labels = [
         g.label for g in comparison.groups if g.spread("gaps_between", STILL_LEVEL).lower <= _ALIKE
     ]
@@ -78,6 +85,9 @@ def _search(found: CaseStudy, method: Method) -> str:
     group = group_of(comparison, method)
     if group is None:
         return ""
+    if not any(group.reached(i) for i in range(len(comparison.levels))):
+        least = min(run.front.stillest().residual for run in group.runs)
+        return f"The stillest motion of {method.label} leaves {millimetres(least)}."
     words: list[str] = []
     for i, level in enumerate(comparison.levels):
         reached, runs = group.reached(i), len(group.runs)
@@ -99,7 +109,10 @@ def _weighted(found: CaseStudy) -> str:
     gaps = group.runs[0].front.gaps
     if not gaps:
         return "The weighted sum reaches the whole front."
-    holes = [f"between {millimetres(low)} and {millimetres(high)}" for low, high in gaps]
+    holes = [
+        f"between {'rest' if low <= _REST else millimetres(low)} and {millimetres(high)}"
+        for low, high in gaps
+    ]
     return f"No weighted sum reaches the front {_listed(holes)}."
 
 
@@ -144,9 +157,14 @@ def at_rest(found: CaseStudy) -> float:
 
 def _floor(found: CaseStudy) -> str:
     best = at_rest(found)
-    if found.floor is None or not isfinite(best):
+    if found.floor is None:
         return ""
     terms = found.comparison.runs[0].front.profile.size
+    if not isfinite(best):
+        return (
+            f"No motion of {terms} coefficients was found that arrives at rest; the floor, the "
+            f"least energy of any joint motion that does, is {found.floor.energy:.4g} J."
+        )
     return (
         f"At rest on arrival, the best motion of {terms} coefficients takes {best:.4g} J, "
         f"{best / found.floor.energy:.3g} times the floor of any joint motion, "
@@ -164,13 +182,20 @@ def findings(study: Study) -> list[str]:
 def _whose_hypervolume(study: Study) -> str:
     winners: dict[str, int] = {}
     for found in study.cases:
-        best = max(found.comparison.groups, key=lambda group: group.spread("hypervolume").median)
-        winners[best.label] = winners.get(best.label, 0) + 1
+        shares = {g.label: g.spread("hypervolume").median for g in found.comparison.groups}
+        for label, share in shares.items():
+            if share > max(shares.values()) - _SAME_HYPERVOLUME:
+                winners[label] = winners.get(label, 0) + 1
     total = len(study.cases)
     words = ", ".join(
         f"{label} in {count} of {total}" for label, count in sorted(winners.items(), key=_last)
     )
-    return f"The front that dominates most: {words}." if total > 1 else ""
+    if total == 1:
+        return ""
+    return (
+        f"The front that dominates most: {words}; hypervolumes that differ by less than "
+        f"{_SAME_HYPERVOLUME:g} count as equal."
+    )
 
 
 def _last(item: tuple[str, int]) -> int:

@@ -2,31 +2,16 @@
 
 from __future__ import annotations
 
-from math import isfinite, nan
-
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
-
-from studies.comparison.figure import BANDS, PANELS, looks, panel_figure
+from metaheuristics import PRESETS
 from studies.comparison.tables import how_to_read, tables, units
-from studies.display.html_page import Markup, bullets, element, joined, page, picture, table_element
-from studies.display.tables import Cell, Column, Table
-from studies.display.words import millimetres
-from studies.methods import Method
-from studies.paper.tasks import title_of
-from studies.study.findings import STILL_LEVEL, at_rest, case_findings, findings, gap
-from studies.study.work import CaseStudy, Study
+from studies.display.words import counted, millimetres, title_of
+from studies.figures.comparison import BANDS, PANELS, panel_figure
+from studies.methods import LEVELS, Method
+from studies.study.findings import SEARCHES, STILL_LEVEL, case_findings, findings
+from studies.study.html_page import Markup, bullets, element, joined, page, picture, table_element
+from studies.study.overview import gap_figure, overview_table
+from studies.study.work import CaseStudy, Study, StudySettings
 
-_METHODS = (
-    "epsilon constraint: the least energy at each of a series of residual limits, by IPOPT.",
-    "weighted sum: the least weighted sum of residual and energy, by IPOPT, for a series of "
-    "weights.",
-    "NSGA-II and VEPSO: the paper's searches with the paper's settings, from several seeds.",
-    "polished: each point of the first seed's front improved by IPOPT at its own residual.",
-    "floor: the least energy of any joint motion at all that arrives at rest, on a grid "
-    "refined until its energy no longer changes.",
-)
 _ALTERNATIVES = {
     "whole": "Energy against residual vibration, one staircase for each method, for {0}.",
     "still": "The nearly still end of the same fronts with a logarithmic residual, for {0}.",
@@ -121,67 +106,39 @@ def _reading(study: Study) -> Markup:
     return element(
         "section",
         element("h2", "Methods, and how to read it"),
-        bullets(_METHODS),
+        bullets(method_lines(settings)),
         bullets(how_to_read(study.cases[0].comparison)),
         element("p", asked, class_="soft"),
     )
 
 
-def overview_table(study: Study) -> Table:
-    """Energy above the best at the residual of the summary, for each task and method."""
-    level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
-    columns = [
-        Column("task"),
-        *(Column(title_of(f.case.task), "{:.2f}".format) for f in study.cases),
+def method_lines(settings: StudySettings) -> list[str]:
+    """What the methods are, and the settings that they ran with."""
+    levels = ", ".join(millimetres(level) for level in LEVELS)
+    of_seeds = f"from {counted(settings.runs, 'seed')}"
+    searches = [_search_line(method, settings, of_seeds) for method in SEARCHES]
+    return [
+        "epsilon constraint: the least energy at each of a series of residual limits, "
+        f"{levels} among them, by IPOPT.",
+        "weighted sum: the least weighted sum of residual and energy, by IPOPT, for a series of "
+        "weights.",
+        *searches,
+        "polished: each point of the first seed's front improved by IPOPT at its own residual.",
+        "floor: the least energy of any joint motion at all that arrives at rest, on a grid "
+        "refined until its energy no longer changes.",
     ]
-    rows: list[list[Cell]] = []
-    for method in _methods(study):
-        shares = [100 * gap(found.comparison, method) for found in study.cases]
-        rows.append([method.label, *(s if isfinite(s) else None for s in shares)])
-    best = [f"{found.comparison.best[STILL_LEVEL]:.4g} J" for found in study.cases]
-    floors = [found.floor.energy if found.floor else nan for found in study.cases]
-    ratios = [at_rest(found) / floor for found, floor in zip(study.cases, floors, strict=True)]
-    rows.append([f"best at {level}", *best])
-    rows.append(["best at rest, times the floor", *(r if isfinite(r) else None for r in ratios)])
-    return Table(
-        f"Energy above the best at {level} [%], motions between points counted",
-        columns,
-        rows,
+
+
+def _search_line(method: Method, settings: StudySettings, of_seeds: str) -> str:
+    preset = PRESETS[method.name]
+    used = (
+        settings.population or preset.population, settings.generations or preset.generations,
+    )  # fmt: skip
+    papers = (preset.population, preset.generations)
+    beside = (
+        "as in the paper" if used == papers else "where the paper has {} and {}".format(*papers)
     )
-
-
-def _methods(study: Study) -> list[Method]:
-    """The methods of all cases, in order."""
-    found = [group.method for found in study.cases for group in found.comparison.groups]
-    return list(dict.fromkeys(found))
-
-
-def gap_figure(study: Study) -> Figure:
-    """Draw the energy above the best: one row for each task, one mark for each method."""
-    figure = Figure(figsize=(4.8, 1.6 + 0.45 * len(study.cases)), layout="constrained")
-    FigureCanvasAgg(figure)
-    axis = figure.subplots()
-    marks = dict(zip(_methods(study), "osD^vX*P<>", strict=False))
-    seen: set[Method] = set()
-    for i, found in enumerate(study.cases):
-        for group in found.comparison.groups:
-            look = looks(found.comparison)[group.label]
-            spread, method = group.spread("gaps_between", STILL_LEVEL), group.method
-            if len(group.runs) > 1:
-                axis.plot([100 * spread.lower, 100 * spread.upper], [i, i], color=look.colour,
-                          linewidth=4, alpha=0.35, solid_capstyle="round")  # fmt: skip
-            label = "_" if method in seen else method.label
-            seen.add(method)
-            axis.plot(100 * spread.median, i, marks.get(method, "o"), color=look.colour,
-                      markersize=7, markeredgecolor="white", label=label)  # fmt: skip
-    titles = [title_of(found.case.task).replace(", ", "\n", 1) for found in study.cases]
-    axis.set_yticks(range(len(study.cases)), titles, fontsize=8)
-    axis.set_ylim(len(study.cases) - 0.5, -0.5)
-    axis.set_xscale("symlog", linthresh=0.1, linscale=0.5)
-    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_xlim(-0.02, None)
-    level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
-    axis.set_xlabel(f"energy above the best at {level} [%]")
-    axis.grid(alpha=0.25)
-    figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8.5)
-    return figure
+    return (
+        f"{method.label}: the paper's search, {of_seeds}, with a population of {used[0]} and "
+        f"{counted(used[1], 'generation')}, {beside}."
+    )

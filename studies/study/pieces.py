@@ -22,9 +22,9 @@ from ocp import (
 )
 from ocp.answers.provenance import number_of_points
 from ocp.base.checks import whole
+from studies.display.words import title_of
 from studies.methods import Kind, Method, methods_of
 from studies.paper.case import Case
-from studies.paper.tasks import title_of
 
 FLOOR = "floor"
 _Answer = TypeVar("_Answer")

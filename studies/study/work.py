@@ -13,11 +13,11 @@ from metaheuristics.sharing.workers import Workers
 from ocp import Floor, Front, Polish, QuietarmError, SolverFailedError
 from ocp.base.interrupts import note_interrupts
 from studies.comparison.measures import Comparison, compare_fronts
+from studies.display.words import title_of
 from studies.methods import METHODS
 from studies.paper.case import Case
 from studies.paper.points import PaperPoint, paper_points
 from studies.paper.printed import CONDITIONS
-from studies.paper.tasks import title_of
 from studies.study.pieces import FLOOR, Key, StudySettings, pieces_of
 
 

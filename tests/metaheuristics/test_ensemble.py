@@ -17,7 +17,7 @@ from pymoo.algorithms.moo.sms import SMSEMOA
 import metaheuristics.ensemble as ensemble
 from metaheuristics import search
 from metaheuristics.ensemble import (
-    STILL,
+    SEARCH_RESIDUAL,
     LostSeedsError,
     Spread,
     energies_at,
@@ -72,7 +72,7 @@ def test_quartiles_are_numpys_of_the_seeds_that_have_the_figure(values):
 
 
 def test_the_energy_is_that_of_the_cheapest_point_still_enough():
-    points = [(0.2e-3, 0.3), (STILL, 0.2), (2e-3, 0.1)]
+    points = [(0.2e-3, 0.3), (SEARCH_RESIDUAL, 0.2), (2e-3, 0.1)]
     assert energy_at(front(points)) == 0.2
     assert energy_at(front(points), 1.9e-3) == 0.2
     assert energy_at(front(points), 2e-3) == 0.1

@@ -275,7 +275,7 @@ def test_a_structure_that_only_a_moving_joint_excites_is_accepted():
 def test_time_varying_modes_are_linear_enough():
     _broken(
         modal_accelerations=lambda p, j, W, dW: [
-            -(1 + j.speed**2) * W[0] - ca.sin(j.angle) * dW[0] - j.acceleration
+            -(1 + j.speed**2) * W[0] - (1 + ca.sin(j.angle)) * dW[0] - j.acceleration
         ]
     ).validate()
 

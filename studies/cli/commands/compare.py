@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from studies.cli.options import FOLDER, INPUT, quiet_option
+from studies.cli.options import FOLDER, INPUT, plant_file_option, quiet_option
 from studies.display.progress import working
 
 
@@ -23,6 +23,7 @@ from studies.display.progress import working
     "--as-found", is_flag=True, help="Do not count motions between the points of a front."
 )
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
+@plant_file_option(expose_value=False)
 @quiet_option
 def compare(
     fronts: tuple[Path, ...],
@@ -47,13 +48,13 @@ def compare(
     from ocp import QuietarmError
     from studies.comparison.check import check_figures
     from studies.comparison.measures import FILL, compare_fronts
-    from studies.comparison.report import (
+    from studies.display.saving import finish
+    from studies.reports.comparison import (
         comparison_files,
         load_fronts,
         print_comparison,
         with_floor,
     )
-    from studies.display.saving import finish
 
     errors, trouble = Console(stderr=True), None
     with working("comparing", errors, quiet=quiet):

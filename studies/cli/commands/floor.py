@@ -63,7 +63,7 @@ def floor(
             plan = plan_beside(found)
 
     def picture() -> Figure:
-        from studies.reports.floor_figure import floor_figure
+        from studies.figures import floor_figure
 
         return floor_figure(found, plan)
 

@@ -42,8 +42,9 @@ _ONLY_FOR = {
 @click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
 @click.option("--bound", type=float, help="Largest coefficient; a metaheuristic requires it.")
 @click.option(
-    "--points", type=int, default=50, show_default=True, help="Gradient: points of the front."
-)
+    "--points", type=int, default=50, show_default=True,
+    help="Gradient: points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
+)  # fmt: skip
 @click.option(
     "--starts", type=int, default=4, show_default=True, help="Gradient: starts of its ends."
 )

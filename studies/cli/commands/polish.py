@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from studies.cli.options import INPUT, OUTPUT, PICTURE, quiet_option
+from studies.cli.options import INPUT, OUTPUT, PICTURE, plant_file_option, quiet_option
 
 
 @click.command()
@@ -21,6 +21,7 @@ from studies.cli.options import INPUT, OUTPUT, PICTURE, quiet_option
 @click.option(
     "--figure", type=PICTURE, help="Draw the front before and after (.png, .pdf or .svg)."
 )
+@plant_file_option(expose_value=False)
 @quiet_option
 def polish(
     front: Path,

@@ -72,7 +72,7 @@ def study(
     names = ("terms", "points", "runs", "seed", "workers", "scheduler", "population", "generations")
     settings = StudySettings(**{name: rest.pop(name) for name in names})
     bound = rest.pop("bound")
-    if rest["plant"] is None:
+    if rest["plant"] is None and rest["plant_file"] is None:
         _refuse_without_plant(context, ("bound", *rest))
         cases = CONDITIONS
     else:

@@ -15,13 +15,13 @@ from ocp import (
     sample_trajectory,
 )
 
-FINE = 140  # ocp.simulation.rollout.LEAST_STEPS
+FINE = 140  # ocp.simulation.rollout.ROLLOUT_STEPS
 
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
 def test_nine_in_ten_energies_are_within_the_error_stated(plant, start, target, duration, bound):
-    # `LEAST_STEPS` states 1e-4. The reference is the finer rollout, itself within 1e-5 of CVODES
-    # (README, 'How exact'), as the next test checks on fewer candidates.
+    # `CANDIDATE_STEPS` states 1e-4. The reference is the finer rollout, itself within 1e-5 of
+    # CVODES (README, 'How exact'), as the next test checks on fewer candidates.
     task = PointToPoint(plant, target, duration, start)
     X = candidates(1000, bound, seed=2)
     fine = PopulationObjective(task, PROFILE, steps=FINE)(X).energy
@@ -40,15 +40,15 @@ def test_energy_and_residual_are_those_of_the_independent_integrator(
     motions = [resimulate(task, PROFILE, x) for x in X]
     assert fine.energy == pytest.approx([m.energy for m in motions], rel=1e-5, abs=0)
     residuals = np.array([motion.residual for motion in motions])
-    # W and W'/omega 1e-6 m off at arrival (`LEAST_STEPS`), on top of the 5e-5 of a peak between two
-    # samples (and 1.2e-6 of one that CVODES' own samples miss).
+    # W and W'/omega 1e-6 m off at arrival (`CANDIDATE_STEPS`), on top of the 5e-5 of a peak between
+    # two samples (and 1.2e-6 of one that CVODES' own samples miss).
     allowed = 5.2e-5 * residuals + plant.phi * math.sqrt(2) * 1e-6
     assert np.all(np.abs(values.residual - residuals) <= allowed)
 
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
 def test_the_amplitude_at_arrival_is_within_a_micrometre(plant, start, target, duration, bound):
-    # `LEAST_STEPS`
+    # `CANDIDATE_STEPS`
     task = PointToPoint(plant, target, duration, start)
     steps = PopulationObjective(task, PROFILE).steps
     for x in candidates(8, bound, seed=6):

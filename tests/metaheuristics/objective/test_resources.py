@@ -15,7 +15,7 @@ import pytest
 from populations import ARM, CONDITIONS, PROFILE, SINGLE_LINK, candidates, pi
 
 from metaheuristics import PopulationObjective
-from metaheuristics.objective.population import LEAST_STEPS, _compiled
+from metaheuristics.objective.population import CANDIDATE_STEPS, _compiled
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import (
     PointToPoint,
@@ -74,7 +74,10 @@ def test_the_shared_function_mixes_no_tasks_up():
 
 def test_a_faster_mode_gets_more_steps():
     fast = SingleLinkManipulator(omega=30.0)
-    assert PopulationObjective(PointToPoint(SINGLE_LINK, pi / 6, 0.8), PROFILE).steps == LEAST_STEPS
+    assert (
+        PopulationObjective(PointToPoint(SINGLE_LINK, pi / 6, 0.8), PROFILE).steps
+        == CANDIDATE_STEPS
+    )
     # two steps a radian of the fastest mode (ocp.simulation.rollout.default_steps)
     assert PopulationObjective(PointToPoint(fast, pi / 6, 0.8), PROFILE).steps == 2 * 30 * 0.8
 

@@ -20,7 +20,7 @@ from small_searches import (
 )
 
 from metaheuristics import PopulationObjective
-from metaheuristics.objective.population import LEAST_STEPS
+from metaheuristics.objective.population import CANDIDATE_STEPS
 from metaheuristics.runs import keeping
 from ocp import CycloidPolynomial, Front, resimulate, rollout
 
@@ -80,7 +80,7 @@ def test_candidates_that_break_a_limit_are_counted(monkeypatch, method):
 
     def counting(self, coefficients):
         values = evaluate(self, coefficients)
-        if self.steps == LEAST_STEPS:
+        if self.steps == CANDIDATE_STEPS:
             counts.append(sum(any(v > 0 for v in row) for row in values.violations.tolist()))
         return values
 

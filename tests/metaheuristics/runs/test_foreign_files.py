@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 from states import HEADER, same, state
 
-from metaheuristics.runs.checkpoint import FORMAT, VERSION, load_checkpoint
+from metaheuristics.runs.checkpoint import KIND, VERSION, load_checkpoint
 from ocp import FileFormatError
+
+FORMAT = f"quietarm-{KIND}"
 
 
 def refused(path, message="is not a checkpoint, or not a whole one"):
@@ -176,7 +178,7 @@ def test_a_foreign_file_is_refused(path, content):
     refused(path, "not a checkpoint")
 
 
-@pytest.mark.parametrize("version", [2, 99])
+@pytest.mark.parametrize("version", [VERSION + 1, 99])
 def test_a_newer_version_says_so(path, version):
     path.write_bytes(_with_header(_whole(version=version)))
     refused(path, f"has version {version} .* reads up to {VERSION}; install a newer quietarm")

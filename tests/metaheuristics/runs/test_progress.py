@@ -17,7 +17,7 @@ from small_searches import (
 )
 
 from metaheuristics import PopulationObjective, search
-from metaheuristics.objective.population import LEAST_STEPS
+from metaheuristics.objective.population import CANDIDATE_STEPS
 from ocp import CycloidPolynomial, Front, PointToPoint, rollout
 
 # -- history and reports --
@@ -30,7 +30,7 @@ def test_evaluations_are_exact(monkeypatch, method, population, generations):
     evaluate = PopulationObjective.__call__
 
     def counting(self, coefficients):
-        if self.steps == LEAST_STEPS:  # not the finer one, for the points of the front
+        if self.steps == CANDIDATE_STEPS:  # not the finer one, for the points of the front
             asked.append(len(coefficients))
         return evaluate(self, coefficients)
 
@@ -136,7 +136,7 @@ def test_ctrl_c_while_the_front_is_worked_out_loses_nothing(tmp_path, monkeypatc
     evaluate, interrupted = PopulationObjective.__call__, []
 
     def interrupting(self, coefficients):
-        if self.steps != LEAST_STEPS:
+        if self.steps != CANDIDATE_STEPS:
             interrupted.append(1)
             for _ in range(times):
                 signal.raise_signal(signal.SIGINT)

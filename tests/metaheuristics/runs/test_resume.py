@@ -23,7 +23,7 @@ from small_searches import (
 )
 
 from metaheuristics import VEPSO, PaperNSGA2, PopulationObjective, search
-from metaheuristics.objective.population import LEAST_STEPS
+from metaheuristics.objective.population import CANDIDATE_STEPS
 from metaheuristics.runs import keeping
 from metaheuristics.runs.checkpoint import load_checkpoint
 
@@ -99,7 +99,7 @@ def test_ctrl_c_within_an_evaluation_leaves_a_checkpoint_to_go_on_from(
     calls, evaluate = [], PopulationObjective.__call__
 
     def interrupting(self, coefficients):
-        if self.steps == LEAST_STEPS:
+        if self.steps == CANDIDATE_STEPS:
             calls.append(1)
             if len(calls) == 5:
                 signal.raise_signal(signal.SIGINT)

@@ -7,6 +7,7 @@ from small_searches import HALF, LIMITED, SIXTH
 
 from metaheuristics.runs.settings import SearchSettings, SearchSpec
 from ocp import CycloidPolynomial
+from ocp.answers.encoding import plain, typed
 
 SETTINGS = SearchSettings(0.5, 20, 15)
 
@@ -26,7 +27,7 @@ def spec(task=HALF, settings=SETTINGS, **changes):
     ids=["free", "nested settings", "limits"],
 )
 def test_a_search_comes_back_from_its_document(one):
-    assert SearchSpec.from_document(json.loads(json.dumps(one.to_document()))) == one
+    assert typed(json.loads(json.dumps(plain(one))), SearchSpec) == one
 
 
 @pytest.mark.parametrize(
@@ -40,14 +41,14 @@ def test_a_search_comes_back_from_its_document(one):
 def test_settings_out_of_range_are_refused_wherever_they_come_from(arguments, words):
     with pytest.raises(ValueError, match=words):
         SearchSettings(*arguments)
-    document = spec().to_document()
+    document = plain(spec())
     document["settings"] = dict(zip(document["settings"], arguments, strict=True))
     with pytest.raises(ValueError, match=words):
-        SearchSpec.from_document(document)
+        typed(document, SearchSpec)
 
 
 def test_an_entry_that_is_missing_is_named():
-    document = spec().to_document()
+    document = plain(spec())
     del document["settings"]["population"]
     with pytest.raises(KeyError, match="population"):
-        SearchSpec.from_document(document)
+        typed(document, SearchSpec)

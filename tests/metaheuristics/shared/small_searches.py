@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from metaheuristics import PAPER_BOX, PopulationObjective, search
-from metaheuristics.objective.population import LEAST_STEPS
+from metaheuristics.objective.population import CANDIDATE_STEPS
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
+from ocp.answers.encoding import plain
 
 pi = math.pi
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
@@ -42,7 +43,7 @@ def papers_search(method, task):
 
 def exactly(front):
     """All of a front but its time, to the last bit."""
-    return json.dumps({**front.to_document(), "seconds": None})
+    return json.dumps({**plain(front), "seconds": None})
 
 
 def assert_is_a_front(front):
@@ -73,7 +74,7 @@ def failing(monkeypatch, value, column="energy"):
     def failing(self, coefficients):
         values = evaluate(self, coefficients)
         bad = np.asarray(coefficients)[:, 0] > 0
-        if self.steps == LEAST_STEPS:
+        if self.steps == CANDIDATE_STEPS:
             counts.append(int(bad.sum()))
         getattr(values, column)[bad] = value
         return values

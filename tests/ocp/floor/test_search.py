@@ -277,6 +277,12 @@ def test_a_move_of_too_many_periods_is_refused():
         energy_floor(replace(ARM, duration=200.0))
 
 
+def test_a_residual_window_beyond_reason_is_refused_before_the_solves(monkeypatch):
+    monkeypatch.delattr(FloorProgram, "solve")
+    with pytest.raises(ValueError, match=r"residual window 10000 s .* give a shorter one"):
+        energy_floor(replace(ARM, residual_window=1e4))
+
+
 def test_starts_that_agree_are_counted(floor_of):
     floor = replace(floor_of(ARM, **SHORT), starts=(1.0, 1.004, 1.006, 2.0))
     assert floor.agreeing() == 2
@@ -288,7 +294,7 @@ def test_the_same_seed_gives_the_same_floor(floor_of):
     one, two = energy_floor(task, starts=3, seed=5), energy_floor(task, starts=3, seed=5)
     assert one == two
     assert len(one.starts) == 3
-    assert one.provenance.settings["seed"] == 5
+    assert one.provenance.settings.seed == 5
 
 
 # -- files --
@@ -307,13 +313,14 @@ def test_a_saved_floor_is_equal(floor_of, tmp_path):
     "damage",
     [
         lambda d: d.pop("motion"),
-        lambda d: d["motion"].pop("jerk"),
-        lambda d: d["motion"]["times"].pop(),
-        lambda d: d["motion"].update(times="0, 1"),
+        lambda d: d["free"].pop("jerk"),
+        lambda d: d["free"]["times"].pop(),
+        lambda d: d["free"].update(times="0, 1"),
+        lambda d: d["free"]["times"].__setitem__(1, "0.1"),
         lambda d: d.update(levels=d["levels"][:1]),
         lambda d: d["levels"][0].update(energy="0.1"),
         lambda d: d.update(starts=[]),
-        lambda d: d.update(duration=0.9),
+        lambda d: d["task"].update(duration=0.9),
         lambda d: d.update(status="fine"),
         lambda d: d["provenance"]["settings"].pop("smooth"),
         lambda d: d["provenance"]["settings"].pop("tolerance"),
@@ -322,10 +329,10 @@ def test_a_saved_floor_is_equal(floor_of, tmp_path):
     ],
 )
 def test_a_damaged_file_is_refused(floor_of, tmp_path, damage):
-    document = {"format": "quietarm-floor", "version": 1, **floor_of(ARM, **SHORT).to_document()}
-    document = json.loads(json.dumps(document))
-    damage(document)
     path = tmp_path / "floor.json"
+    floor_of(ARM, **SHORT).save(path)
+    document = json.loads(path.read_text())
+    damage(document)
     path.write_text(json.dumps(document))
     with pytest.raises(FileFormatError, match=r"floor\.json"):
         Floor.load(path)

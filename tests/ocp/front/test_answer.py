@@ -21,7 +21,8 @@ from ocp import (
     non_dominated,
     plan_move,
 )
-from ocp.answers.documents import versions
+from ocp.answers.encoding import plain
+from ocp.answers.provenance import versions
 
 TASK = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, torque_limit=0.4)
 
@@ -246,7 +247,7 @@ def test_a_front_comes_back_as_it_was(tmp_path_factory, figures, seed, share, co
     loaded = Front.load(path)
     assert loaded == one
     assert loaded.seconds == one.seconds
-    assert json.dumps(loaded.to_document()) == json.dumps(one.to_document())  # -0.0, too
+    assert json.dumps(plain(loaded)) == json.dumps(plain(one))  # -0.0, too
 
 
 @pytest.mark.parametrize(
@@ -260,16 +261,16 @@ def test_odd_but_whole_fronts_come_back(tmp_path, changes):
 def test_a_file_has_the_keys_that_others_read(tmp_path):
     front().save(tmp_path / "front.json")
     document = json.loads((tmp_path / "front.json").read_text())
-    assert (document["format"], document["version"]) == ("quietarm-front", 2)
+    assert (document["format"], document["version"]) == ("quietarm-front", 3)
     assert document["points"] == [
         {"coefficients": [0.0, -0.5], "residual": 1e-4, "energy": 0.5},
         {"coefficients": [1.0, -0.5], "residual": 2e-4, "energy": 0.2},
         {"coefficients": [2.0, -0.5], "residual": 8e-4, "energy": 0.1},
     ]
     task = document["task"]
-    assert (task["plant"], task["target"]) == ("arm-on-flexible-link", math.pi / 2)
+    assert (task["plant"]["name"], task["target"]) == ("arm-on-flexible-link", math.pi / 2)
     assert (task["start"], task["duration"]) == (0.0, 0.8)
-    assert task["limits"] == {"torque": 0.4}
+    assert (task["torque_limit"], task["speed_limit"]) == (0.4, None)
     assert (document["method"], document["seed"]) == ("nsga2", 3)
     assert document["settings"] == {"bound": 0.5, "population": 20, "generations": None}
     assert document["versions"] == versions()
@@ -277,7 +278,7 @@ def test_a_file_has_the_keys_that_others_read(tmp_path):
 
 def test_a_front_that_is_no_number_is_not_written(tmp_path):
     with pytest.raises(ValueError, match="JSON"):
-        front(points((math.nan, 1.0))).save(tmp_path / "front.json")
+        front(settings={"bound": math.nan}).save(tmp_path / "front.json")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -347,21 +348,21 @@ def test_a_plan_is_not_a_front(path):
 
 
 def test_a_newer_front_says_so(path, text):
-    path.write_text(text.replace('"version": 2', '"version": 3', 1))
-    refused(path, "version 3 of the front format .* up to 2; install a newer quietarm")
+    path.write_text(text.replace('"version": 3', '"version": 4', 1))
+    refused(path, "version 4 of the front format .* up to 3; install a newer quietarm")
 
 
 def test_a_front_from_before_the_first_release_is_refused(tmp_path):
     path = tmp_path / "front.json"
     front().save(path)
-    path.write_text(path.read_text().replace('"version": 2', '"version": 1', 1))
-    with pytest.raises(FileFormatError, match=r"version 1 .* reads 2; find the front again"):
+    path.write_text(path.read_text().replace('"version": 3', '"version": 1', 1))
+    with pytest.raises(FileFormatError, match=r"version 1 .* reads 2 to 3; find the front again"):
         Front.load(path)
 
 
 @pytest.mark.parametrize("version", ['"1"', "null", "0", "-1", "1.5", "true", "[1]"])
 def test_an_odd_version_is_refused(path, text, version):
-    path.write_text(text.replace('"version": 2', f'"version": {version}', 1))
+    path.write_text(text.replace('"version": 3', f'"version": {version}', 1))
     refused(path, "is not a front: its version is")
 
 
@@ -381,7 +382,7 @@ def test_a_folder_is_refused(path):
     refused(path, "cannot be read: is a directory")
 
 
-KEYS = sorted({"format", "version", *front().to_document()})
+KEYS = sorted({"format", "version", *plain(front())})
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -410,15 +411,15 @@ ODD = {
     "a coefficient too many": (["points", 1, "coefficients"], [0.5, 0.5, 0.5]),
     "a coefficient of text": (["points", 1, "coefficients", 0], "a"),
     "coefficients of nothing": (["points", 1, "coefficients"], None),
-    "an unknown plant": (["task", "plant"], "crane"),
+    "an unknown plant": (["task", "plant", "name"], "crane"),
     "a plant of a number": (["task", "plant"], 3),
-    "a plant's parameter too many": (["task", "plant_parameters", "mass"], 1.0),
-    "a plant's parameter of text": (["task", "plant_parameters", "omega"], "fast"),
+    "a plant's parameter too many": (["task", "plant", "mass"], 1.0),
+    "a plant's parameter of text": (["task", "plant", "omega"], "fast"),
     "an unknown profile": (["profile", "name"], "spline"),
     "a profile of text": (["profile"], "cycloid-polynomial"),
     "a profile of 99 terms": (["profile", "terms"], 99),
-    "an unknown limit": (["task", "limits", "jerk"], 1.0),
-    "a limit below zero": (["task", "limits", "torque"], -1.0),
+    "an unknown limit": (["task", "noise_limit"], 1.0),
+    "a limit below zero": (["task", "torque_limit"], -1.0),
     "a duration below zero": (["task", "duration"], -0.8),
     "a target of nothing": (["task", "target"], None),
     "a task of text": (["task"], "crane"),
@@ -462,27 +463,21 @@ def test_a_front_with_something_odd_is_refused(path, text, where, value):
 
 
 @pytest.mark.parametrize("order", [(1, 0, 2), (2, 1, 0)])
-def test_points_out_of_order_are_refused_or_sorted(path, text, order):
+def test_points_out_of_order_are_refused(path, text, order):
     # 'sorted by residual, stillest first': what selects from a front relies on it
     document = json.loads(text)
     document["points"] = [document["points"][i] for i in order]
     path.write_text(json.dumps(document))
-    try:
-        loaded = Front.load(path)
-    except FileFormatError:
-        return
-    assert loaded.points == front().points
+    refused(path, "points are out of order")
+    with pytest.raises(ValueError, match="points are out of order"):
+        front(tuple(front().points[i] for i in order))
 
 
-def test_points_of_which_one_is_better_are_refused_or_left_out(path, text):
+def test_points_of_which_one_is_better_are_refused(path, text):
     document = json.loads(text)
     document["points"][1]["energy"] = 0.05  # less than the third's, with less residual
     path.write_text(json.dumps(document))
-    try:
-        loaded = Front.load(path)
-    except FileFormatError:
-        return
-    assert np.all(np.diff(loaded.energies) < 0)
+    refused(path, "one is better than another")
 
 
 def test_a_place_that_cannot_be_written_is_named(tmp_path):

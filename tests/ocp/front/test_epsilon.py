@@ -89,12 +89,13 @@ def test_a_front_says_where_it_comes_from(case, tmp_path):
     # The first steps, doubled while the independent integrator disagrees.
     assert steps in [first_steps(task, front.profile, SolveSettings()) * 2**k for k in range(4)]
     assert front.reference == reference_corner(task)
-    assert front.evaluations > POINTS  # iterations: several a point
+    assert front.evaluations == 0  # no search
+    assert front.iterations > POINTS  # several a point
     front.save(tmp_path / "front.json")
     assert Front.load(tmp_path / "front.json") == front
 
 
-def test_its_evaluations_are_all_iterations_of_the_solver(monkeypatch):
+def test_its_iterations_are_all_iterations_of_the_solver(monkeypatch):
     # counted where the solver is run: the ends' four starts each, scouts, sweeps, verification
     counted, solve = [], NonlinearProgram.solve
 
@@ -105,7 +106,7 @@ def test_its_evaluations_are_all_iterations_of_the_solver(monkeypatch):
 
     monkeypatch.setattr(NonlinearProgram, "solve", counting)
     front = epsilon_front(CASES["arm"][0], CycloidPolynomial(3), bound=0.5, points=4)
-    assert front.evaluations == sum(counted)
+    assert front.iterations == sum(counted)
 
 
 def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
@@ -260,3 +261,36 @@ def test_the_same_settings_give_the_same_front():
 def test_settings_of_a_sweep_reach_its_solves():
     sweep = Sweep(CASES["arm"][0], CycloidPolynomial(3), SolveSettings(starts=3, steps=50))
     assert (sweep.program.steps, len(sweep.guesses)) == (50, 3)
+
+
+@pytest.mark.parametrize("points", [2, 6])
+@pytest.mark.parametrize("workers", [1, 2])
+def test_there_is_a_point_at_every_residual_that_is_asked_for(points, workers):
+    task, bound = CASES["arm"]
+    at, told = (1e-4, 1e-3, 5e-3, 1.0), []  # at 1 m there is no front
+    front = epsilon_front(
+        task, CycloidPolynomial(3), bound=bound, points=points, at=at, workers=workers,
+        report=lambda done, total: told.append((done, total)),
+    )  # fmt: skip
+    assert len(front.points) == points + 3
+    if workers == 1:  # else the last words of a process may come too late
+        assert told[-1] == (points + 3, points + 3)
+    assert {total for _, total in told} == {points + 3}
+    for residual in at[:3]:
+        assert residual * (1 - 3e-4) < front.cheapest(residual).residual <= residual
+    assert front.settings["at"] == "0.0001, 0.001, 0.005, 1"
+
+
+def test_no_weighted_sum_beats_it_at_a_residual_that_is_asked_for():
+    """Each is read as a staircase: without a point there, the last step before it would count."""
+    task, bound = CASES["single link"]
+    profile, level = CycloidPolynomial(4), 1e-3
+    weighted = weighted_front(task, profile, bound=bound, points=12)
+    front = epsilon_front(task, profile, bound=bound, points=12, at=[level])
+    assert front.cheapest(level).energy <= weighted.cheapest(level).energy * (1 + 1e-5)
+
+
+@pytest.mark.parametrize("residual", [0.0, -1e-3, math.nan])
+def test_a_residual_out_of_range_is_refused(residual):
+    with pytest.raises(ValueError, match="residual is"):
+        epsilon_front(CASES["arm"][0], at=[residual])

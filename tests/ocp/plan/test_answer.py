@@ -56,14 +56,16 @@ def test_given_coefficients_are_evaluated_by_both_integrators(plan):
 
 def test_given_coefficients_are_not_said_to_be_optimal(plan):
     assert plan.status is SolveStatus.NOT_OPTIMISED
-    assert (plan.provenance.method, plan.provenance.settings) == ("given coefficients", {})
+    assert plan.provenance.method == "given coefficients"
+    assert plan.provenance.settings is None
+    assert plan.provenance.search == {}
 
 
 def test_where_coefficients_come_from_can_be_kept(tasks, tmp_path):
     origin = {"method": "a swarm", "settings": {"seed": 3, "rule": "2002", "bound": None}}
     plan = evaluate_coefficients(tasks["arm"], [0.1], **origin)
     assert plan.provenance.method == "a swarm"
-    assert plan.provenance.settings == origin["settings"]
+    assert plan.provenance.search == origin["settings"]
     plan.save(tmp_path / "plan.json")
     assert Plan.load(tmp_path / "plan.json") == plan
 
@@ -135,12 +137,12 @@ def test_a_file_has_the_keys_that_others_read(any_plan, tmp_path):
     any_plan.save(tmp_path / "plan.json")
     document = json.loads((tmp_path / "plan.json").read_text())
     assert document["coefficients"] == list(any_plan.coefficients)
-    assert document["residual"] == any_plan.residual
-    assert document["energy"] == any_plan.energy
-    assert document["plant"] == any_plan.task.plant.name
-    move = (document["start"], document["target"], document["duration"])
-    assert move == any_plan.task.move
-    assert (document["format"], document["version"]) == ("quietarm-plan", 1)
+    assert document["motion"]["residual"] == any_plan.residual
+    assert document["motion"]["energy"] == any_plan.energy
+    task = document["task"]
+    assert task["plant"]["name"] == any_plan.task.plant.name
+    assert (task["start"], task["target"], task["duration"]) == any_plan.task.move
+    assert (document["format"], document["version"]) == ("quietarm-plan", 2)
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
@@ -169,7 +171,7 @@ def made_up_plans(draw):
         Motion(*draw(st.lists(finite, min_size=8, max_size=8))),
         draw(st.sampled_from(SolveStatus)),
         Verification(draw(st.integers(1, 9999)), *draw(st.lists(finite, min_size=4, max_size=4))),
-        Provenance(draw(st.text()), draw(words), {"any": draw(st.text())}, 0.5),
+        Provenance(draw(st.text()), None, draw(words), {"any": draw(st.text())}, 0.5),
     )
 
 
@@ -291,7 +293,7 @@ def test_a_table_agrees_with_path_and_trajectory(any_plan, tmp_path):
         expected = any_plan.path(t, order)
         close = digits * max(np.abs(expected).max(), 1.0)
         assert table[:, 1 + order] == pytest.approx(expected, abs=close)
-    sampled = any_plan.trajectory(t)
+    sampled = any_plan.sampled(t)
     tips = sampled.tips.shape[1]
     assert table[:, 4 : 4 + tips] == pytest.approx(sampled.tips, abs=digits)
     assert table[:, 4 + tips] == pytest.approx(sampled.torque, abs=digits)

@@ -16,10 +16,11 @@ from ocp import (
     rollout,
 )
 from ocp.plan.feasibility import explain
+from ocp.program.ipopt import Point
 from ocp.program.problem import Problem
 from ocp.program.solution import Solution
 from ocp.program.task_program import TaskProgram
-from ocp.program.transcription import Form, Point
+from ocp.program.transcription import Form
 
 # Name, terms, task's limits, settings of the solve.
 CASES = {

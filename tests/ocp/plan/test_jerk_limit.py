@@ -59,8 +59,8 @@ def test_a_plan_with_a_jerk_limit_saves_and_loads_equal(pair, tmp_path):
         plan.save(tmp_path / "plan.json")
         assert Plan.load(tmp_path / "plan.json") == plan
     document = json.loads((tmp_path / "plan.json").read_text())
-    assert document["limits"] == {"jerk": plan.task.jerk_limit}
-    assert document["diagnostics"]["peak_jerk"] == plan.motion.peak_jerk
+    assert document["task"]["jerk_limit"] == plan.task.jerk_limit
+    assert document["motion"]["peak_jerk"] == plan.motion.peak_jerk
 
 
 @pytest.fixture
@@ -71,8 +71,8 @@ def changed(pair, tmp_path):
 
     def write(**peaks):
         document = json.loads(path.read_text())
-        del document["diagnostics"]["peak_jerk"]
-        document["diagnostics"] |= peaks
+        del document["motion"]["peak_jerk"]
+        document["motion"] |= peaks
         path.write_text(json.dumps(document))
         return path
 

@@ -18,7 +18,7 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.plan.solver import LEAST_STEPS, start_coefficients
+from ocp.plan.solver import PLAN_STEPS, start_coefficients
 from ocp.task.point_to_point import LIMITS
 
 pi = math.pi
@@ -116,7 +116,7 @@ def test_another_process_gives_identical_coefficients():
 
 def test_the_seed_is_kept_with_the_answer():
     plan = _plan(seed=5, starts=2)
-    expected = {"residual_limit": 0.0, "bound": 0.5, "starts": 2, "seed": 5, "steps": None}
+    expected = SolveSettings(residual_limit=0.0, bound=0.5, starts=2, seed=5)
     assert plan.provenance.settings == expected
     assert plan.provenance.method == "ipopt"
 
@@ -159,7 +159,7 @@ def test_a_limit_is_kept_and_costs_energy(plants, tasks, solved, name, limit):
     # Kept to the solver's tolerance by the verified motion, and between its samples to the share
     # that ocp.plan.solver allows.
     assert limited.motion.peak(quantity) <= value * (1 + 1e-6)
-    sampled = limited.trajectory(np.linspace(0.0, task.duration, 20_001))
+    sampled = limited.sampled(np.linspace(0.0, task.duration, 20_001))
     peak = {
         "torque": sampled.torque,
         "speed": sampled.joint[:, 1],
@@ -222,7 +222,7 @@ def test_a_residual_limit_that_is_not_in_the_way_is_verified_as_any_other(tasks,
     assert 0.01 < plan.residual < 0.1
     check = plan.verification
     assert check.fixed_step_residual == pytest.approx(plan.residual, rel=1e-3)
-    assert check.steps <= 2 * LEAST_STEPS
+    assert check.steps <= 2 * PLAN_STEPS
 
 
 def test_the_box_is_kept_however_narrow(tasks, solved):
@@ -271,7 +271,7 @@ def test_six_terms_by_default(tasks, solved):
 def test_two_links_arrive_at_rest(tasks, solved):
     # docs/physics.md's third plant and move: 0 to pi/2 in 0.9 s.
     plan = solved(tasks["two links"])
-    after = plan.trajectory(np.linspace(0.9, 1.9, 200))
+    after = plan.sampled(np.linspace(0.9, 1.9, 200))
     assert np.abs(after.tips).max() < 1e-7
     assert after.tips.shape == (200, 2)
     assert plan.energy > plan.motion.net_work > 0

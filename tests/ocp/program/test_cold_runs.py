@@ -35,9 +35,9 @@ def test_without_a_box_it_reaches_what_it_reaches_in_a_wide_one(problem, task, l
     )
     assert free.status.solved
     if free.settled:
-        # Not above it by more than 1e-6; in the box some end too high, by 7e-5 at most.
+        # Not above it by more than 1e-6; in the box some end too high, by 3.1e-4 at most.
         assert free.energy <= boxed.energy * (1 + 1e-6)
-        assert free.energy == pytest.approx(boxed.energy, rel=1e-4)
+        assert free.energy == pytest.approx(boxed.energy, rel=5e-4)
     else:  # one of the 18: single link, 16 terms, 5 mm; the sampled minimum stands, 4.3e-3 above
         assert free.energy == pytest.approx(boxed.energy, rel=5e-3)
 

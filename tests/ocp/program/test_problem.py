@@ -11,6 +11,7 @@ from ocp.plan.solver import _HIDDEN
 from ocp.program import run
 from ocp.program.solution import same_minimum
 from ocp.program.transcription import RESIDUAL
+from ocp.simulation.piecewise import PiecewiseMotion
 from ocp.simulation.resimulation import resimulated
 from ocp.task.point_to_point import LIMITS
 
@@ -59,8 +60,8 @@ def test_the_solution_arrives_at_rest_with_its_energy(problem, task):
     assert solution.status is SolveStatus.OPTIMAL
     assert solution.settled
     motion = _simulated(task, solution)
-    assert motion.residual < 1e-12
-    assert solution.residual < 1e-12
+    assert motion.residual < 1e-11  # IPOPT's tolerance of the constraints; 4.4e-12 seen
+    assert solution.residual < 1e-11
     assert solution.slope == 0.0
     # The independent integrator finds the same motion a little off rest, and the same energy but
     # for what neighbouring steps tell of it: 2e-6.
@@ -75,9 +76,10 @@ def test_a_corrected_solution_rests_by_the_other_integrator(problem, task, steps
     # Few steps miss the true state on arrival; what they miss is given back.
     asked = problem(task, AT_REST, bound, steps=steps)
     found = asked.solve(START)
-    motion, arrival = resimulated(task, PROFILE, found.coefficients)
+    first = resimulated(task, PiecewiseMotion.of_profile(task, PROFILE, found.coefficients))
+    motion = first.motion
     assert motion.residual > 1e-12
-    corrected = asked.corrected(found, arrival)
+    corrected = asked.corrected(found, first.arrival)
     assert corrected.status is SolveStatus.OPTIMAL
     assert corrected.settled
     # By what it was told: IPOPT keeps scaled constraints to 1e-10, here 5e-12 m at most.

@@ -8,7 +8,8 @@ import pytest
 
 from ocp import CycloidPolynomial, residual_matrix, rollout
 from ocp.program.condensed import Condensed
-from ocp.program.transcription import RESIDUAL, Form, NonlinearProgram, Point
+from ocp.program.ipopt import Point
+from ocp.program.transcription import RESIDUAL, Form, NonlinearProgram
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 
 STEPS, TERMS, ROWS = 4, 3, 6

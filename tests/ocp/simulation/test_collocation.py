@@ -10,7 +10,7 @@ from models import ArmOnFlexibleLink, JointMotion, SingleLinkManipulator
 from ocp import CycloidPolynomial
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh, modal_system, step
 
-STILL = JointMotion(0.4, 0.0, 0.0)
+AT_REST = JointMotion(0.4, 0.0, 0.0)
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])
@@ -176,7 +176,7 @@ def _oscillator(omega=10.0, zeta=0.0):
 def test_an_undamped_oscillator_keeps_its_energy(h):
     # Gauss methods keep quadratic invariants (Hairer, Lubich, Wanner, section IV.2): here
     # W'^2 + omega^2 W^2, whatever the step.
-    matrix, _ = _matrix_of(step(_oscillator(), [STILL] * NODES, h))
+    matrix, _ = _matrix_of(step(_oscillator(), [AT_REST] * NODES, h))
     scaled = np.diag([10.0, 1.0]) @ matrix @ np.diag([0.1, 1.0])
     assert scaled.T @ scaled == pytest.approx(np.eye(2), abs=1e-13)
 
@@ -191,7 +191,7 @@ def test_a_free_step_is_of_order_six():
         exact = math.exp(-decay * h) * np.array(
             [[cosine + decay * sine, sine], [-(omega**2) * sine, cosine - decay * sine]]
         )
-        one = step(_oscillator(omega, zeta), [STILL] * NODES, h)
+        one = step(_oscillator(omega, zeta), [AT_REST] * NODES, h)
         return np.abs(_matrix_of(one)[0] - exact).max()
 
     assert error(0.02) / error(0.01) == pytest.approx(2**7, rel=0.1)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import CycloidPolynomial, PointToPoint, resimulate, rollout, symbolic_rollout
 from ocp.simulation.resimulation import sample_trajectory
-from ocp.simulation.rollout import LEAST_STEPS, default_steps
+from ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)
@@ -129,8 +129,8 @@ def test_the_error_falls_with_the_sixth_power_of_the_step():
 
 
 def test_default_steps_resolve_the_profile_and_the_fastest_mode():
-    # LEAST_STEPS at least; two a radian of the fastest mode.
-    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8)) == LEAST_STEPS
+    # ROLLOUT_STEPS at least; two a radian of the fastest mode.
+    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8)) == ROLLOUT_STEPS
     assert default_steps(PointToPoint(SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 400
     assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 10.0)) == 209  # 2 * 104.3
     assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
@@ -152,7 +152,7 @@ def test_the_longest_move_is_accepted():
 
 def test_a_rollout_says_how_many_steps_it_took():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
-    assert rollout(task, PLAIN, []).steps == LEAST_STEPS
+    assert rollout(task, PLAIN, []).steps == ROLLOUT_STEPS
     assert rollout(task, PLAIN, [], steps=50).steps == 50
     assert rollout(task, PLAIN, [], steps=1).steps == 1
 

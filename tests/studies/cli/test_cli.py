@@ -19,7 +19,7 @@ import pytest
 import studies.cli.commands.evaluate
 import studies.cli.commands.floor
 import studies.cli.commands.plan
-import studies.comparison.report
+import studies.reports.comparison
 import studies.reproduction.recompute
 import studies.runs.polishing
 import studies.runs.searching
@@ -113,7 +113,7 @@ def test_a_plan_says_what_it_found_and_what_it_wrote(planned):
     assert ran.stdout.splitlines()[-3:] == ["wrote plan.json", "wrote move.csv", "wrote move.svg"]
     assert sorted(path.name for path in where.iterdir()) == ["move.csv", "move.svg", "plan.json"]
     found = Plan.load(where / "plan.json")
-    assert "arm-on-flexible-link, -90deg to 45deg in 1 s" in ran.stdout
+    assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in ran.stdout
     assert f"{found.energy:.6g} J" in ran.stdout
     assert f"{found.motion.peak_torque:.4g} N m" in ran.stdout
     for value in found.coefficients:
@@ -148,15 +148,18 @@ def test_every_quantity_of_the_table_has_an_option(call, command):
 
 def test_the_json_file_holds_the_plan_in_si_units(planned):
     document = json.loads((planned[0] / "plan.json").read_text())
-    assert (document["format"], document["version"]) == ("quietarm-plan", 1)
-    assert document["plant"] == "arm-on-flexible-link"
-    assert (document["start"], document["target"]) == (-math.pi / 2, math.pi / 4)
-    assert document["duration"] == 1.0
+    assert (document["format"], document["version"]) == ("quietarm-plan", 2)
+    task = document["task"]
+    assert task["plant"]["name"] == "arm-on-flexible-link"
+    assert (task["start"], task["target"]) == (-math.pi / 2, math.pi / 4)
+    assert task["duration"] == 1.0
     assert len(document["coefficients"]) == 6
-    assert document["limits"] == {"torque": 0.4}
-    assert 0 <= document["residual"] < 1e-8  # README, 'How exact'
-    assert document["energy"] > 0.13  # above the least without a limit, 0.136 J in docs/physics.md
-    assert document["diagnostics"]["peak_torque"] <= 0.4 * 1.001
+    assert (task["torque_limit"], task["speed_limit"]) == (0.4, None)
+    assert 0 <= document["motion"]["residual"] < 1e-8  # README, 'How exact'
+    assert (
+        document["motion"]["energy"] > 0.13
+    )  # above the least without a limit, 0.136 J in docs/physics.md
+    assert document["motion"]["peak_torque"] <= 0.4 * 1.001
     settings = document["provenance"]["settings"]
     assert (settings["starts"], settings["seed"]) == (2, 3)
 
@@ -307,7 +310,7 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.cli.commands.evaluate, "evaluate_coefficients", note)
     monkeypatch.setattr(studies.runs.searching, "search", note)
     monkeypatch.setattr(studies.runs.searching, "search_many", note)
-    monkeypatch.setattr(studies.comparison.report, "load_fronts", note)
+    monkeypatch.setattr(studies.reports.comparison, "load_fronts", note)
     monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
     monkeypatch.setattr(studies.study.work, "run_study", note)
     monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)

@@ -9,18 +9,20 @@ from functools import partial
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
 
 import studies.comparison.check
 import studies.comparison.measures
-import studies.comparison.report
+import studies.reports.comparison
 from models import ArmOnFlexibleLink
 from ocp import FrontPoint, PointToPoint, SolverFailedError, evaluate_coefficients
 from studies.comparison.check import check_figures
-from studies.comparison.figure import BANDS, PANELS, comparison_figure, looks, panel_figure
 from studies.comparison.tables import runs_table, tables
+from studies.display.words import title_of
+from studies.figures.comparison import BANDS, PANELS, comparison_figure, looks, panel_figure
 from studies.paper.points import paper_points
 from studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
-from studies.paper.tasks import condition_of, title_of
+from studies.paper.tasks import condition_of
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
 FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
@@ -149,17 +151,20 @@ def test_where_the_paper_prints_no_coefficients_its_energy_is_known(task):
 
 
 def test_a_task_is_named_with_its_limits(task):
-    assert title_of(task) == "single-link, 0 to pi/6, 0.8 s"
+    assert title_of(task) == "single-link, 0 to 30 deg in 0.8 s"
     limited = dataclasses.replace(task, torque_limit=0.2, duration=1.5)
-    assert title_of(limited) == "single-link, 0 to 0.5236 rad, 1.5 s, torque within 0.2 N m"
+    assert title_of(limited) == "single-link, 0 to 30 deg in 1.5 s, torque within 0.2 N m"
 
 
 def test_every_group_has_a_look_of_its_own(front_of):
     methods = ["epsilon", "nsga2", "vepso", "weighted", "nsga2, polished", "other", "another"]
     fronts = [front_of([(1, 0.5)], method) for method in methods]
     fronts += [front_of([(2, 0.5)], "nsga2", bound=bound) for bound in (0.3, 0.4, 0.5)]
-    found = looks(compare(fronts))
-    assert len({(to_rgba(look.colour), str(look.dash)) for look in found.values()}) == 10
+    found = list(looks(compare(fronts)).values())
+    assert len({(look.colour, look.dash) for look in found}) == 10  # in the panels of lines
+    assert len({(look.colour, look.mark) for look in found}) == 10  # and in that of points
+    of_eight = looks(compare(fronts[:8])).values()
+    assert len({to_rgba(look.colour) for look in of_eight}) == 8
 
 
 @pytest.mark.parametrize("panel", PANELS)
@@ -168,6 +173,43 @@ def test_a_panel_stands_alone_with_its_legend(comparison, panel):
     assert len(figure.axes) == 1
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels[:2] == ["epsilon constraint", "NSGA-II"]
+
+
+def heights_within(axis):
+    """The heights of what a panel shows, where it shows it."""
+    (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
+    shown = [drawn(axis, label) for label in axis.get_legend_handles_labels()[1]]
+    table = np.vstack([points[points[:, 0] > 0] for points in shown])
+    inside = (left <= table[:, 0]) & (table[:, 0] <= right)
+    return table[inside & (low <= table[:, 1]) & (table[:, 1] <= high), 1]
+
+
+def test_the_still_end_is_shown_where_a_search_is_cheap_because_it_rings(good, front_of):
+    """A tight limit: the search begins at 6 mm, with less than half the still motion's energy."""
+    whole, still, _ = comparison_figure(compare([good, front_of([(6, 0.3), (9, 0.2)])])).axes[:3]
+    for axis in (whole, still):
+        assert axis.get_ylim()[1] > 0.8  # of `good` at rest
+        assert 0.5 in heights_within(axis)  # of `good` at 4 mm
+
+
+def test_the_still_end_is_where_the_stillest_are(front_of):
+    """Nothing arrives within 5 mm, the largest of the residuals that energies are compared at."""
+    fronts = [front_of([(16, 0.5), (40, 0.2)], "epsilon"), front_of([(20, 0.4)])]
+    _, still, gaps, _ = comparison_figure(compare(fronts)).axes
+    assert {0.5, 0.4} <= set(heights_within(still))
+    assert still.get_xlim()[0] == gaps.get_xlim()[0] == pytest.approx(0.9 * 16)
+    still.figure.canvas.draw()
+    labels = [label for label in still.get_xticklabels() if label.get_text()]
+    low, high = still.get_xlim()
+    assert sum(low <= label.get_position()[0] <= high for label in labels) >= 1
+
+
+@pytest.mark.parametrize("draw", PANELS.values())
+def test_a_panel_is_drawn_on_the_axes_that_are_given_or_on_new_ones(comparison, draw):
+    given = Figure().subplots()
+    assert draw(comparison, ax=given) is given
+    assert given.get_lines()
+    assert draw(comparison).figure is not given.figure
 
 
 def test_a_single_point_is_drawn_as_well(front_of):
@@ -182,7 +224,7 @@ def test_a_single_point_is_drawn_as_well(front_of):
 def test_compare_shows_tables_and_what_they_mean(call, files):
     code, out, err = call("compare good.json poor.json --as-found --no-floor")
     assert (code, err) == (0, "")
-    assert "single-link, 0 to pi/6, 0.8 s" in out
+    assert "single-link, 0 to 30 deg in 0.8 s" in out
     for words in ("epsilon constraint", "hypervolume", "IGD+", "epsilon", "Coverage"):
         assert words in out
     assert re.search(r"box up to 10 mm and 1 J", " ".join(out.split()))
@@ -198,6 +240,14 @@ def test_compare_fills_a_folder(call, files, good, poor):
     assert "![Fronts](fronts.png)" in report
     assert "| hypervolume (more is better) |" in report
     assert (files / "compared" / "fronts.png").read_bytes().startswith(b"\x89PNG")
+    rows = list(csv.reader((files / "compared" / "coverage.csv").read_text().splitlines()))
+    shown = [line.strip("| ").split(" | ") for line in report.split("**Coverage**")[1].splitlines()]
+    assert rows[0] == shown[2] == ["points beaten or equalled [%]", "epsilon constraint", "NSGA-II"]
+    # all of `poor` is beaten by `good`, and none of `good` by `poor`
+    assert rows[1:] == [["by epsilon constraint", "", "100.0"], ["by NSGA-II", "0.0", ""]]
+    assert [[cell.strip() for cell in row] for row in shown[4:6]] == [
+        ["by epsilon constraint", "-", "100"], ["by NSGA-II", "0", "-"]
+    ]  # fmt: skip
 
 
 def test_compare_measures_against_a_named_front(call, files, good):
@@ -210,7 +260,7 @@ def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     class Found:
         energy = 0.1234
 
-    monkeypatch.setattr(studies.comparison.report, "energy_floor", lambda task: Found())
+    monkeypatch.setattr(studies.reports.comparison, "energy_floor", lambda task: Found())
     code, out, _ = call("compare good.json poor.json --as-found")
     assert code == 0
     assert "arrive at rest, not of polynomials only, is 0.1234 J" in " ".join(out.split())
@@ -220,7 +270,7 @@ def test_a_floor_that_is_not_found_is_no_obstacle(call, files, monkeypatch):
     def fail(task):
         raise SolverFailedError("no start ended at an optimum")
 
-    monkeypatch.setattr(studies.comparison.report, "energy_floor", fail)
+    monkeypatch.setattr(studies.reports.comparison, "energy_floor", fail)
     code, out, err = call("compare good.json poor.json --as-found")
     assert (code, err) == (0, "no floor: no start ended at an optimum\n")
     assert "Floor" not in out
@@ -240,8 +290,8 @@ def test_other_tasks_are_refused_in_a_line(call, files, front_of):
         (None, "cannot be read: no such file"),
         ("t_s,theta_rad\n0,0\n", "is not a front: it is not whole, valid JSON"),
         ('{"format": "quietarm-plan", "version": 1}', "its format is 'quietarm-plan'"),
-        ('{"format": "quietarm-front", "version": 2}', "is not a whole front"),
-        ('{"format": "quietarm-front", "version": 1}', "reads 2 to 2; find the front again"),
+        ('{"format": "quietarm-front", "version": 3}', "is not a whole front"),
+        ('{"format": "quietarm-front", "version": 1}', "reads 2 to 3; find the front again"),
     ],
 )
 def test_what_is_no_front_is_refused_in_a_line(call, files, content, words):

@@ -37,7 +37,7 @@ def test_plan(done, tmp_path):
     with open(tmp_path / "move.csv", newline="") as file:
         assert next(csv.reader(file))[4:6] == ["tip_1_m", "tip_2_m"]
     picture = (tmp_path / "move.svg").read_text()
-    assert "this plan, tip 1" in picture
+    assert "this plan" in picture
     assert "this plan, tip 2" in picture
 
 
@@ -62,7 +62,7 @@ def test_front_by_search_polished_and_compared(done, tmp_path, method):
     found, polished = Front.load(tmp_path / "f.json"), Front.load(tmp_path / "polished.json")
     assert polished.cheapest().energy < found.cheapest().energy
     out = done("compare f.json polished.json --no-floor --output compared")
-    assert "dual-link, 0 to 1.571 rad, 0.9 s" in out
+    assert "dual-link, 0 to 90 deg in 0.9 s" in out
 
 
 def test_floor(done, tmp_path):

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from models import ArmOnFlexibleLink
-from ocp import Floor, PointToPoint, SolverFailedError, energy_floor
+from ocp import Floor, FloorSettings, PointToPoint, SolverFailedError, energy_floor
 from studies.cli import main
+from studies.figures.motion import PAPER_PANELS, Line, floor_figure, motion_figure
 from studies.reports.floor import plan_beside
-from studies.reports.floor_figure import floor_figure
-from studies.reports.motion_figure import Line, four_panels
 
 MOVE = "arm-on-flexible-link --target pi/2 --duration 0.8"
 
@@ -45,8 +44,9 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     assert (code, err) == (0, "")
     floor = Floor.load(tmp_path / "f.json")
     assert floor.task.limits == {"acceleration": 100.0}
-    settings = floor.provenance.settings
-    assert dict(settings) == {"smooth": False, "starts": 2, "seed": 3, "tolerance": 0.02}
+    assert floor.provenance.settings == FloorSettings(
+        smooth=False, starts=2, seed=3, tolerance=0.02
+    )
     shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
     assert float(shown["least energy"].split()[0]) == pytest.approx(floor.energy, rel=1e-5)
     assert shown["limits"] == "acceleration 100 rad/s^2"
@@ -107,7 +107,9 @@ def test_smooth_is_asked_for(call, tmp_path):
 
 def test_limits_without_any_plan_still_have_a_floor(call):
     # Six terms need 34 rad/s^2 on this move; a free motion does it with 27.
-    code, out, err = call(f"floor {MOVE} --acceleration-limit 30 --starts 1 --tolerance 0.1")
+    code, out, err = call(
+        f"floor {MOVE} --acceleration-limit 30 --starts 1 --tolerance 0.1 --quiet"
+    )
     assert (code, err) == (0, "")
     assert "none within these limits" in out
 
@@ -115,16 +117,17 @@ def test_limits_without_any_plan_still_have_a_floor(call):
 def test_the_picture_holds_the_floor_over_the_plan(floor):
     plan = plan_beside(floor)
     figure = floor_figure(floor, plan)
-    angle, speed, tip, torque = figure.axes
+    angle, speed, acceleration, tip, torque = figure.axes[:5]
     for axis, expected in (
         (angle, floor.trajectory.joint[:, 0]),
         (speed, floor.trajectory.joint[:, 1]),
+        (acceleration, floor.trajectory.joint[:, 2]),
         (tip, floor.trajectory.tips[:, 0] * 1e3),
         (torque, floor.trajectory.torque),
     ):
         drawn = next(line for line in axis.get_lines() if "floor" in str(line.get_label()))
         assert drawn.get_ydata() == pytest.approx(expected)
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    labels = [text.get_text() for text in figure.axes[5].get_legend().get_texts()]
     assert labels == [
         f"plan of 6 terms, {plan.energy:.4g} J",
         f"floor, {floor.energy:.4g} J",
@@ -139,19 +142,19 @@ def test_the_picture_holds_the_floor_over_the_plan(floor):
 def test_a_picture_that_cuts_nothing_says_nothing_of_jolts():
     task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, acceleration_limit=200.0)
     floor = energy_floor(task, starts=1)
-    torque = floor_figure(floor, plan_beside(floor)).axes[3]
+    torque = floor_figure(floor, plan_beside(floor)).axes[4]
     (lowest, highest), drawn = torque.get_ylim(), floor.trajectory.torque
     assert lowest < drawn.min() < -1.0
     assert 0.9 < drawn.max() < highest
-    assert torque.get_title(loc="left") == "(d) motor torque [N m]"
+    assert torque.get_title(loc="left") == "(e) joint torque [N m]"
     plt.close("all")
 
 
 def test_a_plan_s_picture_leaves_nothing_out(plan):
-    figure = four_panels([Line(plan, "plan", "black")])
+    figure = motion_figure([Line(plan, "plan", "black")], quantities=PAPER_PANELS)
     torque = figure.axes[3]
-    assert torque.get_ylim()[1] > np.abs(plan.trajectory([0.0, 0.1, 0.2]).torque).max()
-    assert torque.get_title(loc="left") == "(d) motor torque [N m]"
+    assert torque.get_ylim()[1] > np.abs(plan.sampled([0.0, 0.1, 0.2]).torque).max()
+    assert torque.get_title(loc="left") == "(d) joint torque [N m]"
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from ocp import (
     epsilon_front,
     polish_front,
 )
-from studies.reports.sweep_figure import polish_figure
+from studies.figures.sweep import polish_figure
 from studies.runs.polishing import thinned
 
 

@@ -1,6 +1,7 @@
 """Angles, lengths, times and coefficients as people write them."""
 
 import math
+import re
 
 import pytest
 from hypothesis import given
@@ -10,6 +11,7 @@ from studies.cli.quantities import (
     parse_angle,
     parse_coefficients,
     parse_length,
+    parse_rate,
     parse_time,
     parse_weights,
 )
@@ -47,6 +49,29 @@ FINITE = st.floats(allow_nan=False, allow_infinity=False)
 )
 def test_angles_as_people_write_them(text, radians):
     assert parse_angle(text) == pytest.approx(radians, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "order", "rate"),
+    [
+        ("2", 1, 2.0),
+        ("60deg", 1, math.pi / 3),
+        ("60 deg/s", 1, math.pi / 3),
+        ("2rad/s", 1, 2.0),
+        ("pi/2", 1, math.pi / 2),
+        ("60deg", 2, math.pi / 3),
+        ("180deg/s^2", 2, math.pi),
+        ("3 rad/s^3", 3, 3.0),
+    ],
+)
+def test_rates_as_people_write_them(text, order, rate):
+    assert parse_rate(text, order) == pytest.approx(rate, rel=1e-15)
+
+
+@pytest.mark.parametrize(("text", "order"), [("2/s^2", 1), ("2 m/s", 1), ("fast", 2), ("", 1)])
+def test_what_is_no_rate_is_refused_with_the_unit(text, order):
+    with pytest.raises(ValueError, match=rf"'{re.escape(text)}' is not a number in rad/s.*60deg"):
+        parse_rate(text, order)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from importlib import import_module
 
 import pytest
 
-import studies.comparison.report
+import studies.reports.comparison
 from ocp import Front
 
 MOVE = "single-link --target 30deg --duration 0.8"
@@ -105,7 +105,7 @@ def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder,
     assert call(f"{line} epsilon --output a.json")[0] == 0
     assert call(f"{line} weighted --output b.json")[0] == 0
     monkeypatch.setattr(
-        studies.comparison.report, "energy_floor", lambda task: signal.raise_signal(signal.SIGINT)
+        studies.reports.comparison, "energy_floor", lambda task: signal.raise_signal(signal.SIGINT)
     )
     code, out, err = call("compare a.json b.json --output compared")
     assert (code, err) == (1, "quietarm: interrupted; the comparison is kept, without the floor\n")

@@ -107,7 +107,7 @@ def test_a_damaged_entry_is_not_told_in_pythons_words(folder, plan, value):
 def test_a_wrong_parameter_of_a_plant_is_named(folder, plan):
     plan.save("plan.json")
     whole = json.loads((folder / "plan.json").read_text())
-    whole["plant_parameters"]["omga"] = 1.0
+    whole["task"]["plant"]["omga"] = 1.0
     (folder / "plan.json").write_text(json.dumps(whole))
-    with pytest.raises(ValueError, match="SingleLinkManipulator has no 'omga'"):
+    with pytest.raises(ValueError, match="plant 'single-link' has no 'omga'; take it out"):
         Plan.load("plan.json")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from studies.display.words import move_of
 from studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
 from studies.reproduction.claims import claims
 from studies.reproduction.floor_dots import floor_dots
@@ -154,7 +155,7 @@ def test_conditions_stand_beside_their_dots(reproduction):
     axis = floor_dots(reproduction).axes[0]
     labels = [label.get_text() for label in axis.get_yticklabels()]
     for label, condition in zip(labels, CONDITIONS, strict=True):
-        assert condition.label in label
+        assert move_of(condition.task) in label
         assert f"floor {reproduction.floors[condition].energy:.4g} J" in label
     heights = np.array(axis.get_yticks())
     found = multiples(reproduction, SINGLE_LINK_SIXTH)

@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 
 from ocp import CycloidPolynomial, SolveStatus, plan_move
+from studies.figures import BLUE, GREEN, RED
 from studies.paper.printed import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
@@ -156,8 +157,8 @@ def test_the_box_is_kept(reproduction):
     for result in reproduction.rows:
         largest = max(map(abs, result.in_box.coefficients))
         assert largest <= result.row.condition.bound * (1 + 1e-6)
-        assert result.in_box.provenance.settings["bound"] == result.row.condition.bound
-        assert result.free.provenance.settings["bound"] is None
+        assert result.in_box.provenance.settings.bound == result.row.condition.bound
+        assert result.free.provenance.settings.bound is None
 
 
 @pytest.mark.parametrize("condition", GRADIENT, ids=lambda value: value.label)
@@ -497,7 +498,7 @@ def test_figures_2_and_5_draw_cycloid_printed_coefficients_and_gradient(
     drawn = {line.get_label(): line for line in figure.axes[0].get_lines()}
     # The paper, 3.1: 'green, red, and blue lines denote the results for N = 2, 4, and 6', 'the
     # black line indicates the results obtained from the cycloidal motion'.
-    colours = ["black", "tab:green", "tab:red", "tab:blue"]
+    colours = ["black", GREEN, RED, BLUE]
     assert [drawn[label].get_color() for label in labels[:4]] == colours
 
 

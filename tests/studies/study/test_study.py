@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
 import pytest
+from matplotlib.figure import Figure
 
 import metaheuristics.ensemble as ensemble
 import studies.study.pieces as study_pieces
@@ -20,7 +21,8 @@ from studies.paper.case import Case
 from studies.paper.printed import ARM_HALF, CONDITIONS, SINGLE_LINK_SIXTH
 from studies.study.files import _file_name, front_files, page_file
 from studies.study.findings import case_findings, findings, percent, percents
-from studies.study.page import study_page
+from studies.study.overview import draw_study_gaps
+from studies.study.page import method_lines, study_page
 from studies.study.pieces import StudySettings
 from studies.study.work import Study, amount_of_work, run_study
 
@@ -71,7 +73,7 @@ def test_every_method_runs_on_every_task(small, begun):
         assert found.failures == ()
         assert {run.front.settings["bound"] for run in found.comparison.runs} == {found.case.bound}
     assert len(begun) == amount_of_work(CASES, QUICK) == 18
-    assert begun[0] == "single-link, 0 to pi/6, 0.8 s: epsilon"
+    assert begun[0] == "single-link, 0 to 30 deg in 0.8 s: epsilon"
 
 
 def test_polish_never_makes_worse_what_it_starts_from(small):
@@ -239,6 +241,7 @@ def test_a_study_that_found_nothing_before_ctrl_c_is_none(let_sweep):
 def test_shares_in_words():
     assert percent(0.1234) == "12 %"
     assert percent(0.0012) == "0.12 %"
+    assert percent(1.199) == "120 %"
     assert percent(1e-6) == "less than 0.01 %"
     assert percents([0.001, 0.02]) == "0.1 to 2 %"
     assert percents([0.02, 0.02]) == "2 %"
@@ -268,6 +271,54 @@ def test_the_summary_speaks_of_every_method(small):
                  "VEPSO takes", "Polished by the gradient", "times the floor",
                  "Median time of a front: epsilon constraint"):  # fmt: skip
         assert part in words
+
+
+def test_where_no_motion_is_still_the_findings_say_how_still_the_stillest_is(small):
+    found = small.cases[0]
+    fronts = [replace(run.front, points=run.front.points[-1:]) for run in found.comparison.runs]
+    (last,) = fronts[0].points
+    assert last.residual > 5e-3  # the largest of the residuals that energies are compared at
+    words = " ".join(case_findings(replace(found, comparison=compare_fronts(fronts[:4]))))
+    assert "No method arrives within 1 mm: the stillest motion leaves " in words
+    assert re.search(r"The stillest motion of NSGA-II leaves \d\S* mm\.", words)
+    assert "not reached" not in words
+    assert "No motion of 2 coefficients was found that arrives at rest" in words
+
+
+@pytest.mark.parametrize(
+    ("settings", "nsga2", "vepso"),
+    [
+        # sections 3.1 and 3.2 of the paper
+        (StudySettings(), "200 and 500 generations, as in the paper",
+         "100 and 200 generations, as in the paper"),
+        (QUICK, "24 and 8 generations, where the paper has 200 and 500",
+         "24 and 8 generations, where the paper has 100 and 200"),
+        (StudySettings(generations=200), "200 and 200 generations, where the paper has 200 and 500",
+         "100 and 200 generations, as in the paper"),
+    ],
+)  # fmt: skip
+def test_the_page_says_with_which_settings_the_searches_ran(settings, nsga2, vepso):
+    words = method_lines(settings)
+    seeds = f"from {settings.runs} seeds"
+    for label, part in (("NSGA-II", nsga2), ("VEPSO", vepso)):
+        wanted = f"{label}: the paper's search, {seeds}, with a population of {part}."
+        assert wanted in words
+
+
+def test_epsilon_has_a_point_at_every_residual_that_energies_are_compared_at(small):
+    for found in small.cases:
+        front = next(r.front for r in found.comparison.runs if r.front.method == "epsilon")
+        for level in found.comparison.levels:
+            assert level * (1 - 3e-4) < front.cheapest(level).residual <= level
+
+
+def test_the_overview_is_drawn_on_the_axes_that_are_given_or_on_new_ones(small):
+    given = Figure().subplots()
+    assert draw_study_gaps(small, given) is given
+    assert [label.get_text() for label in given.get_yticklabels()] == [
+        "single-link\n0 to 30 deg in 0.8 s", "arm-on-flexible-link\n0 to 90 deg in 0.8 s"
+    ]  # fmt: skip
+    assert draw_study_gaps(small).figure is not given.figure
 
 
 # The page
@@ -399,8 +450,8 @@ def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
 def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small, tmp_path):
     names = [path.name for path, _ in front_files(small, tmp_path)]
     assert len(names) == len(set(names)) == 16
-    assert "arm-on-flexible-link-0-to-pi-2-0.8-s-nsga2-polished-seed0.json" in names
-    assert _file_name("-pi/2 to pi/4") == "minus-pi-2-to-pi-4"
+    assert "arm-on-flexible-link-0-to-90-deg-in-0.8-s-nsga2-polished-seed0.json" in names
+    assert _file_name("-90 to 45 deg") == "minus-90-to-45-deg"
 
 
 def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkeypatch):

@@ -15,8 +15,8 @@ from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
 from studies.display.saving import File, drawing, inside
 from studies.display.tables import print_table
+from studies.display.words import title_of
 from studies.paper.points import paper_points
-from studies.paper.tasks import title_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,10 +59,9 @@ def comparison_files(folder: Path, comparison: Comparison) -> list[File]:
     shown, title = tables(comparison), title_of(comparison.task)
 
     def picture() -> Figure:
-        from studies.comparison.figure import comparison_figure
+        from studies.figures import comparison_figure
 
-        paper = paper_points(comparison.task, terms_of(comparison))
-        return comparison_figure(comparison, paper, title)
+        return comparison_figure(comparison, paper_points(comparison.task, terms_of(comparison)))
 
     def report(path: Path) -> None:
         lines = (*how_to_read(comparison), *units(comparison))
@@ -73,7 +72,7 @@ def comparison_files(folder: Path, comparison: Comparison) -> list[File]:
     writes = {
         REPORT: report,
         "runs.csv": runs_table(comparison).save_csv,
-        "coverage.csv": shown["coverage"].save_csv,
+        "coverage.csv": shown["coverage"].turned().save_csv,
         PICTURE: drawing(picture),
     }
     return inside(folder, writes)

@@ -1,0 +1,149 @@
+"""Call a plant's methods, and check what they return."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import reprlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Real
+from pathlib import Path
+from typing import Any, TypeGuard
+
+import casadi as ca
+import numpy as np
+
+from models.plant import Expression, JointMotion, Plant
+
+_WRITE = {
+    "modal_accelerations": ("self, joint, W, dW", "a list of W'' [m/s^2], one for each mode"),
+    "torque": ("self, joint, W, dW, ddW", "one expression, the joint torque [N m]"),
+    "tip_displacements": ("self, W", "a list of tip displacements [m]"),
+}
+"""For every method its arguments, and what it should return."""
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """What the three methods give."""
+
+    accelerations: list[Expression]
+    torque: Expression
+    tips: list[Expression]
+
+    @property
+    def all(self) -> list[Expression]:
+        """All of them, in the order of the attributes."""
+        return [*self.accelerations, self.torque, *self.tips]
+
+
+class Calls:
+    """The methods of a plant, called with the entries of joint motion, W, W' and W''.
+
+    Parameters
+    ----------
+    plant : Plant
+        The plant.
+    rows : int
+        How many motions stand side by side where there are several.
+    """
+
+    def __init__(self, plant: Plant, rows: int) -> None:
+        self._plant, self._modes, self._rows = plant, plant.modes, rows
+
+    def outputs(self, arguments: Sequence[Expression]) -> Outputs:
+        """What the methods give; ValueError where one gives something else than it should."""
+        modes = self._modes
+        joint, rest = JointMotion(*arguments[:3]), list(arguments[3:])
+        W, dW, ddW = rest[:modes], rest[modes : 2 * modes], rest[2 * modes :]
+        accelerations = self._listed("modal_accelerations", joint, W, dW)
+        if len(accelerations) != modes:
+            raise ValueError(
+                f"plant {self._plant.name!r} says modes = {modes} but gives {len(accelerations)} "
+                "modal accelerations; return one for each mode"
+            )
+        torque = self._single("torque", self._called("torque", joint, W, dW, ddW))
+        tips = self._listed("tip_displacements", W)
+        if not tips:
+            raise ValueError(
+                f"plant {self._plant.name!r} has no tip displacement; return 1 or more from "
+                "tip_displacements"
+            )
+        return Outputs(accelerations, torque, tips)
+
+    def _listed(self, method: str, *arguments: object) -> list[Expression]:
+        found = self._called(method, *arguments)
+        if not isinstance(found, list | tuple):
+            raise self.wrong(method, f"returns {_brief(found)}, which is no list")
+        return [self._single(method, entry) for entry in found]
+
+    def _single(self, method: str, found: Any) -> Expression:
+        if not (is_number(found) or isinstance(found, ca.SX | ca.MX | ca.DM)):
+            inside = "" if method == "torque" else "a list with "
+            raise self.wrong(method, f"returns {inside}{_brief(found)}")
+        if isinstance(found, ca.SX | ca.MX | ca.DM) and found.shape not in (
+            (1, 1),
+            (self._rows, 1),
+        ):
+            raise self.wrong(method, f"returns a matrix of {found.shape[0]} by {found.shape[1]}")
+        return found
+
+    def _called(self, method: str, *arguments: object) -> object:
+        call = getattr(self._plant, method)
+        try:
+            inspect.signature(call).bind(*arguments)
+        except TypeError:
+            raise self.wrong(method, "takes other arguments than it is given") from None
+        try:
+            return call(*arguments)
+        except IndexError:
+            raise ValueError(
+                f"plant {self._plant.name!r} says modes = {self._modes} but its {method} uses "
+                "more; set modes to their number"
+            ) from None
+        except Exception as error:
+            remedy = ""
+            if isinstance(error, RuntimeError | TypeError):  # what casadi raises over its symbols
+                remedy = (
+                    "write it with casadi.cos, casadi.fmax, casadi.if_else and their like: math's "
+                    "functions, if, max and float() take no symbols"
+                )
+            raise self.wrong(method, f"fails{_line_of(error)} ({_words(error)})", remedy) from None
+
+    def wrong(self, method: str, what: str, remedy: str = "") -> ValueError:
+        """What to say of a method: what it does, what to do about it, what it should return."""
+        arguments, returns = _WRITE[method]
+        remedy = remedy or f"write def {method}({arguments})"
+        return ValueError(
+            f"plant {self._plant.name!r}: {method} {what}; {remedy}, and return {returns}"
+        )
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether it is a number, of Python or NumPy; a truth value is none."""
+    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+
+
+def _brief(value: object) -> str:
+    if isinstance(value, ca.SX | ca.MX | ca.DM):
+        return "an expression"
+    return f"{type(value).__name__} {reprlib.repr(value)}" if value is not None else "None"
+
+
+def _line_of(error: Exception) -> str:
+    """Where in the user's method an error came from."""
+    trace = error.__traceback__
+    inside = trace.tb_next if trace else None
+    if inside is None:
+        return ""
+    return f" at line {inside.tb_lineno} of {Path(inside.tb_frame.f_code.co_filename).name}"
+
+
+def _words(error: Exception) -> str:
+    """An error's name and first line, without the place in casadi that it comes from."""
+    lines = str(error).strip().splitlines() or [""]
+    if "to_double" in lines[0] or "to_int" in lines[0]:
+        return "a symbol is no number"
+    text = re.sub(r"^\S*\.[ch]pp:\d+: ", "", lines[0]).rstrip(".")
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -1,0 +1,196 @@
+"""Values in JSON's types and back: `plain` and `typed`.
+
+The names are those of the attributes. msgspec checks every entry against its type; what it says is
+told here with the entry's value.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import reprlib
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any, TypeVar
+
+import msgspec
+import numpy as np
+
+from models import Plant, known_plants
+from ocp.answers.plants import PLANT_FILE, file_entry, without_file
+from ocp.profiles.joint_profile import JointProfile, known_profiles
+
+T = TypeVar("T")
+
+
+def plain(value: Any) -> Any:
+    """A value in JSON's types, SI units and radians.
+
+    Parameters
+    ----------
+    value : Any
+        A dataclass, a container or a number. Of a plant or profile its name is written, too, and
+        the file that a plant was loaded from.
+
+    Returns
+    -------
+    Any
+        Tables by the names of the attributes, lists, numbers and words.
+
+    Raises
+    ------
+    ValueError
+        When the class of a plant or profile could not be found by its name.
+    """
+    if isinstance(value, Plant):
+        return {"name": _name_of(value), **file_entry(value), **_entries(value)}
+    if isinstance(value, JointProfile):
+        return {"name": _name_of(value), **_entries(value)}
+    if dataclasses.is_dataclass(value):
+        return _entries(value)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, Mapping):
+        return {name: plain(entry) for name, entry in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(entry) for entry in value]
+    return value
+
+
+def typed(document: Any, kind: type[T]) -> T:
+    """The value of a document: the opposite of `plain`.
+
+    Parameters
+    ----------
+    document : Any
+        In JSON's types.
+    kind : type
+        What it should be, usually a dataclass.
+
+    Returns
+    -------
+    kind
+        The value. `plain` of it is the document, but for entries that are not set (None): these
+        may be missing.
+
+    Raises
+    ------
+    KeyError
+        When an entry is missing.
+    ValueError
+        When an entry is unknown, or not what it should be: in one line, where, its value and why.
+    """
+    try:
+        value = msgspec.convert(document, kind, dec_hook=_named_or_array)
+    except msgspec.ValidationError as error:
+        raise _in_words(str(error), document) from None
+    _refuse_other_entries(document, plain(value))
+    return value
+
+
+def _entries(value: Any) -> dict[str, Any]:
+    return {
+        entry.name: plain(getattr(value, entry.name))
+        for entry in dataclasses.fields(value)
+        if entry.init
+    }
+
+
+def _name_of(value: Plant | JointProfile) -> str:
+    known = known_plants() if isinstance(value, Plant) else known_profiles()
+    own = type(value)
+    if known.get(value.name) is not own:
+        raise ValueError(
+            f"{own.__name__} has no name of its own, and {value.name!r} would load as another "
+            "class; set `name` in the class"
+        )
+    return value.name
+
+
+def _named_or_array(kind: Any, entry: Any) -> Any:
+    """What msgspec does not know: plants and profiles by their name, arrays."""
+    if kind is Plant:
+        return _named("plant", without_file(entry), known_plants())
+    if kind is JointProfile:
+        return _named("profile", entry, known_profiles())
+    try:
+        return np.array(msgspec.convert(entry, list[float]), dtype=float)
+    except msgspec.ValidationError:
+        raise ValueError(f"{reprlib.repr(entry)} is no list of numbers") from None
+
+
+def _named(what: str, entry: Any, known: Mapping[str, type[Any]]) -> Any:
+    if not isinstance(entry, dict):
+        raise ValueError(f"{what} is {reprlib.repr(entry)}; give a table with its name")
+    name = entry["name"]
+    if not isinstance(name, str) or name not in known:
+        raise ValueError(
+            f"its {what} {reprlib.repr(name)} is not known here (known: "
+            f"{', '.join(sorted(known))}); import the file that defines it first"
+        )
+    arguments = {key: value for key, value in entry.items() if key != "name"}
+    fields = {field.name: field for field in dataclasses.fields(known[name])}
+    unknown = sorted(arguments.keys() - fields)
+    if unknown:
+        raise ValueError(f"its {what} {name!r} has no {reprlib.repr(unknown[0])}; take it out")
+    for field in fields.values():
+        if field.default is field.default_factory is dataclasses.MISSING:
+            arguments[field.name]
+    try:
+        return known[name](**arguments)
+    except OverflowError:
+        raise ValueError(f"a number of its {what} is beyond double precision") from None
+
+
+def _refuse_other_entries(found: Any, wanted: Any, place: str = "") -> None:
+    """ValueError or KeyError where a document has other entries than are written."""
+    if isinstance(wanted, dict):
+        unknown = [name for name in found if name not in wanted]
+        if unknown:
+            raise ValueError(
+                f"its entry {place + unknown[0]!r} is not known here; take it out, or install a "
+                "newer quietarm"
+            )
+        for name, entry in wanted.items():
+            if name in found:
+                _refuse_other_entries(found[name], entry, f"{place}{name}.")
+            elif entry is not None and name != PLANT_FILE:  # a script's own plant has no file
+                raise KeyError(place + name)
+    elif isinstance(wanted, list):
+        for i, (entry, written) in enumerate(zip(found, wanted, strict=True)):
+            _refuse_other_entries(entry, written, f"{place.removesuffix('.')}[{i}].")
+
+
+def _in_words(text: str, document: Any) -> KeyError | ValueError:
+    """The error that says what msgspec's text does, with the entry's value and a remedy."""
+    said, *places = " ".join(text.split()).split(" - at `$")
+    place = "".join(part.rstrip("`") for part in reversed(places)).lstrip(".")
+    missing = re.fullmatch(r"Object missing required field `(.*)`", said)
+    if missing:
+        return KeyError(".".join(filter(None, [place, missing[1]])))
+    expected = re.fullmatch(r"Expected `([^`]*)`(.*?)(, got .*)?", said)
+    if expected:
+        kinds = " or ".join(_KINDS.get(kind, kind) for kind in expected[1].split(" | "))
+        each = " in every entry" if place.endswith("[...]") else ""
+        return ValueError(f"{_with_value(place, document)}; give {kinds}{expected[2]}{each}")
+    if said.startswith("Invalid enum value"):
+        return ValueError(f"{_with_value(place, document)}, which is not known here")
+    if said.endswith("out of range"):
+        return ValueError(f"{_with_value(place, document)}; give a number of double precision")
+    return ValueError(f"{said} (at {place})" if place else said)  # the words of the value itself
+
+
+_KINDS = {
+    "float": "a number", "int": "a whole number", "str": "a text", "bool": "true or false",
+    "array": "a list", "object": "a table",
+}  # fmt: skip
+
+
+def _with_value(place: str, document: Any) -> str:
+    """The place of an entry and its value; where msgspec leaves out a name, that of the table."""
+    known = place.partition("[...]")[0]
+    for key, index in re.findall(r"(\w+)|\[(\d+)\]", known):
+        document = document[int(index) if index else key]
+    return f"{known or 'it'} is {reprlib.repr(document)}"

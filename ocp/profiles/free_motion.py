@@ -1,0 +1,118 @@
+"""A joint motion of free acceleration: a polynomial in time on every interval of a grid."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models import Expression, JointMotion
+
+
+def joint_after(derivatives: Sequence[Expression], t: Expression) -> JointMotion:
+    """The joint a time `t` [s] after these values, by a constant last derivative.
+
+    Parameters
+    ----------
+    derivatives : sequence of Expression
+        Angle [rad], speed, acceleration and, where the acceleration is not constant, jerk.
+    t : Expression
+        The time [s].
+
+    Returns
+    -------
+    JointMotion
+        The joint.
+    """
+    angle, speed, acceleration, *rest = derivatives
+    jerk = rest[0] if rest else 0.0
+    return JointMotion(
+        angle + t * (speed + t * (acceleration / 2 + t * (jerk / 6))),
+        speed + t * (acceleration + t * (jerk / 2)),
+        acceleration + t * jerk,
+        jerk,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class FreeMotion:
+    """A joint motion from rest, a polynomial on every interval of a grid; arrays are read-only.
+
+    Attributes
+    ----------
+    times : ndarray, shape (steps + 1,)
+        The grid, from 0 to the duration [s].
+    acceleration : ndarray, shape (steps,)
+        Joint acceleration at the beginning of every interval [rad/s^2].
+    jerk : ndarray, shape (steps,)
+        Its rate of change on the interval [rad/s^3]: 0 where the acceleration is constant on
+        every interval.
+    """
+
+    times: NDArray[np.float64]
+    acceleration: NDArray[np.float64]
+    jerk: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for name, values in vars(self).items():
+            array = np.array(values, dtype=float)
+            if array.ndim != 1 or not np.all(np.isfinite(array)):
+                raise ValueError(f"{name} is no list of finite numbers")
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if not len(self.acceleration) == len(self.jerk) == len(self.times) - 1 > 0:
+            raise ValueError(
+                f"{len(self.times)} times do not fit {len(self.acceleration)} accelerations and "
+                f"{len(self.jerk)} jerks; give one of each an interval"
+            )
+        if self.times[0] != 0 or np.any(np.diff(self.times) <= 0):
+            raise ValueError("the times do not increase from 0")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, FreeMotion):
+            return NotImplemented
+        return all(np.array_equal(a, vars(other)[name]) for name, a in vars(self).items())
+
+    def __hash__(self) -> int:
+        return hash(tuple(array.tobytes() for array in vars(self).values()))
+
+    @property
+    def steps(self) -> int:
+        """How many intervals the grid has."""
+        return len(self.acceleration)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether the motion has a jerk; else its acceleration is constant on every interval."""
+        return bool(np.any(self.jerk))
+
+    @property
+    def lengths(self) -> NDArray[np.float64]:
+        """Lengths of the intervals [s]."""
+        return np.diff(self.times)
+
+    def boundaries(self, start: float) -> NDArray[np.float64]:
+        """Angle [rad] and speed [rad/s] at the grid, shape (2, steps + 1), from rest at `start`."""
+        h = self.lengths
+        speed = np.append(0.0, np.cumsum(h * (self.acceleration + h * self.jerk / 2)))
+        moved = h * (speed[:-1] + h * (self.acceleration / 2 + h * self.jerk / 6))
+        return np.vstack([start + np.append(0.0, np.cumsum(moved)), speed])
+
+    def intervals(self, start: float) -> NDArray[np.float64]:
+        """Arguments of `joint_after` and length [s] of every interval, shape (5, steps)."""
+        return np.vstack(
+            [self.boundaries(start)[:, :-1], self.acceleration, self.jerk, self.lengths]
+        )
+
+    def split(self, parts: NDArray[np.int_]) -> FreeMotion:
+        """The same motion on a finer grid: interval k in `parts[k]` equal parts."""
+        old = np.repeat(np.arange(self.steps), parts)
+        part = np.concatenate([np.arange(count) for count in parts]) / parts[old]
+        into = part * self.lengths[old]
+        return FreeMotion(
+            np.append(self.times[old] + into, self.times[-1]),
+            self.acceleration[old] + self.jerk[old] * into,
+            self.jerk[old],
+        )

@@ -1,0 +1,94 @@
+"""A joint motion in smooth pieces, as the independent integrator takes it.
+
+A profile is one piece; a free motion has one for every interval of its grid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models import Expression, JointMotion
+from ocp.profiles.free_motion import FreeMotion, joint_after
+from ocp.profiles.joint_profile import JointProfile
+from ocp.task.point_to_point import PointToPoint
+
+
+class Law(Protocol):
+    """How the joint moves on a piece; equal laws share a compiled CVODES."""
+
+    def __call__(
+        self, given: Sequence[Expression], fraction: Expression, *, jerk: bool
+    ) -> JointMotion:
+        """The joint at a fraction of the piece; the last of the given numbers is its length [s]."""
+        ...
+
+    def __hash__(self) -> int: ...
+
+
+@dataclass(frozen=True)
+class _AlongProfile:
+    """The law of a profile, from its coefficients, start, target and duration."""
+
+    profile: JointProfile
+
+    def __call__(
+        self, given: Sequence[Expression], fraction: Expression, *, jerk: bool
+    ) -> JointMotion:
+        return self.profile.motion(given[:-3], fraction, *given[-3:], jerk=jerk)
+
+
+def _freely(given: Sequence[Expression], fraction: Expression, *, jerk: bool) -> JointMotion:
+    """The law of a free motion, from the joint at the beginning of an interval, and its length."""
+    return joint_after(given[:-1], fraction * given[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class PiecewiseMotion:
+    """A joint motion in smooth pieces, for CVODES.
+
+    Attributes
+    ----------
+    law : Law
+        How the joint moves on each of them.
+    given : ndarray, shape (numbers, pieces)
+        What the law is given on each; the last row is how long they take [s].
+    has_jerk : bool
+        Whether the acceleration is continuous.
+    remedy : str
+        The end of the message where CVODES cannot follow it.
+    """
+
+    law: Law
+    given: NDArray[np.float64]
+    has_jerk: bool
+    remedy: str
+
+    @classmethod
+    def of_profile(
+        cls, task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
+    ) -> PiecewiseMotion:
+        """A task's move along a profile; ValueError where coefficients or duration do not fit."""
+        checked = profile.checked(coefficients, task.duration)
+        largest = max(map(abs, checked), default=0.0)
+        return cls(
+            _AlongProfile(profile),
+            np.array([[*checked, *task.move]]).T,
+            True,
+            f"; are the coefficients far out of scale? (largest is {largest:g})",
+        )
+
+    @classmethod
+    def of_free_motion(cls, task: PointToPoint, free: FreeMotion) -> PiecewiseMotion:
+        """A free motion from a task's start."""
+        largest = np.abs(free.acceleration).max()
+        return cls(
+            _freely,
+            free.intervals(task.start),
+            free.smooth,
+            f", whose largest acceleration is {largest:g} rad/s^2; set an acceleration limit",
+        )

@@ -1,0 +1,109 @@
+"""The plant of a command: by its name or from a file, with the parameters that are set."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, Field, fields, is_dataclass
+from typing import Any
+
+from models import Plant, known_plants
+
+
+def parse_plant(name: str) -> type[Plant]:
+    """A class of plants by its name; ValueError suggests the nearest name."""
+    plants = known_plants()
+    if name in plants:
+        return plants[name]
+    hint = _nearest(name, plants)
+    raise ValueError(
+        f"unknown plant {name!r}; {hint}(known: {', '.join(sorted(plants))}; your own by its "
+        "--plant-file)"
+    )
+
+
+def parse_setting(text: str) -> tuple[str, str]:
+    """Read the setting of a parameter, ``omega=9``; ValueError when it is none."""
+    name, equals, value = text.partition("=")
+    if not (equals and name.strip() and value.strip()):
+        raise ValueError(f"{text!r} sets nothing; give a parameter and its value, as omega=9")
+    return name.strip(), value.strip()
+
+
+def chosen_plant(
+    kind: type[Plant] | None,
+    own: Mapping[str, type[Plant]] | None,
+    settings: Iterable[tuple[str, str]],
+) -> Plant:
+    """The plant that was asked for.
+
+    Parameters
+    ----------
+    kind : type or None
+        The plant that was named.
+    own : mapping of str to type, or None
+        The plants of a file that was given.
+    settings : iterable of (str, str)
+        Parameters and their values, as they were typed.
+
+    Returns
+    -------
+    Plant
+        The plant with these parameters, its own defaults for all others.
+
+    Raises
+    ------
+    ValueError
+        When there is no plant or more than one to choose, or a parameter is not known or no number.
+    """
+    if kind is None:
+        if not own:
+            raise ValueError(
+                "missing argument PLANT; give one, as single-link, or a file by --plant-file"
+            )
+        if len(own) > 1:
+            raise ValueError(f"the plant file defines {' and '.join(own)}; name one as PLANT")
+        (kind,) = own.values()
+    elif own is not None and kind not in own.values():
+        raise ValueError(
+            f"the plant file defines {' and '.join(own)}, not {kind.name}; leave {kind.name} or "
+            "--plant-file out"
+        )
+    return _made(kind, settings)
+
+
+def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
+    entries = fields(kind) if is_dataclass(kind) else ()  # else the check of the plant says so
+    known = {entry.name: entry for entry in entries}
+    given: dict[str, float] = {}
+    for name, text in settings:
+        if name not in known:
+            listed = ", ".join(known) or "none"
+            hint = _nearest(name, known)
+            raise ValueError(f"{kind.name} has no parameter {name!r}; {hint}(it has: {listed})")
+        if name in given:
+            raise ValueError(f"{name} is set twice; set it once")
+        given[name] = _number(known[name], text)
+    without = [
+        name
+        for name, entry in known.items()
+        if entry.default is MISSING and entry.default_factory is MISSING and name not in given
+    ]
+    if without:
+        raise ValueError(f"{kind.name} has no value for {without[0]}; give --set {without[0]}=...")
+    return kind(**given)
+
+
+def _number(entry: Field[Any], text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        unit = entry.metadata.get("unit", "-")
+        wanted = "number" if unit == "-" else f"number in {unit}, without the unit"
+        raise ValueError(f"parameter {entry.name} is {text!r}; give a {wanted}") from None
+
+
+def _nearest(name: str, known: Iterable[str]) -> str:
+    part = [other for other in known if name and name.lower() in other.lower()]
+    near = part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=0.3)
+    return f"did you mean {near[0]!r}? " if near else ""

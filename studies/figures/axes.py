@@ -1,0 +1,85 @@
+"""Axes and figures, and the axis of residuals that pictures of fronts share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+
+STAIRS = "steps-post"
+"""Of a front: between two points the stiller one is the best there is."""
+TITLE: dict[str, Any] = {"loc": "left", "fontsize": 10}
+"""How the title of a panel is set."""
+_LOGARITHMIC_FROM = 5.0
+"""Residuals that span less than this factor are drawn on a linear axis."""
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of this size [inch] that pyplot does not know of."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def axes_or_new(ax: Axes | None) -> Axes:
+    """The axes that were given, or new ones in a figure of their own; with a light grid."""
+    ax = new_figure(6.4, 4.4).subplots() if ax is None else ax
+    ax.grid(alpha=0.25)
+    return ax
+
+
+def side_by_side(panels: int, title: str, width: float = 4.8) -> tuple[Figure, list[Axes]]:
+    """A figure with a title and this many panels beside each other."""
+    figure = new_figure(width * panels, 4.4)
+    if title:
+        figure.suptitle(title, fontsize=11)
+    return figure, list(figure.subplots(1, panels, squeeze=False).flat)
+
+
+def name_objectives(ax: Axes) -> None:
+    """Label the axes of a front."""
+    ax.set_xlabel("residual F1 [mm]")
+    ax.set_ylabel("energy F2 [J]")
+
+
+def legend_of(axes: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
+    """Handles and labels of several axes, each label once."""
+    entries: dict[str, Artist] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    return list(entries.values()), list(entries)
+
+
+def scale_residuals(ax: Axes, residuals: Sequence[float]) -> None:
+    """Make the axis of residuals logarithmic, or linear where their range is narrow.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        The axes; residuals go to the right.
+    residuals : sequence of float
+        All that is drawn [mm].
+    """
+    positive = [residual for residual in residuals if residual > 0]
+    span = max(positive) / min(positive) if positive else 1.0
+    if not positive:
+        ax.text(0.5, 0.5, "no point", transform=ax.transAxes, ha="center")
+    if span < _LOGARITHMIC_FROM or len(positive) < len(residuals):
+        ax.xaxis.set_major_locator(MaxNLocator(6))
+        return
+    logarithmic_residuals(ax, span)
+
+
+def logarithmic_residuals(ax: Axes, span: float) -> None:
+    """Make the axis of residuals logarithmic; the largest is `span` times the least."""
+    ax.set_xscale("log")
+    subs = (1.0, 2.0, 5.0) if span < 100 else (1.0,)
+    ax.xaxis.set_major_locator(LogLocator(subs=subs, numticks=7))
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())

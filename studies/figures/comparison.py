@@ -1,0 +1,263 @@
+"""Fronts in one picture: whole, the nearly still end, and how far above the best."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import count, cycle
+from typing import Protocol
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
+from numpy.typing import NDArray
+
+from studies.comparison.measures import Comparison
+from studies.comparison.staircase import within
+from studies.display.words import title_of
+from studies.figures.axes import TITLE, axes_or_new, legend_of, logarithmic_residuals, new_figure
+from studies.figures.looks import Look, look
+from studies.methods import EPSILON, NSGA2, VEPSO, WEIGHTED
+from studies.paper.points import PaperPoint
+
+_NUMBERS = {
+    method: number
+    for number, method in enumerate(
+        (EPSILON, NSGA2, VEPSO, NSGA2.then_polished(), VEPSO.then_polished(), WEIGHTED)
+    )
+}
+"""The methods that have a look of their own in every picture, by its number."""
+_STILLEST = 1e-6
+"""The logarithmic axes begin at this residual [m]: below it, differences do not matter."""
+_ASIDE = 0.9
+"""Or at this multiple of the least residual of all, which is then seen beside the edge."""
+_NEARLY_STILL = 5.0
+"""The nearly still end reaches at least to this multiple of the least residual of all."""
+_TALLEST = 1.6
+"""Panels end at this multiple of the energy of the best front's stillest motion."""
+
+BANDS = (
+    "Several seeds: the line is what half of them reach\n"
+    "(of two, the better one), the band best to worst"
+)
+
+Array = NDArray[np.float64]
+
+
+class DrawPanel(Protocol):
+    """Draws one panel of a comparison."""
+
+    def __call__(
+        self, comparison: Comparison, paper: Sequence[PaperPoint] = (), ax: Axes | None = None
+    ) -> Axes:
+        """Draw it on these axes, or new ones, and return them."""
+        ...
+
+
+def looks(comparison: Comparison) -> dict[str, Look]:
+    """The look of every group, by label; a method keeps its own where it can."""
+    own = {_NUMBERS[group.method]: group for group in reversed(comparison.groups)
+           if group.method in _NUMBERS}  # fmt: skip  # of several of one method the first
+    numbers = {group.label: number for number, group in own.items()}
+    spare = (number for number in count() if number not in own)
+    return {
+        group.label: look(numbers[group.label] if group.label in numbers else next(spare))
+        for group in comparison.groups
+    }
+
+
+def comparison_figure(
+    comparison: Comparison, paper: Sequence[PaperPoint] = (), title: str | None = None
+) -> Figure:
+    """Draw fronts over each other.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The fronts.
+    paper : sequence of PaperPoint, optional
+        The paper's own points.
+    title : str, optional
+        Title of the picture; the task by default.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels: whole fronts; the nearly still end, residual logarithmic; points above the
+        best of all. Of several seeds the median attainment surface, in a band from the best to
+        the worst. The legend stands beside the third.
+    """
+    figure = new_figure(10, 7.4)
+    axes: list[Axes] = list(figure.subplots(2, 2).flat)
+    for ax, draw, letter in zip(axes, PANELS.values(), "abc", strict=False):
+        draw(comparison, paper, ax)
+        ax.set_title(f"({letter}) {ax.get_title(loc='left')}", **TITLE)
+    axes[3].axis("off")
+    several = any(len(group.runs) > 1 for group in comparison.groups)
+    axes[3].legend(
+        *legend_of(axes), loc="center left", frameon=False, fontsize=10, alignment="left",
+        title=BANDS if several else None,
+    )  # fmt: skip
+    figure.suptitle(title_of(comparison.task) if title is None else title, fontsize=12)
+    return figure
+
+
+def panel_figure(comparison: Comparison, panel: str, paper: Sequence[PaperPoint] = ()) -> Figure:
+    """Draw one of `PANELS` alone, small enough for a phone, with the legend below it."""
+    figure = new_figure(4.8, 4.6)
+    ax = PANELS[panel](comparison, paper, figure.subplots())
+    figure.legend(
+        *legend_of([ax]), loc="outside lower center", ncols=2, frameon=False, fontsize=8.5
+    )
+    return figure
+
+
+def draw_whole(
+    comparison: Comparison, paper: Sequence[PaperPoint] = (), ax: Axes | None = None
+) -> Axes:
+    """Draw energy against residual, both linear.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The fronts, by `compare_fronts`.
+    paper : sequence of PaperPoint, optional
+        The paper's own points.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; of several seeds there is the median attainment surface, in a band from the best
+        to the worst.
+    """
+    ax, right = axes_or_new(ax), 1.04 * _right(comparison)
+    _draw_fronts(ax, comparison, paper, right)
+    ax.set_xlim(0, right * 1e3)
+    ax.set_xlabel("residual F1 [mm]")
+    ax.set_title("the whole fronts", **TITLE)
+    return ax
+
+
+def draw_still(
+    comparison: Comparison, paper: Sequence[PaperPoint] = (), ax: Axes | None = None
+) -> Axes:
+    """Draw energy against residual at the nearly still end, residual logarithmic.
+
+    Parameters, and what is returned, are those of `draw_whole`. The end reaches to the largest of
+    the comparison's levels, or further where nothing is so still.
+    """
+    ax, stillest = axes_or_new(ax), float(comparison.best_front[0, 0])
+    right = min(max(*comparison.levels, _NEARLY_STILL * stillest), _right(comparison))
+    _draw_fronts(ax, comparison, paper, right)
+    _logarithmic(ax, comparison, right)
+    ax.set_title("the nearly still end", **TITLE)
+    return ax
+
+
+def draw_gaps(
+    comparison: Comparison, paper: Sequence[PaperPoint] = (), ax: Axes | None = None
+) -> Axes:
+    """Draw how far points are above the best of all filled fronts, residual logarithmic.
+
+    Points rather than staircases: between its points a coarse front would look bad by its steps.
+    Parameters, and what is returned, are those of `draw_whole`; the paper's points are not drawn.
+    """
+    ax, shown = axes_or_new(ax), looks(comparison)
+    for place, group in enumerate(comparison.groups):
+        own = shown[group.label]
+        residuals, energies = group.median.T
+        gap = 100 * (energies / within(comparison.best_front, residuals) - 1)
+        ax.plot(
+            np.maximum(residuals, _left(comparison)) * 1e3, gap, own.mark, color=own.colour,
+            markersize=3.2 + 0.35 * _below(comparison, place), markeredgewidth=0,
+            label=group.label,
+        )  # fmt: skip
+    ax.set_yscale("symlog", linthresh=0.1, linscale=0.5)
+    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    ax.set_ylim(-0.008, None)
+    ax.set_ylabel("energy above the best [%]")
+    _logarithmic(ax, comparison, _right(comparison))
+    ax.set_title("each point above the best of all", **TITLE)
+    return ax
+
+
+PANELS: dict[str, DrawPanel] = {
+    "whole": draw_whole,
+    "still": draw_still,
+    "gaps": draw_gaps,
+}
+
+
+def _below(comparison: Comparison, place: int) -> int:
+    """How many groups are drawn over this one, which is wider to be seen below them."""
+    return len(comparison.groups) - place - 1
+
+
+def _draw_fronts(
+    ax: Axes, comparison: Comparison, paper: Sequence[PaperPoint], right: float
+) -> None:
+    """Draw staircases up to a residual [m], the paper's points and the floor."""
+    shown = looks(comparison)
+    for place, group in enumerate(comparison.groups):
+        own = shown[group.label]
+        stairs = np.concatenate([group.best[:, 0], group.median[:, 0], group.worst[:, 0], [right]])
+        stairs = np.unique(stairs[stairs <= right])
+        best, median, worst = (within(s, stairs) for s in (group.best, group.median, group.worst))
+        if len(group.runs) > 1:
+            ax.fill_between(
+                stairs * 1e3, best, worst, step="post", color=own.colour, alpha=0.2, linewidth=0
+            )
+        ax.plot(
+            stairs * 1e3, median, color=own.colour, linestyle=own.dash,
+            linewidth=1.2 + 0.35 * _below(comparison, place), drawstyle="steps-post",
+            label=group.label,
+        )  # fmt: skip
+    marks = cycle("*Pv")
+    for point in paper:
+        if point.residual is None:
+            ax.axhline(point.energy, color="black", lw=1, ls=":", label=point.label)
+        else:
+            ax.plot(
+                point.residual * 1e3, point.energy, next(marks), color="black", markersize=11,
+                markeredgecolor="white", linestyle="", label=point.label, zorder=5,
+            )  # fmt: skip
+    if comparison.floor is not None:
+        label = "floor: any joint motion, at rest"
+        ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
+    ax.set_ylim(*_energies_shown(comparison, paper, right))
+    ax.set_ylabel("energy F2 [J]")
+
+
+def _energies_shown(
+    comparison: Comparison, paper: Sequence[PaperPoint], right: float
+) -> tuple[float, float]:
+    """The least and the largest energy on the axis: the whole best front, and others near it."""
+    still = float(comparison.best_front[0, 1])
+    top = min(max(group.median[0, 1] for group in comparison.groups), _TALLEST * still)
+    marks = [point.energy for point in paper]
+    marks += [] if comparison.floor is None else [comparison.floor]
+    ends = [within(group.best, np.array([right]), np.inf)[0] for group in comparison.groups]
+    low, high = min([*marks, *ends, still]), max([*marks, top, still])
+    margin = 0.06 * ((high - low) or high)
+    return low - margin, high + margin
+
+
+def _left(comparison: Comparison) -> float:
+    return max(_STILLEST, _ASIDE * float(comparison.best_front[0, 0]))
+
+
+def _right(comparison: Comparison) -> float:
+    ends = [group.best[-1, 0] for group in comparison.groups]
+    return max([*ends, *comparison.levels])
+
+
+def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
+    left = _left(comparison)
+    logarithmic_residuals(ax, right / left)
+    ax.set_xlim(left * 1e3, right * 1e3)
+    ax.set_xlabel("residual F1 [mm], logarithmic")
+    for level in comparison.levels:
+        if left <= level <= right:
+            ax.axvline(level * 1e3, color="0.75", linewidth=0.8, zorder=0)

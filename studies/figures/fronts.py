@@ -1,0 +1,187 @@
+"""Fronts as a picture: energy against residual, hypervolume, spread over seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hypervolumes
+from ocp import Front
+from studies.display.words import millimetres, title_of
+from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
+from studies.figures.looks import BLUE, look
+from studies.methods import method_of
+
+_MOST_NAMED = 10
+"""More fronts than this are drawn without a name."""
+_LEAST_SPAN = 0.01
+"""The axis of energies spans at least this share of their median: seeds that agree lie close."""
+
+
+def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
+    """Draw energy against residual, a line for each front.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        Of one task, by any methods. Those that were interrupted are drawn dashed.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, with a legend where there are a few fronts.
+    """
+    ax = axes_or_new(ax)
+    names = _names(fronts)
+    for i, front in enumerate(fronts):
+        if front.points:
+            ax.plot(
+                front.residuals * 1e3, front.energies, color=look(i).colour, marker=look(i).mark,
+                linestyle="-" if front.complete else "--", markersize=3, linewidth=0.8,
+                alpha=0.8, drawstyle=STAIRS,
+                label=f"{names[i]}{'' if front.complete else ', interrupted'}",
+            )  # fmt: skip
+    scale_residuals(ax, [point.residual * 1e3 for front in fronts for point in front.points])
+    ax.set_title("fronts" if len(fronts) > 1 else "front", fontsize=10)
+    name_objectives(ax)
+    if 1 < len(fronts) <= _MOST_NAMED and ax.lines:
+        ax.legend(fontsize=8)
+    return ax
+
+
+def _names(fronts: Sequence[Front]) -> list[str]:
+    """What to call every front: its method where there are several, its seed where that tells."""
+    methods = [method_of(front.method).label for front in fronts]
+    names: list[str] = []
+    for front, method in zip(fronts, methods, strict=True):
+        several, runs = len(set(methods)) > 1, methods.count(method) > 1
+        words = [method] * (several or not runs) + [f"seed {front.seed}"] * runs
+        names.append(", ".join(words))
+    return names
+
+
+def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
+    """Draw hypervolume against candidates: the median over the seeds, and the quartiles.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        Of one method and task, one for every seed.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; the box that the hypervolume is a share of is named beside them.
+    """
+    ax = axes_or_new(ax)
+    histories = [front.history for front in fronts if front.history]
+    residual, energy = fronts[0].reference
+    ax.set_xlabel("candidates evaluated")
+    ax.set_ylabel(f"share of the box up to {millimetres(residual)} and {energy:.4g} J")
+    ax.xaxis.set_major_locator(MaxNLocator(5, integer=True))
+    ax.set_title("hypervolume", fontsize=10)
+    if not histories:
+        ax.text(0.5, 0.5, "no generation", transform=ax.transAxes, ha="center")
+        return ax
+    length = min(len(history) for history in histories)
+    evaluations = [generation.evaluations for generation in histories[0][:length]]
+    table = np.array([[g.hypervolume for g in history[:length]] for history in histories])
+    low, middle, high = np.quantile(table, [0.25, 0.5, 0.75], axis=0)
+    mark = "o" if length == 1 else ""  # one generation makes no line
+    ax.plot(evaluations, middle, color=BLUE, marker=mark, label="median")
+    spread = hypervolumes(fronts)
+    words = f"hypervolume: {spread.median:.4f}"
+    if len(histories) > 1:
+        if length == 1:
+            ax.vlines(evaluations, low, high, color=BLUE, alpha=0.3, linewidth=6, label="quartiles")
+        else:
+            ax.fill_between(evaluations, low, high, color=BLUE, alpha=0.3, label="quartiles")
+        ax.legend(fontsize=8, loc="lower right")
+        words += f" ({spread.lower:.4f} to {spread.upper:.4f})"
+    ax.set_title(words, fontsize=10)
+    return ax
+
+
+def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
+    """Draw every seed's least energy at `SEARCH_RESIDUAL`, with median and quartiles.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        Of one method and task, one for every seed.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; a seed that never comes so still is a cross.
+    """
+    ax = axes_or_new(ax)
+    spread = energies_at(fronts)
+    for place, front in enumerate(fronts):
+        energy, colour = energy_at(front), look(place).colour
+        if np.isfinite(energy):
+            ax.plot(place, energy, "o", color=colour, markersize=6)
+        else:
+            ax.plot(place, 0.02, "x", color=colour, transform=ax.get_xaxis_transform())
+    level = millimetres(SEARCH_RESIDUAL)
+    marks = [f"x: never within {level}"] * (spread.count < spread.seeds)
+    figures = ""
+    if spread.count:
+        ax.axhspan(spread.lower, spread.upper, alpha=0.2, color=BLUE)
+        ax.axhline(spread.median, color=BLUE, linewidth=1.0)
+        marks += ["line: median", "band: quartiles"]
+        figures = f": {spread.median:.4g} J ({spread.lower:.4g} to {spread.upper:.4g})"
+    else:
+        ax.set_yticks([])
+    reached = f"{spread.count} of {spread.seeds} seeds reach {level}"
+    ax.set_title(f"energy at {level}{figures}\n{reached}", fontsize=10)
+    ax.set_xlabel(f"seed ({', '.join(marks)})")
+    ax.set_ylabel("energy F2 [J]")
+    if len(fronts) <= 20:
+        ax.set_xticks(range(len(fronts)), [str(front.seed) for front in fronts])
+    ax.margins(x=0.1, y=0.2)
+    ax.ticklabel_format(axis="y", useOffset=False)
+    low, high = ax.get_ylim()
+    more = _LEAST_SPAN * spread.median - (high - low)
+    if more > 0:  # false where no seed has an energy
+        ax.set_ylim(low - more / 2, high + more / 2)
+    return ax
+
+
+def front_figure(fronts: Sequence[Front], title: str | None = None) -> Figure:
+    """Draw fronts of one method: a line for each seed, their hypervolume, and their spread.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        One for every seed. Those of interrupted searches are drawn dashed, and count in no
+        quartile.
+    title : str, optional
+        Title of the picture; method and task by default.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Energy against residual; median hypervolume with its quartiles against candidates; for
+        several seeds also the least energy of each at `SEARCH_RESIDUAL`, over its quartiles.
+    """
+    complete = [front for front in fronts if front.complete]
+    several = len(complete) > 1
+    if title is None:
+        title = f"{method_of(fronts[0].method).label}: {title_of(fronts[0].task)}"
+    figure, axes = side_by_side(3 if several else 2, title)
+    draw_fronts(fronts, axes[0])
+    draw_hypervolume(complete or fronts, axes[1])
+    if several:
+        draw_seed_energies(complete, axes[2])
+    return figure

@@ -1,0 +1,35 @@
+"""Colours, dashes and marks that stay apart for colour-blind readers and in print."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+Dash = str | tuple[int, tuple[float, ...]]
+
+BLUE, RED, GREEN, ORANGE = "#0072B2", "#D55E00", "#009E73", "#E69F00"
+PINK, SKY, WINE, INDIGO = "#CC79A7", "#56B4E9", "#882255", "#332288"
+COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY, WINE, INDIGO)
+"""Okabe and Ito's without yellow, which is too pale, and black, which is for marks; and two dark
+ones of Tol's, https://personal.sron.nl/~pault/."""
+GREY = "0.62"
+"""For what stands in the background, as the plain cycloid."""
+_DASHES: tuple[Dash, ...] = ("-", "--", (0, (1, 1)), (0, (4, 1, 1, 1)), (0, (7, 2)))
+_MARKS = "os^Dv<>PX"
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one of several lines looks: its colour, dashes and mark."""
+
+    colour: str
+    dash: Dash
+    mark: str
+
+
+def look(number: int) -> Look:
+    """The look of a line by its number, from 0; no two alike among the first 360."""
+    return Look(
+        COLOURS[number % len(COLOURS)],
+        _DASHES[number % len(_DASHES)],
+        _MARKS[number % len(_MARKS)],
+    )

@@ -1,0 +1,80 @@
+"""Answers about a plant of a user's file: what is recorded, and who may load them."""
+
+import hashlib
+import json
+
+import pytest
+
+from models import Plant, load_plant_file
+from ocp import FileFormatError, Plan, PointToPoint, evaluate_coefficients
+
+
+@pytest.fixture
+def saved(crane_file, tmp_path):
+    """A saved plan of the crane, and the plan."""
+    crane = load_plant_file(crane_file)["crane"](omega=2.5)
+    plan = evaluate_coefficients(PointToPoint(crane, 1.0, 3.0), [0.1])
+    plan.save(tmp_path / "plan.json")
+    return tmp_path / "plan.json", plan
+
+
+def _refused(path):
+    with pytest.raises(FileFormatError) as told:
+        Plan.load(path)
+    assert "\n" not in str(told.value)
+    return str(told.value)
+
+
+def test_the_file_and_its_digest_are_recorded(saved, crane_file):
+    text = saved[0].read_text()
+    assert json.dumps(str(crane_file)) in text
+    assert hashlib.sha256(crane_file.read_bytes()).hexdigest() in text
+
+
+def test_it_loads_where_the_file_was_given(saved, crane_file, tmp_path):
+    path, plan = saved
+    assert Plan.load(path) == plan
+    (tmp_path / "moved.py").write_bytes(crane_file.read_bytes())
+    load_plant_file(tmp_path / "moved.py")
+    assert Plan.load(path) == plan
+
+
+def test_an_answer_of_a_scripts_own_plant_is_read_with_its_file(saved):
+    # A class of __main__ has no file to record; the same lines given as a file are its plant.
+    path, plan = saved
+    document = json.loads(path.read_text())
+    del document["task"]["plant"]["plant_file"]
+    path.write_text(json.dumps(document))
+    assert Plan.load(path) == plan
+
+
+def test_nothing_is_run_that_the_user_did_not_name(saved, crane_file):
+    del Plant._known["crane"]  # as in another process
+    told = _refused(saved[0])
+    assert "'crane' is not known here" in told
+    assert f"give its file {str(crane_file)!r} again" in told
+
+
+def test_a_changed_file_is_refused_with_both_digests(saved, crane_file):
+    before = hashlib.sha256(crane_file.read_bytes()).hexdigest()
+    crane_file.write_text(crane_file.read_text() + "# changed\n")
+    after = hashlib.sha256(crane_file.read_bytes()).hexdigest()
+    load_plant_file(crane_file)
+    told = _refused(saved[0])
+    assert before[:12] in told
+    assert after[:12] in told
+    assert "give the file as it was, or compute anew" in told
+
+
+def test_a_plant_of_that_name_from_elsewhere_is_refused(saved):
+    type("Crane", (Plant,), {"name": "crane"})
+    assert "not the one that is known here" in _refused(saved[0])
+
+
+@pytest.mark.parametrize("entry", ["crane.py", {}, {"path": "crane.py"}, {"path": 1, "sha256": 2}])
+def test_a_damaged_record_is_refused(saved, entry):
+    path = saved[0]
+    document = json.loads(path.read_text())
+    document["task"]["plant"]["plant_file"] = entry
+    path.write_text(json.dumps(document))
+    assert "plant_file" in _refused(path)

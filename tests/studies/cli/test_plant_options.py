@@ -1,0 +1,211 @@
+"""`--plant-file` and `--set`: a plant of one's own on every command, and parameters."""
+
+import math
+
+import pytest
+
+from models import Plant, SingleLinkManipulator, known_plants, load_plant_file
+from ocp import Front, Plan, PointToPoint, evaluate_coefficients
+from studies.cli.application import COMMANDS
+
+MOVE = "--target 1 --duration 3"
+GIVEN = "--coefficients=0.1 --quiet"
+SHORT = "--population 20 --generations 3 --bound 0.2 --quiet"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch, crane_file):
+    """A folder of the test's own with the crane's file in it, and standing in it."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+    return tmp_path
+
+
+def forget():
+    """Forget the crane, as another process would not know it."""
+    Plant._known.pop("crane", None)
+
+
+@pytest.mark.parametrize("named", ["", "crane "])
+def test_a_plant_of_a_file_is_evaluated_as_from_python(call, named):
+    code, out, err = call(
+        f"evaluate {named}{MOVE} --plant-file crane.py --set omega=2.5 {GIVEN} --output plan.json"
+    )
+    assert (code, err) == (0, "")
+    assert "crane with omega = 2.5 rad/s, 0deg to" in out
+    crane = load_plant_file("crane.py")["crane"](omega=2.5)
+    assert Plan.load("plan.json") == evaluate_coefficients(PointToPoint(crane, 1.0, 3.0), [0.1])
+
+
+def test_plans_and_floors_are_found(call):
+    for command in ("plan", "floor --starts 1 --tolerance 0.1"):
+        code, out, err = call(f"{command} {MOVE} --plant-file crane.py --quiet --starts 1")
+        assert (code, err) == (0, ""), command
+        assert "crane, 0deg to" in out
+
+
+def test_other_processes_know_the_plant(call):
+    line = f"front {MOVE} --plant-file crane.py --method nsga2 {SHORT} --runs 2 --workers 2"
+    code, _, err = call(f"{line} --output front.json")
+    assert (code, err) == (0, "")
+    assert [Front.load(f"front-seed{seed}.json").seed for seed in (0, 1)] == [0, 1]
+
+
+def test_what_was_saved_is_read_with_the_plant_file_alone(call):
+    code, _, err = call(
+        f"front {MOVE} --plant-file crane.py --method nsga2 {SHORT} --output f.json "
+        "--checkpoint c.npz"
+    )
+    assert (code, err) == (0, "")
+    readers = (
+        "polish f.json --points 2 --quiet --output p.json",
+        "compare f.json p.json --no-floor --quiet",
+    )
+    for line in readers:
+        forget()
+        code, out, err = call(line)
+        assert (code, out) == (2, "")
+        assert "give its file 'crane.py' again, by --plant-file" in err
+        assert call(f"{line} --plant-file crane.py")[0] == 0
+    resume = f"front {MOVE} --method nsga2 {SHORT} --resume c.npz --plant-file crane.py"
+    assert call(resume)[0] == 0
+
+
+def test_what_was_saved_is_refused_with_a_changed_file(call, crane_file):
+    front = f"front {MOVE} --plant-file crane.py --method nsga2 {SHORT}"
+    assert call(f"{front} --output f.json --checkpoint c.npz")[0] == 0
+    crane_file.write_text(crane_file.read_text().replace("0.4", "0.5"))
+    for line in (
+        "polish f.json --plant-file crane.py", "compare f.json g.json --plant-file crane.py",
+        f"{front} --resume c.npz",
+    ):  # fmt: skip
+        code, out, err = call(line)
+        assert (code, out, err.count("\n")) == (2, "", 1), line
+        assert "SHA-256" in err
+        assert "give the file as it was" in err
+
+
+def test_a_study_takes_the_files_plant(call):
+    code, _, err = call(f"study {MOVE} --plant-file crane.py {SHORT} --points 3 --runs 1")
+    assert (code, err) == (0, "")
+    with open("study.html") as page:
+        assert "crane, 0 to 1 rad" in page.read()
+
+
+def test_every_command_that_takes_a_plant_or_what_was_saved_takes_the_option(call):
+    takes = {name for name in COMMANDS if "--plant-file" in call(f"{name} --help")[1]}
+    assert takes == set(COMMANDS) - {"reproduce"}  # which is about the paper's plants
+
+
+def test_a_parameter_of_a_plant_of_quietarms_own_is_set(call):
+    code, out, err = call(
+        "evaluate single-link --target 30deg --duration 0.8 --coefficients=0.1 --quiet "
+        "--set omega=9 --set zeta=0.01 --output plan.json"
+    )
+    assert (code, err) == (0, "")
+    assert "single-link with zeta = 0.01, omega = 9 rad/s, 0deg" in out
+    assert Plan.load("plan.json").task.plant == SingleLinkManipulator(omega=9.0, zeta=0.01)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("--set omga=9", "crane has no parameter 'omga'; did you mean 'omega'?"),
+        ("--set omega=9rad", "parameter omega is '9rad'; give a number in rad/s"),
+        ("--set omega=", "'omega=' sets nothing; give a parameter and its value, as omega=9"),
+        ("--set omega", "'omega' sets nothing"),
+        ("--set =9", "'=9' sets nothing"),
+        ("--set omega=inf", "parameter omega is inf; give a finite number"),
+        ("--set omega=1e400", "parameter omega is inf; give a finite number"),
+        ("--set omega=nan", "parameter omega is nan; give a finite number"),
+        ("--set omega=1 --set omega=2", "omega is set twice; set it once"),
+        ("--set coupling=1e308", "check the parameters"),
+    ],
+)
+def test_a_setting_that_is_none_is_refused_in_one_line(call, words, told):
+    code, out, err = call(f"evaluate {MOVE} {GIVEN} --plant-file crane.py {words}")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert told in err
+
+
+def test_a_parameter_that_makes_the_plant_unstable_is_refused(call):
+    code, _, err = call(f"evaluate single-link {MOVE} {GIVEN} --set zeta=-0.1")
+    assert code == 2
+    assert "'single-link' has an unstable mode" in err
+
+
+def test_a_parameter_without_a_default_is_asked_for(call, crane_file):
+    text = crane_file.read_text().replace(' = parameter(3.0, "rad/s", "measured")', "")
+    crane_file.write_text(text)
+    line = f"evaluate {MOVE} {GIVEN} --plant-file crane.py"
+    code, _, err = call(line)
+    assert code == 2
+    assert "crane has no value for omega; give --set omega=" in err
+    assert call(f"{line} --set omega=3")[0] == 0
+
+
+def test_of_several_plants_one_is_named(call, crane_file):
+    text = crane_file.read_text()
+    crane_file.write_text(text + text.replace("Crane", "Hoist").replace('"crane"', '"hoist"'))
+    line = f"evaluate {MOVE} {GIVEN} --plant-file crane.py"
+    code, _, err = call(line)
+    assert code == 2
+    assert "the plant file defines crane and hoist; name one as PLANT" in err
+    code, out, _ = call(f"{line} hoist")
+    assert code == 0
+    assert "hoist, 0deg" in out
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("", "missing argument PLANT; give one, as single-link, or a file by --plant-file"),
+        ("crane", "unknown plant 'crane'"),
+        ("single-link --plant-file crane.py", "defines crane, not single-link; leave"),
+        ("--plant-file ''", "the name is empty"),
+        ("--plant-file none.py", "plant file none.py cannot be read: no such file"),
+    ],
+)
+def test_a_plant_that_is_not_there_is_told(call, words, told):
+    code, out, err = call(f"evaluate {MOVE} {GIVEN} {words}")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert told in err
+
+
+def test_a_broken_plant_of_a_file_is_told_in_one_line(call, crane_file):
+    text = crane_file.read_text().replace("return self.inertia", "return math.sin(joint.angle)")
+    crane_file.write_text("import math\n" + text)
+    code, out, err = call(f"plan {MOVE} --plant-file crane.py")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "'crane': torque fails at line" in err
+    assert "of crane.py" in err
+
+
+def test_settings_without_a_plant_are_refused_by_a_study(call):
+    code, _, err = call("study --set omega=3")
+    assert code == 2
+    assert "--set is for a task of your own" in err
+
+
+def test_a_name_is_not_known_before_its_file_is_given():
+    assert "crane" not in known_plants()
+
+
+def test_speeds_and_accelerations_take_degrees(call):
+    code, _, err = call(
+        f"evaluate single-link {MOVE} {GIVEN} --speed-limit 60deg --acceleration-limit 90deg/s^2 "
+        "--jerk-limit 2pi --output plan.json"
+    )
+    assert (code, err) == (0, "")
+    limits = Plan.load("plan.json").task.limits
+    assert limits == pytest.approx(
+        {"speed": math.pi / 3, "acceleration": math.pi / 2, "jerk": 2 * math.pi}, rel=1e-15
+    )
+
+
+@pytest.mark.parametrize("option", ["--speed-limit 60deg/s^2", "--acceleration-limit 1deg/s"])
+def test_a_rate_of_another_kind_is_refused(call, option):
+    code, _, err = call(f"evaluate single-link {MOVE} {GIVEN} {option}")
+    assert code == 2
+    assert option.split()[1] in err
+    assert "60deg" in err
