@@ -51,7 +51,7 @@ def search(
     profile : JointProfile, optional
         How the joint moves; the cycloid of a polynomial of six terms by default.
     bound : float
-        Largest absolute coefficient; required.
+        Largest absolute coefficient; required, unless the profile has a `default_bound`.
     population, generations : int, optional
         Individuals (particles a swarm) and generations; those of the paper by default. With an
         algorithm of your own its population counts, and generations are required.
@@ -94,6 +94,7 @@ def search(
 
     profile = CycloidPolynomial() if profile is None else profile
     _refuse_other_kinds(task, profile)
+    bound = profile.default_bound if bound is None else bound
     method, chosen, settings = _chosen(algorithm, bound, population, generations)
     loop = Loop(
         SearchSpec(task, profile, method, settings, seed, settings_of(chosen)), chosen, threads

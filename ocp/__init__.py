@@ -23,9 +23,12 @@ from ocp.front.weighted import weighted_front
 from ocp.plan.answer import Plan, evaluate_coefficients
 from ocp.plan.shaping import shaped_cycloid
 from ocp.plan.solver import plan_move
+from ocp.profiles.gaussians import CycloidGaussians
 from ocp.profiles.joint_profile import JointPath, JointProfile
+from ocp.profiles.network import CycloidNetwork
 from ocp.profiles.polynomial import MAX_TERMS, CycloidPolynomial
 from ocp.profiles.shaped_cycloid import ShapedCycloid
+from ocp.profiles.spline import CycloidSpline
 from ocp.simulation.cvodes import Trajectory
 from ocp.simulation.objective import Motion
 from ocp.simulation.residual import residual_matrix
@@ -35,7 +38,10 @@ from ocp.task.point_to_point import PointToPoint
 
 __all__ = [
     "MAX_TERMS",
+    "CycloidGaussians",
+    "CycloidNetwork",
     "CycloidPolynomial",
+    "CycloidSpline",
     "FailedPoint",
     "FileFormatError",
     "Floor",

@@ -220,7 +220,7 @@ def test_the_commands_run_one_after_another(tmp_path, lines):
         assert command == ".venv/bin/quietarm"
         if "--plant-file" in words:  # the README says that its plant's lines are in it
             asked.add(words[words.index("--plant-file") + 1])
-            (tmp_path / "crane.py").write_text(PYTHON[2])
+            (tmp_path / "crane.py").write_text(PYTHON[4])
         ran = subprocess.run(
             [BIN / "quietarm", *shortened(words)],
             cwd=tmp_path,

@@ -23,7 +23,7 @@ class MoveProblem(Problem):
     objective : PopulationObjective
         What is minimised; the task's limits become inequality constraints.
     bound : float
-        Largest absolute coefficient.
+        Largest absolute coefficient, as the profile's `box` takes it.
 
     Attributes
     ----------
@@ -34,13 +34,13 @@ class MoveProblem(Problem):
     """
 
     def __init__(self, objective: PopulationObjective, bound: float) -> None:
-        size = objective.profile.size
+        lower, upper = objective.profile.box(bound)
         super().__init__(
-            n_var=size,
+            n_var=objective.profile.size,
             n_obj=2,
             n_ieq_constr=len(objective.task.limits),
-            xl=np.full(size, -bound),
-            xu=np.full(size, bound),
+            xl=lower,
+            xu=upper,
         )
         self.objective, self.failed, self.infeasible = objective, 0, 0
 

@@ -74,6 +74,7 @@ def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     content = read_bytes(path)
     broken = FileFormatError(f"{path} is not a checkpoint, or not a whole one")
     try:
+        _refuse_compressed(content)
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         document = json.loads(bytes(arrays.pop(_HEADER)))
@@ -88,6 +89,13 @@ def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     if names != sorted(arrays):
         raise broken
     return header, state
+
+
+def _refuse_compressed(content: bytes) -> None:
+    """ValueError where the arrays would be larger than the file, as no checkpoint's are."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        if sum(entry.file_size for entry in archive.infolist()) > len(content):
+            raise ValueError("it is compressed")
 
 
 def _of_version_1(document: Document) -> Document:

@@ -14,11 +14,12 @@ from pymoo.core.algorithm import Algorithm
 from pymoo.termination.max_gen import MaximumGenerationTermination
 
 from metaheuristics.algorithms.states import array_of, count_of, number_of, part_of
+from metaheuristics.objective.claims import check_points
 from metaheuristics.objective.population import PopulationObjective
 from metaheuristics.objective.problem import UNUSABLE, MoveProblem
 from metaheuristics.runs.progress import Report, SearchProgress
 from metaheuristics.runs.settings import SearchSpec
-from ocp import Generation, reference_corner
+from ocp import FrontPoint, Generation, reference_corner
 
 
 class Loop:
@@ -129,8 +130,11 @@ class Loop:
             X, F, G = known.get("X", "F", "G")
             if not (np.isfinite(F).all() and np.isfinite(G).all()):
                 raise ValueError("F or G has entries that are not finite")
-            if np.any(np.abs(X) > self.spec.settings.bound):
+            if np.any((self.problem.xl > X) | (self.problem.xu < X)):
                 raise ValueError("X has entries beyond the bound")
+            usable = (F < UNUSABLE).all(axis=1)
+            points = [FrontPoint(x, *f) for x, f in zip(X[usable], F[usable], strict=True)]
+            check_points(self.problem.objective, points)
         self.history = [
             Generation(int(count), float(share))
             for count, share in zip(evaluations, shares, strict=True)

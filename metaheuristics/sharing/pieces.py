@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from metaheuristics.runs.progress import Report
 from ocp import Front, QuietarmError
@@ -106,6 +106,21 @@ class InterruptedPiece(KeyboardInterrupt):  # no error, as KeyboardInterrupt is 
     def __init__(self, part: Any) -> None:
         super().__init__()
         self.part = part
+
+
+class _Answer(Protocol):
+    @property
+    def complete(self) -> bool: ...
+
+
+_Whole = TypeVar("_Whole", bound=_Answer)
+
+
+def to_the_end(answer: _Whole) -> _Whole:
+    """The same plan, front, polish or floor; InterruptedPiece where Ctrl-C ended it early."""
+    if not answer.complete:
+        raise InterruptedPiece(answer)
+    return answer
 
 
 @dataclass(frozen=True)

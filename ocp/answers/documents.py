@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import reprlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,7 +14,7 @@ import msgspec
 
 from ocp.answers.encoding import typed
 from ocp.base.errors import FileFormatError
-from ocp.base.files import write_whole
+from ocp.base.files import read_whole, write_whole
 
 Document = dict[str, Any]
 Upgrades = Mapping[int, Callable[[Document], Document]]
@@ -80,12 +81,11 @@ def read_document(
 
 
 def read_bytes(path: str | Path) -> bytes:
-    """The content of a file; FileFormatError where it cannot be read."""
+    """The content of a file; FileFormatError where it cannot be read, or is none to read."""
     try:
-        return Path(path).read_bytes()
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise FileFormatError(f"{path} cannot be read: {reason.lower()}") from None
+        return read_whole(path)
+    except ValueError as error:
+        raise FileFormatError(str(error)) from None
 
 
 def content_of(
@@ -98,14 +98,15 @@ def content_of(
     content = dict(document) if isinstance(document, dict) else {}
     found_name, found = content.pop("format", None), content.pop("version", None)
     if found_name != f"quietarm-{name}":
-        says = f"its format is {found_name!r}" if found_name else "it has no quietarm format name"
+        its = f"its format is {reprlib.repr(found_name)}"
+        says = its if found_name else "it has no quietarm format name"
         raise FileFormatError(f"{path} is not a {name}: {says}")
     if not isinstance(found, int) or isinstance(found, bool) or found < 1:
-        raise FileFormatError(f"{path} is not a {name}: its version is {found!r}")
+        raise FileFormatError(f"{path} is not a {name}: its version is {reprlib.repr(found)}")
     if found > version:
         raise FileFormatError(
-            f"{path} has version {found} of the {name} format and this quietarm reads up to "
-            f"{version}; install a newer quietarm"
+            f"{path} has version {reprlib.repr(found)} of the {name} format and this quietarm "
+            f"reads up to {version}; install a newer quietarm"
         )
     if found == version:
         return content

@@ -18,6 +18,7 @@ import numpy as np
 
 from models import Plant, known_plants
 from ocp.answers.plants import PLANT_FILE, file_entry, without_file
+from ocp.base.printable import has_control_characters
 from ocp.profiles.joint_profile import JointProfile, known_profiles
 
 T = TypeVar("T")
@@ -59,7 +60,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def typed(document: Any, kind: type[T]) -> T:
+def typed(document: Any, kind: type[T], name: str = "") -> T:
     """The value of a document: the opposite of `plain`.
 
     Parameters
@@ -68,6 +69,8 @@ def typed(document: Any, kind: type[T]) -> T:
         In JSON's types.
     kind : type
         What it should be, usually a dataclass.
+    name : str, optional
+        What to call it in a message, where it is an entry of something.
 
     Returns
     -------
@@ -82,11 +85,12 @@ def typed(document: Any, kind: type[T]) -> T:
     ValueError
         When an entry is unknown, or not what it should be: in one line, where, its value and why.
     """
+    _refuse_control_characters(document, name)
     try:
         value = msgspec.convert(document, kind, dec_hook=_named_or_array)
     except msgspec.ValidationError as error:
-        raise _in_words(str(error), document) from None
-    _refuse_other_entries(document, plain(value))
+        raise _in_words(str(error), document, name) from None
+    _refuse_other_entries(document, plain(value), f"{name}." if name else "")
     return value
 
 
@@ -163,7 +167,24 @@ def _refuse_other_entries(found: Any, wanted: Any, place: str = "") -> None:
             _refuse_other_entries(entry, written, f"{place.removesuffix('.')}[{i}].")
 
 
-def _in_words(text: str, document: Any) -> KeyError | ValueError:
+def _refuse_control_characters(document: Any, place: str = "") -> None:
+    """ValueError where a text in a document holds what would move a terminal's cursor."""
+    if isinstance(document, str):
+        if has_control_characters(document):
+            raise ValueError(
+                f"its entry {reprlib.repr(place)} has a control character in "
+                f"{reprlib.repr(document)}; take it out"
+            )
+    elif isinstance(document, dict):
+        for name, entry in document.items():
+            _refuse_control_characters(name, place)
+            _refuse_control_characters(entry, f"{place}.{name}" if place else name)
+    elif isinstance(document, list):
+        for i, entry in enumerate(document):
+            _refuse_control_characters(entry, f"{place}[{i}]")
+
+
+def _in_words(text: str, document: Any, name: str) -> KeyError | ValueError:
     """The error that says what msgspec's text does, with the entry's value and a remedy."""
     said, *places = " ".join(text.split()).split(" - at `$")
     place = "".join(part.rstrip("`") for part in reversed(places)).lstrip(".")
@@ -174,11 +195,13 @@ def _in_words(text: str, document: Any) -> KeyError | ValueError:
     if expected:
         kinds = " or ".join(_KINDS.get(kind, kind) for kind in expected[1].split(" | "))
         each = " in every entry" if place.endswith("[...]") else ""
-        return ValueError(f"{_with_value(place, document)}; give {kinds}{expected[2]}{each}")
+        return ValueError(f"{_with_value(place, document, name)}; give {kinds}{expected[2]}{each}")
     if said.startswith("Invalid enum value"):
-        return ValueError(f"{_with_value(place, document)}, which is not known here")
+        return ValueError(f"{_with_value(place, document, name)}, which is not known here")
     if said.endswith("out of range"):
-        return ValueError(f"{_with_value(place, document)}; give a number of double precision")
+        return ValueError(
+            f"{_with_value(place, document, name)}; give a number of double precision"
+        )
     return ValueError(f"{said} (at {place})" if place else said)  # the words of the value itself
 
 
@@ -188,9 +211,10 @@ _KINDS = {
 }  # fmt: skip
 
 
-def _with_value(place: str, document: Any) -> str:
+def _with_value(place: str, document: Any, name: str) -> str:
     """The place of an entry and its value; where msgspec leaves out a name, that of the table."""
     known = place.partition("[...]")[0]
     for key, index in re.findall(r"(\w+)|\[(\d+)\]", known):
         document = document[int(index) if index else key]
-    return f"{known or 'it'} is {reprlib.repr(document)}"
+    path = ".".join(filter(None, [name, known])).replace(".[", "[") or "it"
+    return f"{path} is {reprlib.repr(document)}"

@@ -22,6 +22,9 @@ S = TypeVar("S")
 
 MOST_BOUND = 1e6
 """Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+AGREEMENT, REST = 1e-3, 1e-6
+"""Share of an energy or a residual, and residual [m] beside it, by which two integrators may differ
+where a figure is called verified."""
 MOST_STARTS, MOST_POINTS = 10_000, 10_000
 
 
@@ -109,6 +112,19 @@ class Verification:
     energy_difference: float
     residual_difference: float
 
+    @property
+    def energy_share(self) -> float:
+        """How far the energies differ, as a share of the independent integrator's."""
+        energy = self.fixed_step_energy - self.energy_difference
+        return abs(self.energy_difference / energy) if energy else 0.0
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the figures count as verified: within `AGREEMENT`, and `REST` at rest."""
+        residual = abs(self.fixed_step_residual - self.residual_difference)
+        close = abs(self.residual_difference) <= AGREEMENT * residual + REST
+        return self.energy_share <= AGREEMENT and close
+
     @classmethod
     def between(cls, steps: int, energy: float, residual: float, motion: Motion) -> Verification:
         """Compare fixed-step figures [J, m] with those of CVODES."""
@@ -132,6 +148,8 @@ class Provenance(Generic[S]):
         Versions of quietarm, casadi, numpy and Python.
     seconds : float
         How long it took; not compared.
+    stopped : str or None
+        After what Ctrl-C ended the work early, in words; None where it ran to its end.
     """
 
     method: str
@@ -139,6 +157,7 @@ class Provenance(Generic[S]):
     search: Mapping[str, Setting] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=versions)
     seconds: NotNegative = field(default=0.0, compare=False)
+    stopped: str | None = None
 
     def __post_init__(self) -> None:
         for name in ("search", "versions"):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from functools import cache
 from pathlib import Path
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self, get_type_hints
 
 from ocp.answers.documents import NO_UPGRADES, Upgrades, read_document, write_document
-from ocp.answers.encoding import plain
+from ocp.answers.encoding import plain, typed
 
 
 class Saved:
@@ -21,6 +23,25 @@ class Saved:
     """Version of its format; files of later ones are refused."""
     upgrades: ClassVar[Upgrades] = NO_UPGRADES
     """What makes today's document of one of an older version; by version."""
+
+    def _check_entries(self, *others: str) -> None:
+        """Make the entries what a file would give back, so that what is made can be loaded.
+
+        NumPy's numbers become Python's, lists become tuples.
+
+        Parameters
+        ----------
+        *others : str
+            Entries that are checked elsewhere.
+
+        Raises
+        ------
+        ValueError
+            When an entry is not what it should be: with its name, its value and why.
+        """
+        for name, kind in _kinds(type(self)).items():
+            if name not in others:
+                object.__setattr__(self, name, typed(plain(getattr(self, name)), kind, name))
 
     def save(self, path: str | Path) -> None:
         """Write the answer as JSON, whole or not at all.
@@ -57,3 +78,10 @@ class Saved:
             When the file holds something else, is not whole, or of a newer version.
         """
         return read_document(path, cls.kind, cls.version, cls, cls.upgrades)
+
+
+@cache
+def _kinds(of: type[Any]) -> dict[str, Any]:
+    """The types of a dataclass's entries, with their ranges."""
+    hints = get_type_hints(of, include_extras=True)
+    return {entry.name: hints[entry.name] for entry in fields(of)}

@@ -1,4 +1,4 @@
-"""Check that a file can be written before the work begins; write it whole or not at all."""
+"""Check that a file can be written before the work begins; write it whole or not at all; read."""
 
 from __future__ import annotations
 
@@ -6,6 +6,49 @@ import os
 import stat
 import tempfile
 from pathlib import Path
+
+MOST_BYTES = 100_000_000
+"""Forty times a front of ten thousand points."""
+
+
+def read_whole(path: str | Path) -> bytes:
+    """The content of an ordinary file.
+
+    A pipe or a device is not read: it may never end, and does not come again.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    bytes
+        All of it.
+
+    Raises
+    ------
+    ValueError
+        When it cannot be read, is no ordinary file, or is larger than `MOST_BYTES`.
+    """
+    try:
+        with open(path, "rb", opener=_open_at_once) as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise ValueError(f"{path} is no ordinary file; save it as one and give its name")
+            content = file.read(MOST_BYTES + 1)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise ValueError(f"{path} cannot be read: {reason.lower()}") from None
+    if len(content) > MOST_BYTES:
+        raise ValueError(
+            f"{path} is larger than {MOST_BYTES / 1e6:g} MB, as no file of quietarm is; give "
+            "another"
+        )
+    return content
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))  # waits for nobody to fill a pipe
 
 
 def check_writable(path: str | Path) -> Path:

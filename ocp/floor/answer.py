@@ -123,6 +123,11 @@ class Floor(Saved):
         return self.motion.residual
 
     @property
+    def complete(self) -> bool:
+        """Whether the search ran to its end; else it is that of the grids until Ctrl-C."""
+        return self.provenance.stopped is None
+
+    @property
     def smooth(self) -> bool:
         """Whether the acceleration is continuous."""
         return self.provenance.settings.smooth

@@ -10,11 +10,12 @@ import numpy as np
 
 from ocp.answers.provenance import Provenance, Verification
 from ocp.base.errors import SolverFailedError
+from ocp.base.interrupts import note_interrupts
 from ocp.floor.answer import Floor, FloorSettings, Level
 from ocp.floor.grid import finer, first_grid
 from ocp.floor.program import FloorProgram, FreeSolution
 from ocp.plan.feasibility import rescued, unmet
-from ocp.plan.solver import UNBOUNDED_SPREAD, plan_move
+from ocp.plan.solver import plan_move
 from ocp.plan.verification import refuse_passed, tightened
 from ocp.profiles.joint_profile import JointPath
 from ocp.profiles.polynomial import CycloidPolynomial
@@ -75,7 +76,8 @@ def energy_floor(
     Returns
     -------
     Floor
-        The motion, with the figures of an independent integrator.
+        The motion, with the figures of an independent integrator. After Ctrl-C on the third grid
+        or later that of the grids until then, and not ``complete``.
 
     Raises
     ------
@@ -85,6 +87,8 @@ def energy_floor(
         When no motion meets the limits; the text says what would be feasible.
     SolverFailedError
         When no start ended at an optimum for another reason.
+    KeyboardInterrupt
+        After Ctrl-C before there were two grids.
     """
     settings = FloorSettings(smooth, starts, seed, tolerance)
     began = time.perf_counter()
@@ -106,12 +110,20 @@ def energy_floor(
         raise unmet("motion at all", task.limits, tried, least, "a longer duration")
     improved = _refined_once(program, solved)
     grids = [min(solved, key=_energy), min(improved, key=_energy)]
-    while not _settled(grids, settings.tolerance) and 2 * grids[-1].free.steps <= MOST_INTERVALS:
-        following = _refined(program, grids[-1])
-        if not following.status.solved:
-            break
-        grids.append(following)
-    best, simulation = _least_verified(program, grids)
+    stopped = None
+    try:
+        while (
+            not _settled(grids, settings.tolerance) and 2 * grids[-1].free.steps <= MOST_INTERVALS
+        ):
+            following = _refined(program, grids[-1])
+            if not following.status.solved:
+                break
+            grids.append(following)
+        best, simulation = _least_verified(program, grids)
+    except KeyboardInterrupt:
+        stopped = f"{len(grids)} grids"
+        with note_interrupts():
+            best, simulation = _least_verified(program, grids)
     return Floor(
         task=task,
         free=best.free,
@@ -124,6 +136,7 @@ def energy_floor(
             f"ipopt, free {'jerk' if smooth else 'acceleration'}",
             settings,
             seconds=time.perf_counter() - began,
+            stopped=stopped,
         ),
     )
 
@@ -144,12 +157,15 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
     random = np.random.default_rng(settings.seed)
     profile = CycloidPolynomial()
     for i in range(settings.starts):
-        coefficients = random.uniform(-UNBOUNDED_SPREAD, UNBOUNDED_SPREAD, profile.size)
+        coefficients = random.uniform(*profile.start_box(None))
         if i == 0:
-            coefficients = np.zeros(profile.size)
+            coefficients = profile.plain
         elif i == 1:
             with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
-                coefficients = np.array(plan_move(task, profile, starts=1).coefficients)
+                plan = plan_move(task, profile, starts=1)
+                if not plan.complete:  # it has kept what there was, and not told of Ctrl-C
+                    raise KeyboardInterrupt
+                coefficients = np.array(plan.coefficients)
         yield profile.path(coefficients, *task.move)
 
 

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from pathlib import Path
+from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ocp.answers.documents import Upgrades
 from ocp.answers.older import front_of_version_2
 from ocp.answers.provenance import Setting, versions
 from ocp.answers.saved import Saved
+from ocp.base.checks import not_negative
+from ocp.base.files import write_whole
 from ocp.base.ranges import Count, NotNegative, Positive
 from ocp.base.readonly import ReadOnlyDict
+from ocp.front.evaluation import evaluated, table_of
 from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
@@ -65,6 +70,12 @@ class Front(Saved):
         Versions of what computed it.
     seconds : float
         How long it took; not compared.
+
+    Raises
+    ------
+    ValueError
+        When an entry is not of its kind, a point has other than the profile's number of
+        coefficients or is not finite, or the points are out of order, or one beats another.
     """
 
     kind: ClassVar[str] = "front"
@@ -90,12 +101,25 @@ class Front(Saved):
     seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.task, PointToPoint):
+            raise ValueError(f"task is {self.task!r}; give a PointToPoint")
+        if not isinstance(self.profile, JointProfile):
+            raise ValueError(f"profile is {self.profile!r}; give a JointProfile")
+        self._check_entries("task", "profile", "points")
         for name in ("settings", "versions"):
             object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
-        for point in self.points:
+        object.__setattr__(self, "points", tuple(self.points))
+        for i, point in enumerate(self.points, start=1):
+            if not isinstance(point, FrontPoint):
+                raise ValueError(f"point {i} is {point!r}; give a FrontPoint")
             self.profile.checked(point.coefficients)
+            not_negative(f"residual of point {i}", point.residual, "m")
+            not_negative(f"energy of point {i}", point.energy, "J")
         if self.points != non_dominated(self.points):
-            raise ValueError("its points are out of order, or one is better than another")
+            raise ValueError(
+                "its points are out of order, or one is better than another; give "
+                "non_dominated(points)"
+            )
 
     @property
     def residuals(self) -> NDArray[np.float64]:
@@ -106,6 +130,98 @@ class Front(Saved):
     def energies(self) -> NDArray[np.float64]:
         """F2 of every point [J]."""
         return np.array([point.energy for point in self.points])
+
+    def columns(self) -> dict[str, NDArray[np.float64]]:
+        """The points as columns of a table, as ``pandas.DataFrame(front.columns())`` takes them.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (points,)
+            ``residual_m``, ``energy_J``, and the coefficients ``a_1``, ``a_2``, ...
+        """
+        shape = len(self.points), self.profile.size
+        coefficients = np.array([point.coefficients for point in self.points]).reshape(shape)
+        named = {f"a_{i + 1}": column for i, column in enumerate(coefficients.T)}
+        return {"residual_m": self.residuals, "energy_J": self.energies, **named}
+
+    def save_csv(self, path: str | Path) -> None:
+        """Write the points as a table: a row a point, stillest first, with every digit.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; its header is that of `columns`.
+
+        Raises
+        ------
+        ValueError
+            When the file cannot be written.
+        """
+        columns = self.columns()
+        rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+        lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+        write_whole(path, "\n".join(lines) + "\n")
+
+    @classmethod
+    def from_coefficients(
+        cls,
+        task: PointToPoint,
+        coefficients: ArrayLike,
+        *,
+        method: str,
+        profile: JointProfile | None = None,
+        settings: Mapping[str, Setting] | None = None,
+        seed: int | None = None,
+    ) -> Self:
+        """The front of motions that were found elsewhere.
+
+        Each motion is evaluated by CVODES; those that another beats, or that break a limit of the
+        task, are left out.
+
+        Parameters
+        ----------
+        task : PointToPoint
+            The move.
+        coefficients : array_like, shape (motions, profile.size)
+            The profile's coefficients, a motion a row.
+        method : str
+            What found them.
+        profile : JointProfile, optional
+            How the joint moves; by default the cycloid of a polynomial with as many terms as there
+            are columns.
+        settings : mapping, optional
+            Settings of the method; a ``bound`` on the coefficients must be kept.
+        seed : int, optional
+            Seed of its random numbers.
+
+        Returns
+        -------
+        Front
+            The front. `evaluations` counts all motions, `failed` those that CVODES cannot follow,
+            `infeasible` those that break a limit by more than 1e-9.
+
+        Raises
+        ------
+        ValueError
+            When the array is no table of finite numbers, or does not fit the profile or the bound.
+        """
+        began, settings = time.perf_counter(), {} if settings is None else dict(settings)
+        table = table_of(coefficients)
+        profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
+        found = evaluated(task, profile, table, settings.get("bound"))
+        return cls(
+            task=task,
+            profile=profile,
+            points=found.points,
+            method=method,
+            settings=settings,
+            seed=seed,
+            reference=reference_corner(task),
+            evaluations=len(table),
+            failed=found.failed,
+            infeasible=found.infeasible,
+            seconds=time.perf_counter() - began,
+        )
 
     def stillest(self) -> FrontPoint:
         """The point of least residual; ValueError when the front is empty."""

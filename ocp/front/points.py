@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 
@@ -13,11 +15,33 @@ from ocp.base.readonly import ReadOnlyDict
 
 @dataclass(frozen=True)
 class FrontPoint:
-    """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J]."""
+    """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J].
+
+    Any numbers will do, NumPy's as well; which points a front may have `Front` says.
+
+    Raises
+    ------
+    ValueError
+        When an entry is no number.
+    """
 
     coefficients: tuple[float, ...]
     residual: NotNegative
     energy: NotNegative
+
+    def __post_init__(self) -> None:
+        try:
+            coefficients = tuple(float(value) for value in self.coefficients)
+        except (TypeError, ValueError, OverflowError):
+            raise ValueError(
+                f"coefficients are {reprlib.repr(self.coefficients)}; give numbers"
+            ) from None
+        object.__setattr__(self, "coefficients", coefficients)
+        for name in ("residual", "energy"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Real):
+                raise ValueError(f"{name} is {reprlib.repr(value)}; give a number")
+            object.__setattr__(self, name, float(value))
 
 
 @dataclass(frozen=True)

@@ -59,6 +59,11 @@ class Polish:
     front: Front
     gains: tuple[Gain, ...]
 
+    @property
+    def complete(self) -> bool:
+        """Whether no Ctrl-C ended the work early."""
+        return self.front.complete
+
 
 def polish_front(front: Front, *, steps: int | None = None, report: Report = no_report) -> Polish:
     """Start the gradient from every point of a front, with the point's residual as the limit.

@@ -60,7 +60,7 @@ class Sweep:
         if self.profile.size == 0:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
         self.steps = first_steps(self.task, self.profile, self.settings)
-        self.guesses = start_coefficients(self.profile.size, self.settings)
+        self.guesses = start_coefficients(self.profile, self.settings)
         self._program: TaskProgram | None = None
 
     @property

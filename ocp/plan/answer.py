@@ -69,6 +69,7 @@ class Plan(Saved):
     provenance: Provenance[SolveSettings | None]
 
     def __post_init__(self) -> None:
+        self._check_entries("task", "profile", "coefficients")
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
 
     @property
@@ -80,6 +81,11 @@ class Plan(Saved):
     def energy(self) -> float:
         """F2: driving energy [J]."""
         return self.motion.energy
+
+    @property
+    def complete(self) -> bool:
+        """Whether the solver ran to its end; else the plan is the best of some of its starts."""
+        return self.provenance.stopped is None
 
     @property
     def path(self) -> JointPath:

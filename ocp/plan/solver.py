@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ocp.answers.provenance import Provenance, SolveSettings, Verification
+from ocp.base.errors import SolverFailedError
+from ocp.base.interrupts import note_interrupts
 from ocp.plan.answer import Plan
 from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
-from ocp.plan.verification import MOST_SOLVER_STEPS, verified
+from ocp.plan.verification import HURRIED, MOST_SOLVER_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.problem import Problem
 from ocp.program.solution import Solution, same_minimum
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
+from ocp.simulation.objective import Motion
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
@@ -27,8 +31,6 @@ PLAN_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
 more with limits, since these hold only at the nodes."""
 _HIDDEN = 5e-3
 """A sampled minimum can lie above the resolved one beside it by this share of the energy."""
-UNBOUNDED_SPREAD = 0.2
-"""Random starts lie within this of the plain cycloid where the coefficients have no bound."""
 
 
 def plan_move(
@@ -68,7 +70,8 @@ def plan_move(
     Returns
     -------
     Plan
-        The coefficients, with the figures of an independent integrator.
+        The coefficients, with the figures of an independent integrator. After Ctrl-C the best of
+        the starts that were solved until then, and not ``complete``.
 
     Raises
     ------
@@ -78,6 +81,8 @@ def plan_move(
         When no motion of this profile meets the task; the text says what would be feasible.
     SolverFailedError
         When no start ended at an optimum for another reason.
+    KeyboardInterrupt
+        After Ctrl-C before a start was solved.
     """
     profile = CycloidPolynomial() if profile is None else profile
     if guess is not None:
@@ -87,9 +92,14 @@ def plan_move(
         return only_motion(task, profile, residual_limit)
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
-    guesses = start_coefficients(profile.size, settings)
+    guesses = start_coefficients(profile, settings)
     problem = Problem(program, {RESIDUAL: residual_limit, **task.limits}, bound, guesses)
-    best, motion, steps_used = verified(problem, least_energy(problem))
+    solved, stopped = list[Solution](), None
+    try:
+        best, motion, steps_used = verified(problem, least_energy(problem, solved))
+    except KeyboardInterrupt:
+        best, motion, steps_used = _best_until_now(problem, solved)
+        stopped = f"{len(solved)} of {len(guesses)} starts"
     return Plan(
         task=task,
         profile=profile,
@@ -97,8 +107,21 @@ def plan_move(
         motion=motion,
         status=best.status,
         verification=Verification.between(steps_used, best.energy, best.residual, motion),
-        provenance=Provenance("ipopt", settings, seconds=time.perf_counter() - began),
+        provenance=Provenance(
+            "ipopt", settings, seconds=time.perf_counter() - began, stopped=stopped
+        ),
     )
+
+
+def _best_until_now(problem: Problem, solved: Sequence[Solution]) -> tuple[Solution, Motion, int]:
+    """What `verified` gives for the best of the starts until Ctrl-C, without taking long."""
+    if not solved:
+        raise KeyboardInterrupt
+    with note_interrupts():
+        try:
+            return verified(problem, problem.finished(min(solved, key=_energy)), care=HURRIED)
+        except SolverFailedError:
+            raise KeyboardInterrupt from None
 
 
 def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> int:
@@ -134,22 +157,24 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     return steps
 
 
-def start_coefficients(size: int, settings: SolveSettings) -> list[NDArray[np.float64]]:
-    """Vectors of coefficients to start from: the guess or zeros, then random ones of the seed."""
+def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[NDArray[np.float64]]:
+    """Coefficients to start from: the guess or the plain cycloid, then random ones of the seed."""
     random = np.random.default_rng(settings.seed)
-    spread = UNBOUNDED_SPREAD if settings.bound is None else settings.bound
-    others = [random.uniform(-spread, spread, size) for _ in range(settings.starts - 1)]
-    first = np.zeros(size) if settings.guess is None else np.array(settings.guess)
+    within = profile.start_box(settings.bound)
+    others = [random.uniform(*within) for _ in range(settings.starts - 1)]
+    first = profile.plain if settings.guess is None else np.array(settings.guess)
     return [first, *others]
 
 
-def least_energy(problem: Problem) -> Solution:
+def least_energy(problem: Problem, kept: list[Solution] | None = None) -> Solution:
     """The best of the solutions from several starts.
 
     Parameters
     ----------
     problem : Problem
         What is asked.
+    kept : list of Solution, optional
+        Takes every start that was solved, at once, for whoever goes on with these after Ctrl-C.
 
     Returns
     -------
@@ -163,7 +188,11 @@ def least_energy(problem: Problem) -> Solution:
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
-    solutions = [problem.solve(guess, finish=False) for guess in problem.guesses]
+    solutions = list[Solution]()
+    for guess in problem.guesses:
+        solutions.append(problem.solve(guess, finish=False))
+        if kept is not None and solutions[-1].status.solved:
+            kept.append(solutions[-1])
     solutions, least = rescued(
         solutions,
         problem.limits,

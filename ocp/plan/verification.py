@@ -24,6 +24,9 @@ _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
 """A residual at rest is corrected until it is below this share of that."""
 _ROUNDS = 12
+_BELOW = 1 + 2e-8
+"""How far below a limit that is passed the solver is sent: by its own tolerance, else the next peak
+passes the limit by as little again."""
 OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
 
@@ -50,6 +53,8 @@ class Care:
 OF_A_PLAN = Care()
 """The cheapest motion for the solver is then that for the independent integrator to 1e-6, in all
 but one of 56 plans tried (6e-6)."""
+HURRIED = Care(agreement=np.inf, enough_steps=0, most_steps=0)
+"""Mend the arrival and passed limits with the steps that there are: for after Ctrl-C."""
 
 
 def verified(
@@ -148,7 +153,10 @@ def tightened(
         The tighter limits.
     """
     passed = motion.passed(kept)
-    return {name: limit / passed.get(name, 1.0) for name, limit in limits.items()}
+    return {
+        name: limit / (_BELOW * passed[name]) if name in passed else limit
+        for name, limit in limits.items()
+    }
 
 
 def refuse_passed(

@@ -15,6 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from models import Expression, JointMotion
 
+UNBOUNDED_SPREAD = 0.2
+"""Random starts lie within this of the plain cycloid where the coefficients have no bound."""
+
 
 class JointProfile(ABC):
     """A family of joint motions from start to target, one for every vector of coefficients.
@@ -26,6 +29,9 @@ class JointProfile(ABC):
 
     name: ClassVar[str]
     """The name by which files know the family."""
+
+    default_bound: ClassVar[float | None] = None
+    """The bound that a search takes where none is given; None where it must be given."""
 
     _known: ClassVar[dict[str, type[JointProfile]]] = {}
 
@@ -48,6 +54,35 @@ class JointProfile(ABC):
     def least_duration(self) -> float:
         """The shortest duration for which the profile has a motion [s]; 0 where any will do."""
         return 0.0
+
+    # Where coefficients are looked for, in this one place: for coefficients that are not all of one
+    # kind, such as weights and widths, a family says its own.
+
+    @property
+    def plain(self) -> NDArray[np.float64]:
+        """Coefficients of the first start, shape (size,): a motion like the plain cycloid."""
+        return np.zeros(self.size)
+
+    def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where the coefficients may lie, for searches and the gradient alike.
+
+        Parameters
+        ----------
+        bound : float or None
+            What a user gives as the bound: the largest absolute value of every coefficient, or of
+            the kind of them that it makes sense for; None where nothing is asked.
+
+        Returns
+        -------
+        tuple of ndarray, each of shape (size,)
+            Least and largest values, infinite where nothing bounds them.
+        """
+        largest = np.full(self.size, np.inf if bound is None else bound)
+        return -largest, largest
+
+    def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where the gradient's random starts lie, as `box`, but finite."""
+        return self.box(UNBOUNDED_SPREAD if bound is None else bound)
 
     @abstractmethod
     def derivatives(

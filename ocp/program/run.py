@@ -58,8 +58,8 @@ class Run:
         The program to begin with: sampled where the energy counts.
     limits, weights : mapping of str to float
         Largest residual and peaks; weights of energy and at most one peak, the largest of them 1.
-    bound : float
-        Largest absolute coefficient.
+    box : tuple of ndarray, each of shape (coefficients,)
+        Least and largest coefficients.
     offset : ndarray, shape (2 * modes,)
         What the steps miss of the state on arrival.
     axes : ndarray, shape (coefficients, coefficients)
@@ -70,7 +70,7 @@ class Run:
     form: Form
     limits: Mapping[str, float]
     weights: Mapping[str, float]
-    bound: float
+    box: tuple[NDArray[np.float64], NDArray[np.float64]]
     offset: NDArray[np.float64]
     axes: NDArray[np.float64]
 
@@ -88,6 +88,7 @@ class Run:
         still = limits.get(RESIDUAL, np.inf) == 0 and least != RESIDUAL
         weights = {name: weight * program.reference[name] for name, weight in minimise.items()}
         largest = max(weights.values())
+        box = program.profile.box(bound)
         return cls(
             program=program,
             form=Form(
@@ -97,10 +98,10 @@ class Run:
             ),
             limits={name: limit / program.reference[name] for name, limit in limits.items()},
             weights={name: weight / largest for name, weight in weights.items()},
-            bound=np.inf if bound is None else bound,
+            box=box,
             offset=np.zeros(program.motion.states) if offset is None else offset,
             # a box is one along the coefficients themselves
-            axes=program.even_axes if bound is None else np.eye(program.motion.size),
+            axes=np.eye(program.motion.size) if np.isfinite(box).any() else program.even_axes,
         )
 
     @property
@@ -114,7 +115,7 @@ class Run:
         IPOPT's first steps are the longest, and far from the cycloid it loses its way.
         """
         start = self.start(guess, self.form)
-        if np.isfinite(self.bound):
+        if np.isfinite(self.box).any():
             return self.solution(self.form, self.stop(self.form, start))
         stop = self.stop(self.form, start, _FIRST_REACH)
         iterations = stop.iterations
@@ -176,12 +177,11 @@ class Run:
         program, task = self.program, self.program.task
         compiled = _compiled(
             task.plant, program.profile, program.steps, tuple(task.limits), form,
-            boxed=form.sampled and np.isfinite(self.bound),
+            boxed=form.sampled and bool(np.isfinite(self.box).all()),
         )  # fmt: skip
-        upper = np.full(compiled.unknowns, np.inf)
-        upper[compiled.part("coefficients")] = self.bound
-        lower = -upper
+        lower, upper = (np.full(compiled.unknowns, sign * np.inf) for sign in (-1, 1))
         place = compiled.part("coefficients")
+        lower[place], upper[place] = self.box
         room = reach * np.maximum(1.0, np.abs(start.unknowns[place]))
         lower[place] = np.maximum(lower[place], start.unknowns[place] - room)
         upper[place] = np.minimum(upper[place], start.unknowns[place] + room)
@@ -197,7 +197,7 @@ class Run:
         """The figures of where the solver stopped."""
         program = self.program
         coefficients = self.axes @ stop.point.unknowns[: program.motion.size]
-        coefficients = np.clip(coefficients, -self.bound, self.bound)  # IPOPT passes by 1e-10
+        coefficients = np.clip(coefficients, *self.box)  # IPOPT passes by 1e-10
         states, outputs, energy = program.figures(coefficients)
         arrival = states[:, -1] + self.offset
         peaks, reference = self.program.peaks(arrival, outputs), program.reference

@@ -11,6 +11,7 @@ import click
 
 from ocp import FileFormatError, QuietarmError
 from ocp.base.interrupts import as_ctrl_c
+from ocp.base.printable import printable
 from studies.cli.streams import patient_streams
 from studies.early import ready
 
@@ -127,7 +128,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _complain(message: str, status: int) -> int:
-    line = " ".join(message.split())
+    line = printable(" ".join(message.split()))
     click.echo(f"quietarm: {line}", err=True)
     return status
 

@@ -12,7 +12,6 @@ import click
 
 from models import Plant, load_plant_file
 from ocp.base.files import check_writable
-from ocp.profiles.shapers import SHAPERS
 from ocp.task.quantities import QUANTITIES, Quantity
 from studies.cli.plants import parse_plant, parse_setting
 from studies.cli.quantities import (
@@ -26,6 +25,7 @@ from studies.cli.quantities import (
 )
 from studies.display.pictures import check_figure
 from studies.display.saving import STDOUT
+from studies.profiles import FAMILIES, POLYNOMIAL, PROFILES
 
 _BARE = "quietarm.bare_angles"
 F = TypeVar("F", bound=Callable[..., Any])
@@ -126,11 +126,24 @@ STATE = Parsed("file", _is_file)
 PICTURE = Parsed("picture", _is_picture)
 FOLDER = Parsed("folder", _is_folder)
 
-POLYNOMIAL = "polynomial"
+_DEFAULT_TERMS = ", ".join(f"{family().terms} for {name}" for name, family in FAMILIES.items())
+_OF_CYCLOIDS = (
+    "How the joint moves: the cycloid of a polynomial, of Gaussians, of a neural network or of a "
+    "quintic spline"
+)
 profile_option = click.option(
-    "--profile", type=click.Choice([POLYNOMIAL, *SHAPERS]), default=POLYNOMIAL, show_default=True,
-    help="How the joint moves: the cycloid of a polynomial, or the plain cycloid through an input "
-    "shaper for the plant's frequencies at the target.",
+    "--profile", type=click.Choice(PROFILES), default=POLYNOMIAL, show_default=True,
+    help=f"{_OF_CYCLOIDS}; or the plain cycloid through an input shaper for the plant's "
+    "frequencies at the target.",
+)  # fmt: skip
+family_option = click.option(
+    "--profile", type=click.Choice(list(FAMILIES)), default=POLYNOMIAL, show_default=True,
+    help=f"{_OF_CYCLOIDS}.",
+)  # fmt: skip
+terms_option = click.option(
+    "--terms", type=int,
+    help="Size of the profile: terms of the polynomial, Gaussians, hidden nodes, or control "
+    f"points. [default: {_DEFAULT_TERMS}]",
 )  # fmt: skip
 
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from math import ceil
 
 import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics import PopulationObjective
-from ocp import Front, JointProfile, PointToPoint
-from ocp.simulation.rollout import default_steps
+from metaheuristics.objective.claims import objective_of
+from ocp import Front
 
 Array = NDArray[np.float64]
 _KEPT = 1e-6
@@ -91,9 +89,3 @@ def evenly_spaced(points: Array, stations: int = _STATIONS) -> Array:
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ordered, axis=0).T))])
     wanted = np.linspace(0.0, along[-1], stations)
     return ordered[np.unique(np.abs(along - wanted[:, None]).argmin(axis=1))]
-
-
-@lru_cache(maxsize=4)
-def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
-    """The objective at the steps that fronts are verified with; made once for a task."""
-    return PopulationObjective(task, profile, steps=default_steps(task))

@@ -104,9 +104,10 @@ def finish(
     _raise(saved, trouble, interrupted=bool(came))
 
 
-def interruption() -> QuietarmError:
-    """The error to raise after Ctrl-C."""
-    return QuietarmError("interrupted; what was found until then is kept")
+def interruption(after: str | None = None) -> QuietarmError:
+    """The error to raise after Ctrl-C, and after how much of the work it came."""
+    when = f" after {after}" if after else ""
+    return QuietarmError(f"interrupted{when}; what was found until then is kept")
 
 
 def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:

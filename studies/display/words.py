@@ -9,12 +9,14 @@ from rich.console import Console
 
 from models import Plant
 from ocp import PointToPoint
+from ocp.base.printable import printable
 from ocp.task.quantities import QUANTITIES
 
 
 def print_lines(console: Console, *lines: str) -> None:
     """Print lines as they are, however narrow the console."""
-    console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
+    text = "\n".join(printable(line) for part in lines for line in part.split("\n"))
+    console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def counted(number: int, what: str) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import pi
 
 from models import ArmOnFlexibleLink, Plant, SingleLinkManipulator
-from ocp import PointToPoint
+from ocp import CycloidGaussians, CycloidNetwork, JointProfile, PointToPoint
 from studies.methods import NSGA2, VEPSO
 from studies.paper.case import Case
 
@@ -42,6 +42,14 @@ MENDED: dict[tuple[Case, int], tuple[float, ...]] = {
     (ARM_HALF, 6): (-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-2, -2.377e-1),
 }
 """Table 4, N = 6, with the exponent of a_5 mended: only this reproduces Table 5's 0.149 J."""
+
+
+EARLIER: dict[str, tuple[int, str, JointProfile]] = {
+    SINGLE_LINK.name: (23, "network", CycloidNetwork()),
+    ARM.name: (24, "Gaussians", CycloidGaussians()),
+}
+"""The earlier study of each plant: its reference, and what it moves the joint with, by name and as
+this project reads it; sections 1 and 3."""
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from ocp import Front, QuietarmError
+from ocp import QuietarmError
 from ocp.base.files import write_whole
+from ocp.base.printable import printable
 from ocp.floor.search import energy_floor
 from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
@@ -24,12 +25,6 @@ if TYPE_CHECKING:
 REPORT, PICTURE = "report.md", "fronts.png"
 
 
-def load_fronts(paths: list[Path]) -> tuple[list[Front], list[str]]:
-    """The fronts of files and what to call them; FileFormatError where one is no front."""
-    fronts = [Front.load(path) for path in paths]
-    return fronts, [str(path) for path in paths]
-
-
 def with_floor(comparison: Comparison, console: Console) -> Comparison:
     """The comparison with the floor of its task; the console says so if it is not found."""
     try:
@@ -37,6 +32,8 @@ def with_floor(comparison: Comparison, console: Console) -> Comparison:
     except QuietarmError as error:
         console.print(f"no floor: {error}", highlight=False, soft_wrap=True)
         return comparison
+    if not floor.complete:
+        raise KeyboardInterrupt
     return replace(comparison, floor=floor.energy)
 
 
@@ -51,7 +48,7 @@ def print_comparison(console: Console, comparison: Comparison) -> None:
     for table in tables(comparison).values():
         print_table(console, table)
     for line in (*how_to_read(comparison), *units(comparison)):
-        console.print(f"- {line}", highlight=False, style="dim")
+        console.print(f"- {printable(line)}", highlight=False, style="dim")
 
 
 def comparison_files(folder: Path, comparison: Comparison) -> list[File]:

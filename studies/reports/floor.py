@@ -6,7 +6,7 @@ from rich.console import Console
 
 from ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
 from studies.display.tables import print_rows
-from studies.reports.plan import figure_rows, move_rows
+from studies.reports.plan import figure_rows, move_rows, stopped_words
 
 TERMS = 6
 """Terms of the plan that a floor is compared with."""
@@ -34,12 +34,14 @@ def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
     """
     motion, check = floor.motion, floor.verification
     kind = "smooth (jerk free)" if floor.smooth else "acceleration free"
-    beside = "none within these limits"
+    beside = "none within these limits" if floor.complete else "not looked for"
     if plan is not None:
         beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times the floor"
     grids = ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)
     worst = max(floor.starts) / min(floor.starts) - 1
     unsettled = "" if floor.settled else " On a finer grid it failed."
+    if not floor.complete:
+        unsettled = stopped_words(floor.provenance.stopped)
     rows = [
         *move_rows(floor.task, motion),
         ("least energy", f"{motion.energy:.6g} J  over all motions, {kind}"),

@@ -6,7 +6,8 @@ import math
 
 from rich.console import Console
 
-from ocp import Motion, Plan, PointToPoint, ShapedCycloid
+from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Verification
+from ocp.answers.provenance import AGREEMENT
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
 from studies.display.words import millimetres, move_of, plant_words
@@ -24,22 +25,36 @@ def print_plan(console: Console, plan: Plan) -> None:
     plan : Plan
         The plan.
     """
-    motion, check = plan.motion, plan.verification
-    relative = abs(check.energy_difference) / motion.energy if motion.energy else 0.0
+    motion = plan.motion
     rows = [
         *move_rows(plan.task, motion),
         _choice(plan),
         ("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
-        ("status", plan.status.text),
-        (
-            "verified",
-            f"by CVODES: {check.steps} fixed steps differ by {relative:.0e} in energy and "
-            f"{millimetres(abs(check.residual_difference))} in residual",
-        ),
+        ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
+        verified_row(plan.verification),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
     print_rows(console, rows)
+
+
+def stopped_words(after: str | None) -> str:
+    """That Ctrl-C came, and after what; nothing where it did not."""
+    return f" Interrupted after {after}: the best of these." if after else ""
+
+
+def verified_row(check: Verification) -> Row:
+    """How far the two integrators agree; the word `verified` only where that is near enough."""
+    differ = (
+        f"{check.steps} fixed steps differ by {check.energy_share:.0e} in energy and "
+        f"{millimetres(abs(check.residual_difference))} in residual"
+    )
+    if check.agrees:
+        return "verified", f"by CVODES: {differ}"
+    return "not verified", (
+        f"the figures are by CVODES, and {differ}, where {AGREEMENT:g} of each is agreement; give "
+        "smaller coefficients"
+    )
 
 
 def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
@@ -90,6 +105,8 @@ def _choice(plan: Plan) -> tuple[str, str]:
         shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
         return "profile", f"{plan.profile.label}: {shaper}"
     coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    if not isinstance(plan.profile, CycloidPolynomial):
+        return "profile", f"{plan.profile.label}: {coefficients}"
     return "coefficients", coefficients or "none: the plain cycloid"
 
 

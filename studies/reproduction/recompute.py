@@ -8,7 +8,7 @@ from functools import partial
 from itertools import product
 
 from metaheuristics.ensemble import Spread, energies_at, number_of_runs, one_seed
-from metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener, Piece, Say
+from metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener, Piece, Say, to_the_end
 from metaheuristics.sharing.running import run_pieces
 from ocp import (
     CycloidPolynomial,
@@ -26,6 +26,7 @@ from studies.paper.printed import (
     ARM_HALF,
     COEFFICIENTS,
     CONDITIONS,
+    EARLIER,
     MENDED,
     PAPER_SEARCH,
     ROWS,
@@ -45,6 +46,13 @@ SOLVES = tuple(product(CONDITIONS, TERMS, (True, False)))
 """What the gradient solves: condition, number of terms, whether in the paper's box."""
 
 
+COMPARED = tuple(row.condition for row in ROWS if row.earlier_energy is not None)
+"""The conditions at which the paper compares itself with an earlier study: its Tables 3 and 6."""
+EARLIER_STUDY = "earlier study"
+EARLIER_STARTS = 3
+"""Starts of the solver for the earlier studies' profiles, which have several minima."""
+
+
 @dataclass(frozen=True)
 class RowResult:
     """A row of the paper beside what is computed here.
@@ -59,6 +67,9 @@ class RowResult:
         The same with a misprint mended, where there is one.
     in_box, free : Plan
         The gradient answer at rest on arrival, in the paper's box and without one.
+    earlier : Plan or None
+        The gradient answer at rest on arrival with the earlier study's profile, as this project
+        reads it, where the paper compares with that study.
     fronts : dict of Method to tuple of Front
         What VEPSO and NSGA-II find with the paper's settings, one front for each seed.
     residual_level : float
@@ -71,6 +82,7 @@ class RowResult:
     mended: Plan | None
     in_box: Plan
     free: Plan
+    earlier: Plan | None
     fronts: Mapping[Method, tuple[Front, ...]]
     residual_level: float
 
@@ -134,8 +146,9 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
     Returns
     -------
     list of Piece
-        Solves under (condition, terms, whether in the box), floors under their condition, and
-        searches under (method, condition, terms, seed).
+        Solves under (condition, terms, whether in the box), those with the earlier study's profile
+        under (condition, `EARLIER_STUDY`), floors under their condition, and searches under
+        (method, condition, terms, seed).
 
     Raises
     ------
@@ -148,6 +161,11 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
         name = f"gradient: {_label(condition, terms)}{', in the box' * boxed}"
         solve = partial(_solved, condition, terms, boxed)
         work.append(Piece((condition, terms, boxed), name, solve))
+    for condition in COMPARED:
+        reference, profile_name, _ = EARLIER[condition.task.plant.name]
+        name = f"{EARLIER_STUDY}: {condition.task.plant.name}, {condition.label}, {profile_name}"
+        solve = partial(_solved_as_earlier, condition)
+        work.append(Piece((condition, EARLIER_STUDY), f"{name} of ref. [{reference}]", solve))
     for condition in CONDITIONS:
         name = f"floor: {condition.task.plant.name}, {condition.label}"
         work.append(Piece(condition, name, partial(_floor, condition)))
@@ -206,6 +224,9 @@ def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
         mended=_evaluated(MENDED, *key),
         in_box=done.answers[*key, True],
         free=done.answers[*key, False],
+        earlier=(
+            None if row.earlier_energy is None else done.answers[row.condition, EARLIER_STUDY]
+        ),
         fronts={
             method: tuple(done.answers[method, *key, seed] for seed in range(seeds))
             for method in SEARCHES
@@ -216,11 +237,16 @@ def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
 
 def _solved(condition: Case, terms: int, boxed: bool, earlier: Done, say: Say) -> Plan:
     bound = condition.bound if boxed else None
-    return plan_move(condition.task, CycloidPolynomial(terms), bound=bound)
+    return to_the_end(plan_move(condition.task, CycloidPolynomial(terms), bound=bound))
+
+
+def _solved_as_earlier(condition: Case, earlier: Done, say: Say) -> Plan:
+    _, _, profile = EARLIER[condition.task.plant.name]
+    return to_the_end(plan_move(condition.task, profile, starts=EARLIER_STARTS))
 
 
 def _floor(condition: Case, earlier: Done, say: Say) -> Floor:
-    return energy_floor(condition.task)
+    return to_the_end(energy_floor(condition.task))
 
 
 def _label(condition: Case, terms: int) -> str:

@@ -1,4 +1,4 @@
-"""What `quietarm reproduce` shows and writes: tables, the floor, claims, Figs 2 and 5."""
+"""What `quietarm reproduce` shows and writes: tables, the floor, claims, four figures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from studies.display.words import title_of
 from studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
 from studies.figures.looks import ORANGE
 from studies.paper.case import Case
-from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
+from studies.paper.printed import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH
 from studies.reproduction.claims import Claim
 from studies.reproduction.floor_dots import floor_dots
 from studies.reproduction.floor_table import LEGEND as FLOOR_LEGEND
@@ -35,6 +35,9 @@ _COLUMNS = (
     Column("move", key="move"),
     Column("terms N", key="terms"),
     Column("F2 [J] earlier study", _ENERGY, "earlier_study_J"),
+    Column("F2 [J] {earlier} by gradient", _ENERGY, "earlier_study_as_read_here_J"),
+    Column("  residual [mm]", _MILLIMETRES, "earlier_study_as_read_here_residual_mm"),
+    Column("  time [s]", _SECONDS, "earlier_study_as_read_here_s"),
     Column("F2 [J] printed", _ENERGY, "printed_J"),
     Column("F2 [J] printed coefficients", _ENERGY, "printed_coefficients_J"),
     Column("  residual [mm]", _MILLIMETRES, "printed_coefficients_residual_mm"),
@@ -63,7 +66,10 @@ LEGEND = (
     "the cheapest point of a front found with the paper's settings whose residual is no larger "
     "than that of the paper's own coefficients (where none are printed, of its N = 6 row for the "
     "same plant). Energies F2 and residuals F1 (at the tip) of coefficients and gradient are by "
-    "CVODES."
+    "CVODES. Network, Gaussians: what refs [23] and [24] move the joint with, as this project "
+    "reads these references, with 16 parameters; the least energy at rest on arrival, in this "
+    "project's box. They are no recomputation of the references' own figures, whose parameters are "
+    "not published."
 )
 
 
@@ -73,8 +79,14 @@ def tables(result: Reproduction) -> list[Table]:
     for number, title in _TITLES.items():
         chosen = [row for row in result.rows if row.row.table == number]
         method = chosen[0].own_search.label
+        reference, name, _ = EARLIER[chosen[0].row.condition.task.plant.name]
+        earlier = f"{name}, ref. [{reference}] as read here,"
         columns = [
-            replace(c, heading=c.heading.format(method=method), key=c.key.format(method=method))
+            replace(
+                c,
+                heading=c.heading.format(method=method, earlier=earlier),
+                key=c.key.format(method=method),
+            )
             for c in _COLUMNS
         ]
         found.append(Table(title, columns, [cells for r in chosen for cells in _with_mended(r)]))
@@ -92,7 +104,9 @@ def _with_mended(result: RowResult) -> list[list[Cell]]:
         result.residual_level * 1e3,
         result.search_seconds,
     ]
-    head: list[Cell] = [row.condition.label, str(row.terms), row.earlier_energy, row.energy]
+    earlier = _figures(result.earlier, timed=True)
+    head: list[Cell] = [row.condition.label, str(row.terms), row.earlier_energy, *earlier]
+    head.append(row.energy)
     lines = [[*head, *_figures(result.printed), *gradient, *searched]]
     if result.mended:
         head[1] = f"{row.terms}, a_5 mended"
@@ -122,6 +136,21 @@ def redrawn(result: Reproduction, condition: Case, title: str) -> Figure:
     return motion_figure(lines, title, PAPER_PANELS)
 
 
+def against_earlier(result: Reproduction, condition: Case, title: str) -> Figure:
+    """Fig. 3 or Fig. 6: the paper's coefficients over the earlier study's profile as read here."""
+    reference, name, _ = EARLIER[condition.task.plant.name]
+    row = next(r for r in result.rows if r.row.condition == condition and r.earlier)
+    lines: list[Line] = []
+    if row.earlier is not None:
+        label = f"{name}, ref. [{reference}] as read here, by gradient"
+        lines.append(Line(row.earlier, label, ORANGE))
+    if row.mended_or_printed is not None:
+        mended = ", a_5 mended" if row.mended else ""
+        lines.append(Line(row.mended_or_printed, f"paper, N = {row.row.terms}{mended}", BLUE))
+    lines.append(Line(row.in_box, "gradient, N = 6, the paper's box", GREEN, (0, (7, 2))))
+    return motion_figure(lines, title, PAPER_PANELS)
+
+
 def print_reproduction(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> None:
     """Print the tables and the claims."""
     for table in tables(result):
@@ -139,13 +168,20 @@ def print_reproduction(console: Console, result: Reproduction, verdicts: Sequenc
             console.print(Padding(Text(line), (0, 0, 0, 11 if console.width >= 60 else 2)))
 
 
+_FIGURES = (
+    (2, redrawn, SINGLE_LINK_SIXTH),
+    (3, against_earlier, SINGLE_LINK_SIXTH),
+    (5, redrawn, ARM_HALF),
+    (6, against_earlier, ARM_HALF),
+)
+
+
 def reproduction_files(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[File]:
     """What writes report.md, a CSV for every table, and the pictures to a folder."""
     writes: dict[str, Callable[[Path], object]] = {}
-    for name, condition in (("figure_2.png", SINGLE_LINK_SIXTH), ("figure_5.png", ARM_HALF)):
-        number = name.removesuffix(".png").replace("figure_", "Fig. ")
-        title = f"{number} redrawn: {title_of(condition.task)}"
-        writes[name] = drawing(partial(redrawn, result, condition, title))
+    for number, draw, condition in _FIGURES:
+        title = f"Fig. {number} redrawn: {title_of(condition.task)}"
+        writes[f"figure_{number}.png"] = drawing(partial(draw, result, condition, title))
     paper_tables = tables(result)
     for number, table in zip(_TITLES, paper_tables, strict=True):
         writes[f"table_{number}.csv"] = table.save_csv
@@ -168,5 +204,6 @@ def _markdown(
     for claim in verdicts:
         evidence = "\n".join(f"- {line}" for line in claim.evidence)
         parts.append(f"### {claim.text} **{claim.verdict.capitalize()}.**\n\n{evidence}\n")
-    parts.append("## Figures\n\n![Fig. 2](figure_2.png)\n\n![Fig. 5](figure_5.png)\n")
+    parts.append("## Figures\n")
+    parts += [f"![Fig. {number}](figure_{number}.png)\n" for number, _, _ in _FIGURES]
     return "\n".join(parts)

@@ -12,12 +12,13 @@ from rich.console import Console
 
 from ocp import Front, Gain, polish_front
 from ocp.base.checks import whole
-from studies.display.progress import count
+from studies.display.progress import count, working
 from studies.display.saving import drawing, finish, interruption
 from studies.display.tables import Column, Table
 from studies.display.words import counted, millimetres, print_lines
 from studies.reports.sweep import failure_lines
 from studies.runs.files import refuse_same_file
+from studies.runs.loading import load_front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,15 +53,16 @@ def run_polish(
     FileFormatError
         When the file is no front.
     ValueError
-        When the front has no point, or `points` is below 2.
+        When its figures are not those of its motions, it has no point, or `points` is below 2.
     QuietarmError
         When it was interrupted, after what was improved is written.
     """
     files = {"--output": output, "--csv": csv_file, "--figure": figure}
     refuse_same_file([("FRONT", path), *files.items()])
-    whole_front = Front.load(path)
-    front = whole_front if points is None else thinned(whole_front, points)
     errors = Console(stderr=True)
+    with working("checking", errors, quiet=quiet):
+        whole_front = load_front(path)
+    front = whole_front if points is None else thinned(whole_front, points)
     with count(len(front.points), "points", errors, quiet=quiet) as report:
         polish = polish_front(front, report=report)
     gains = [gain for gain in polish.gains if gain.tried]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,6 @@ from rich.console import Console
 from metaheuristics import search
 from metaheuristics.ensemble import SEARCH_RESIDUAL, LostSeedsError, search_many, seeds_of
 from ocp import (
-    CycloidPolynomial,
     Front,
     JointProfile,
     Plan,
@@ -24,7 +24,8 @@ from ocp import (
     plan_move,
 )
 from ocp.base.files import check_writable
-from studies.display.saving import STDOUT, drawing, finish
+from ocp.base.interrupts import note_interrupts
+from studies.display.saving import STDOUT, File, drawing, finish
 from studies.display.search_progress import search_display
 from studies.methods import Method
 from studies.reports.search import print_fronts
@@ -83,27 +84,29 @@ def plan_by_search(
     except ValueError as error:
         raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
     settings = {**front.settings, "seed": seed, "residual_limit": residual_limit or SEARCH_RESIDUAL}
+    stopped = None
     if polish:
-        polished = plan_move(
-            task,
-            profile,
-            residual_limit=residual_limit,
-            bound=bound,
-            starts=1,
-            seed=seed,
-            guess=point.coefficients,
+        try:
+            polished = plan_move(
+                task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
+                guess=point.coefficients,
+            )  # fmt: skip
+        except KeyboardInterrupt:
+            stopped = "the search, before its point was polished"
+        else:
+            provenance = replace(
+                polished.provenance,
+                method=f"{method.name}, polished by ipopt",
+                search=settings,
+                seconds=front.seconds + polished.provenance.seconds,
+            )
+            return replace(polished, provenance=provenance)
+    with note_interrupts() if stopped else nullcontext():
+        found = evaluate_coefficients(
+            task, point.coefficients, profile=profile, method=method.name, settings=settings
         )
-        provenance = replace(
-            polished.provenance,
-            method=f"{method.name}, polished by ipopt",
-            search=settings,
-            seconds=front.seconds + polished.provenance.seconds,
-        )
-        return replace(polished, provenance=provenance)
-    found = evaluate_coefficients(
-        task, point.coefficients, profile=profile, method=method.name, settings=settings
-    )
-    return replace(found, provenance=replace(found.provenance, seconds=front.seconds))
+    provenance = replace(found.provenance, seconds=front.seconds, stopped=stopped)
+    return replace(found, provenance=provenance)
 
 
 def run_front(
@@ -111,6 +114,7 @@ def run_front(
     method: Method,
     options: dict[str, Any],
     output: Path | None,
+    csv_file: Path | None,
     figure: Path | None,
     quiet: bool,
 ) -> None:
@@ -123,9 +127,10 @@ def run_front(
     method : Method
         A metaheuristic.
     options : dict
-        The settings of `search`, with ``terms`` for its profile, ``runs`` and ``workers``.
-    output : Path or None
-        File for the front; with several runs `with_seed` names one for every seed.
+        The settings of `search`, the profile among them, ``runs`` and ``workers``.
+    output, csv_file : Path or None
+        Files for the front, whole and its points as a table; with several runs `with_seed` names
+        one for every seed.
     figure : Path or None
         File for the picture.
     quiet : bool
@@ -137,13 +142,15 @@ def run_front(
         When a search was interrupted, a process died, or the checkpoint could not be written;
         after what was found is written.
     """
-    runs, profile = options["runs"], CycloidPolynomial(options.pop("terms"))
+    runs = options["runs"]
     if runs > 1 and (options["checkpoint"] or options["resume"]):
         raise ValueError("--checkpoint and --resume are for one run, not with --runs")
-    targets = _targets(output, seeds_of(options["seed"], runs))
-    _refuse_same_files(targets, options, figure)
+    seeds = seeds_of(options["seed"], runs)
+    targets = _targets("--output", output, seeds)
+    tables = _targets("--csv", csv_file, seeds)
+    _refuse_same_files([*targets.values()], [*tables.values()], options, figure)
     errors = Console(stderr=True)
-    found, lost, troubles = _fronts(errors, task, method, {**options, "profile": profile}, quiet)
+    found, lost, troubles = _fronts(errors, task, method, options, quiet)
     fronts = [front for front in found if front.complete or front.points]
     stopped = "" if lost else _interruption(fronts, runs)
     if not any(front.points for front in fronts):
@@ -159,7 +166,8 @@ def run_front(
     trouble = lost
     if stopped or troubles:
         trouble = lost or QuietarmError("; ".join([*filter(None, [stopped]), *troubles]))
-    files = [(targets.get(front.seed or 0), front.save) for front in fronts]
+    files: list[File] = [(targets.get(front.seed or 0), front.save) for front in fronts]
+    files += [(tables.get(front.seed or 0), front.save_csv) for front in fronts]
     finish(
         [*files, (figure, drawing(picture))],
         lambda console: print_fronts(console, fronts),
@@ -200,19 +208,23 @@ def with_seed(path: Path, seed: int) -> Path:
 
 
 def _refuse_same_files(
-    targets: Mapping[int, Path], options: Mapping[str, Any], figure: Path | None
+    outputs: Sequence[Path],
+    tables: Sequence[Path],
+    options: Mapping[str, Any],
+    figure: Path | None,
 ) -> None:
-    written = [*(("--output", path) for path in targets.values()), ("--figure", figure)]
+    written: list[tuple[str, Path | None]] = [("--output", path) for path in outputs]
+    written += [*(("--csv", path) for path in tables), ("--figure", figure)]
     refuse_same_file([*written, ("--checkpoint", options["checkpoint"])])
     # a checkpoint may be continued in the same file, but not overwritten by a front
     refuse_same_file([*written, ("--resume", options["resume"])])
 
 
-def _targets(output: Path | None, seeds: range) -> dict[int, Path]:
+def _targets(option: str, output: Path | None, seeds: range) -> dict[int, Path]:
     if output is None:
         return {}
     if len(seeds) == 1:
         return {seeds[0]: output}
     if output is STDOUT:
-        raise ValueError(f"--output {output} is for one run; with --runs give the name of a file")
+        raise ValueError(f"{option} {output} is for one run; with --runs give the name of a file")
     return {seed: check_writable(with_seed(output, seed)) for seed in seeds}

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from ocp import (
-    CycloidPolynomial,
     Front,
     PointToPoint,
     SolverFailedError,
@@ -28,6 +27,7 @@ def run_sweep(
     method: Method,
     options: dict[str, Any],
     output: Path | None,
+    csv_file: Path | None,
     figure: Path | None,
     quiet: bool,
 ) -> None:
@@ -40,9 +40,9 @@ def run_sweep(
     method : Method
         A method of the gradient.
     options : dict
-        Its settings, with ``terms`` for the profile.
-    output : Path or None
-        File for the front.
+        Its settings, the profile among them.
+    output, csv_file : Path or None
+        Files for the front: whole, and its points as a table.
     figure : Path or None
         File for the picture.
     quiet : bool
@@ -53,7 +53,7 @@ def run_sweep(
     QuietarmError
         When it was interrupted, after what was found is written; when nothing was found.
     """
-    refuse_same_file([("--output", output), ("--figure", figure)])
+    refuse_same_file([("--output", output), ("--csv", csv_file), ("--figure", figure)])
     weights = options.get("weights", ())
     asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
     front = _swept(task, method, dict(options), quiet)
@@ -68,7 +68,7 @@ def run_sweep(
         return sweep_figure(front)
 
     finish(
-        [(output, front.save), (figure, drawing(picture))],
+        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
         lambda console: print_sweep(console, front, asked_for),
         trouble=None if front.complete else interruption(),
     )
@@ -76,7 +76,6 @@ def run_sweep(
 
 def _swept(task: PointToPoint, method: Method, options: dict[str, Any], quiet: bool) -> Front:
     errors = Console(stderr=True)
-    options["profile"] = CycloidPolynomial(options.pop("terms"))
     weights = options.pop("weights", ())
     if weights:
         options["weights"] = weights

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from metaheuristics.ensemble import one_seed, seeds_of
 from metaheuristics.runs.settings import number_of_generations, number_of_individuals
-from metaheuristics.sharing.pieces import Done, InterruptedPiece, NotTriedError, Piece, Say
+from metaheuristics.sharing.pieces import Done, NotTriedError, Piece, Say, to_the_end
 from metaheuristics.sharing.workers import Workers
 from ocp import (
     CycloidPolynomial,
@@ -27,7 +27,6 @@ from studies.methods import Kind, Method, methods_of
 from studies.paper.case import Case
 
 FLOOR = "floor"
-_Answer = TypeVar("_Answer")
 
 
 @dataclass(frozen=True)
@@ -119,10 +118,8 @@ def _swept(case: Case, method: Method, settings: StudySettings, earlier: Done, s
     for key, error in earlier.failures.items():  # they begin with the same end, and fail alike
         if isinstance(error, InfeasibleTaskError) and isinstance(key, Key):
             raise NotTriedError(f"not tried, as {key.name} found no motion within the limits")
-    front = method.sweep(
-        case.task, CycloidPolynomial(settings.terms), bound=case.bound, points=settings.points
-    )
-    return _whole(front, front)
+    profile = CycloidPolynomial(settings.terms)
+    return to_the_end(method.sweep(case.task, profile, bound=case.bound, points=settings.points))
 
 
 def _polished(method: Method, keys: Sequence[Key], searches: Done, say: Say) -> Polish:
@@ -130,16 +127,8 @@ def _polished(method: Method, keys: Sequence[Key], searches: Done, say: Say) -> 
     first = next((front for front in found if front.points), None)
     if first is None:
         raise NotTriedError(f"not tried, as {method.name} found no front to start from")
-    polish = polish_front(first)
-    return _whole(polish.front, polish)
+    return to_the_end(polish_front(first))
 
 
 def _floor(case: Case, earlier: Done, say: Say) -> Floor:
-    return energy_floor(case.task)
-
-
-def _whole(front: Front, answer: _Answer) -> _Answer:
-    """The answer that the front belongs to; InterruptedPiece where it was interrupted."""
-    if not front.complete:
-        raise InterruptedPiece(answer)
-    return answer
+    return to_the_end(energy_floor(case.task))

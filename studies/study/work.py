@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, Piece
 from metaheuristics.sharing.running import run_pieces
@@ -137,7 +138,7 @@ def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStu
     if len(fronts) < 2 and not done.stopped:
         where = title_of(case.task)
         raise SolverFailedError(f"{where}: no two fronts to compare; {'; '.join(failures)}")
-    floor = done.answers.get(Key(case, FLOOR))
+    floor = _found(Key(case, FLOOR), done)
     polishes = {
         m.name: done.answers.get(Key(case, m.then_polished().name)) for m in METHODS.values()
     }
@@ -152,9 +153,14 @@ def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStu
     return [study]
 
 
+def _found(key: Hashable, done: Done) -> Any:
+    """What a piece found, whole or in part; None where it found nothing."""
+    return done.answers.get(key, done.parts.get(key))
+
+
 def _fronts_of(piece: Piece, done: Done) -> list[Front]:
     """The front that a piece found, whole or in part."""
-    found = done.answers.get(piece.key, done.parts.get(piece.key))
+    found = _found(piece.key, done)
     if isinstance(found, Polish):
         return [found.front]
     return [found] if isinstance(found, Front) else []

@@ -95,7 +95,7 @@ def test_its_pictures_are_pictures(path):
 
 @each_notebook
 def test_it_is_small_enough_to_be_committed(path):
-    assert path.stat().st_size < 600_000
+    assert path.stat().st_size < 700_000
 
 
 def test_the_picture_of_the_readme_is_the_last_of_the_first_notebook():

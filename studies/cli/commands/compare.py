@@ -46,24 +46,21 @@ def compare(
       quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
     """  # noqa: D301  # \b is click's: do not rewrap
     from ocp import QuietarmError
-    from studies.comparison.check import check_figures
     from studies.comparison.measures import FILL, compare_fronts
     from studies.display.saving import finish
     from studies.reports.comparison import (
         comparison_files,
-        load_fronts,
         print_comparison,
         with_floor,
     )
+    from studies.runs.loading import load_front
 
     errors, trouble = Console(stderr=True), None
     with working("comparing", errors, quiet=quiet):
-        loaded, names = load_fronts([*fronts, *([] if reference is None else [reference])])
-        for front, name in zip(loaded, names, strict=True):
-            check_figures(front, name)
-        named = None if reference is None else loaded.pop()
+        loaded = [load_front(path) for path in fronts]
+        named = None if reference is None else load_front(reference)
         comparison = compare_fronts(
-            loaded, names[: len(loaded)], reference=named, reference_name=str(reference),
+            loaded, list(map(str, fronts)), reference=named, reference_name=str(reference),
             fill=0 if as_found else FILL,
         )  # fmt: skip
     if floor:

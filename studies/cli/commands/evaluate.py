@@ -8,11 +8,10 @@ from typing import Any
 import click
 from rich.console import Console
 
-from ocp import evaluate_coefficients, shaped_cycloid
+from ocp import evaluate_coefficients
 from studies.cli.arguments import plan_files, refuse_idle, split_options
 from studies.cli.options import (
     COEFFICIENTS,
-    POLYNOMIAL,
     output_options,
     profile_option,
     quiet_option,
@@ -20,6 +19,7 @@ from studies.cli.options import (
 )
 from studies.display.progress import working
 from studies.display.saving import finish
+from studies.profiles import FAMILIES, profile_of
 from studies.reports.plan import print_plan
 
 
@@ -28,7 +28,8 @@ from studies.reports.plan import print_plan
 @profile_option
 @click.option(
     "--coefficients", type=COEFFICIENTS,
-    help="a_1 to a_N of the polynomial, separated by commas, as --coefficients=-0.0019,-0.14.",
+    help="a_1 to a_N of the polynomial, or those of another profile in the order of its "
+    "documentation, separated by commas, as --coefficients=-0.0019,-0.14.",
 )  # fmt: skip
 @quiet_option
 @output_options
@@ -47,11 +48,13 @@ def evaluate(
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
       quietarm evaluate single-link --target pi/6 --duration 0.8 --profile zvd
     """  # noqa: D301  # \b is click's: do not rewrap
-    refuse_idle(context, profile, {"coefficients": [POLYNOMIAL]})
-    if profile == POLYNOMIAL and coefficients is None:
+    refuse_idle(context, profile, {"coefficients": list(FAMILIES)})
+    if profile in FAMILIES and coefficients is None:
         raise click.MissingParameter(param_hint="'--coefficients'", param_type="option")
     task, outputs = split_options(rest)
-    shaped = None if profile == POLYNOMIAL else shaped_cycloid(task, profile)
+    numbers = coefficients or []
+    family = FAMILIES.get(profile)
+    motions = family.of_size(len(numbers)) if family else profile_of(profile, task)
     with working("integrating", Console(stderr=True), quiet=quiet):
-        found = evaluate_coefficients(task, coefficients or [], profile=shaped)
+        found = evaluate_coefficients(task, numbers, profile=motions)
     finish(plan_files(found, **outputs), partial(print_plan, plan=found))

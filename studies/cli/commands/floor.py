@@ -60,7 +60,7 @@ def floor(
     with working("refining the grid", Console(stderr=True), quiet=quiet):
         found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
         with note_interrupts() as came:  # the floor is found, and the plan takes a moment
-            plan = plan_beside(found)
+            plan = plan_beside(found) if found.complete else None
 
     def picture() -> Figure:
         from studies.figures import floor_figure
@@ -70,5 +70,5 @@ def floor(
     finish(
         [(output, found.save), (figure, drawing(picture))],
         partial(print_floor, floor=found, plan=plan),
-        trouble=interruption() if came else None,
+        trouble=interruption(found.provenance.stopped) if came or not found.complete else None,
     )

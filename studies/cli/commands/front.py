@@ -14,11 +14,14 @@ from studies.cli.options import (
     PICTURE,
     STATE,
     WEIGHTS,
+    family_option,
     quiet_option,
     task_options,
+    terms_option,
     workers_options,
 )
 from studies.methods import METHODS, WEIGHTED, Kind, methods_of
+from studies.profiles import profile_of
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
@@ -39,8 +42,11 @@ _ONLY_FOR = {
     help="epsilon: the gradient, at one residual limit after another; weighted: the gradient, for "
     "one weighted sum after another; nsga2, vepso: a metaheuristic.",
 )  # fmt: skip
-@click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
-@click.option("--bound", type=float, help="Largest coefficient; a metaheuristic requires it.")
+@family_option
+@terms_option
+@click.option(
+    "--bound", type=float, help="Largest coefficient; for polynomials a metaheuristic requires it."
+)
 @click.option(
     "--points", type=int, default=50, show_default=True,
     help="Gradient: points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
@@ -78,12 +84,22 @@ _ONLY_FOR = {
     "front-seed0.json, front-seed1.json, ...",
 )  # fmt: skip
 @click.option(
+    "--csv", "csv_file", type=OUTPUT,
+    help="Write the points to this CSV file: residual, energy, coefficients; with --runs as "
+    "--output.",
+)  # fmt: skip
+@click.option(
     "--figure", type=PICTURE, help="Draw the fronts, all in one picture (.png, .pdf or .svg)."
 )
 @quiet_option
 @click.pass_context
 def front(
-    context: click.Context, output: Path | None, figure: Path | None, quiet: bool, **rest: Any
+    context: click.Context,
+    output: Path | None,
+    csv_file: Path | None,
+    figure: Path | None,
+    quiet: bool,
+    **rest: Any,
 ) -> None:
     """Find the trade-off of residual and energy by the gradient, or with NSGA-II or VEPSO.
 
@@ -92,7 +108,7 @@ def front(
     \b
     Examples; the metaheuristics with the paper's settings:
       quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --method epsilon \\
-          --output epsilon.json --figure epsilon.png
+          --output epsilon.json --csv epsilon.csv --figure epsilon.png
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method weighted
       quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --method nsga2 \\
           --output front.json --figure front.png
@@ -101,12 +117,14 @@ def front(
     """  # noqa: D301  # \b is click's: do not rewrap
     method = METHODS[rest.pop("method")]
     refuse_idle(context, method.name, _ONLY_FOR)
-    names = ["terms", "bound", "seed"]
+    profile, terms = rest.pop("profile"), rest.pop("terms")
+    names = ["bound", "seed"]
     names += [name for name, methods in _ONLY_FOR.items() if method.name in methods]
     options = {name: rest[name] for name in names}
-    for name in (*_ONLY_FOR, "terms", "bound", "seed"):
+    for name in (*_ONLY_FOR, "bound", "seed"):
         del rest[name]
     task = task_of(rest)
+    options["profile"] = profile_of(profile, task, terms)
     if method.kind is Kind.GRADIENT:
         from studies.runs.sweeping import run_sweep as run
 
@@ -114,4 +132,4 @@ def front(
             refuse_idle(context, "--weights", {"points": ("weights that the sweep chooses",)})
     else:
         from studies.runs.searching import run_front as run
-    run(task, method, options, output, figure, quiet)
+    run(task, method, options, output, csv_file, figure, quiet)

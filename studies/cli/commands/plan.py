@@ -7,24 +7,25 @@ from typing import Any
 import click
 from rich.console import Console
 
-from ocp import CycloidPolynomial, plan_move, shaped_cycloid
+from ocp import plan_move
 from studies.cli.arguments import plan_files, refuse_idle, split_options
 from studies.cli.options import (
     LENGTH,
-    POLYNOMIAL,
     output_options,
     profile_option,
     quiet_option,
     task_options,
+    terms_option,
 )
 from studies.display.progress import working
-from studies.display.saving import finish
+from studies.display.saving import finish, interruption
 from studies.display.words import print_lines
 from studies.methods import METHODS, Kind, methods_of
+from studies.profiles import FAMILIES, profile_of
 from studies.reports.plan import print_plan
 
 IPOPT = "ipopt"
-OF_POLYNOMIALS = ("terms", "bound", "starts", "seed", "method", "polish")
+OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "polish")
 """Options with which there must be coefficients to choose."""
 SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 
@@ -32,7 +33,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @click.command()
 @task_options
 @profile_option
-@click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
+@terms_option
 @click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
 @click.option(
     "--residual-limit", type=LENGTH, default=0.0, show_default=True,
@@ -52,7 +53,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 def plan(
     context: click.Context,
     profile: str,
-    terms: int,
+    terms: int | None,
     bound: float | None,
     residual_limit: float,
     starts: int,
@@ -72,15 +73,16 @@ def plan(
       quietarm plan single-link --target pi/2 --duration 1.0 --bound 0.2 --residual-limit 1mm
       quietarm plan arm-on-flexible-link --target 90deg --duration 800ms --torque-limit 0.3 \\
           --output plan.json --csv move.csv --figure move.png
+      quietarm plan single-link --target 30deg --duration 0.8 --profile network --terms 3
       quietarm plan dual-link --target pi/2 --duration 0.9 --profile zv
     """  # noqa: D301  # \b is click's: do not rewrap
     task, outputs = split_options(rest)
-    refuse_idle(context, profile, {name: [POLYNOMIAL] for name in OF_POLYNOMIALS})
+    refuse_idle(context, profile, {name: list(FAMILIES) for name in OF_FAMILIES})
     refuse_idle(context, method, {"starts": [IPOPT]})
     if method == IPOPT and polish:
         named = " or ".join(SEARCHES)
         raise ValueError(f"--polish is for a metaheuristic's point; give --method {named}")
-    motions = CycloidPolynomial(terms) if profile == POLYNOMIAL else shaped_cycloid(task, profile)
+    motions = profile_of(profile, task, terms)
     if method == IPOPT:
         with working("solving", Console(stderr=True), quiet=quiet):
             found = plan_move(
@@ -102,4 +104,5 @@ def plan(
                 "--polish does",
             )
 
-    finish(plan_files(found, **outputs), show)
+    stopped = None if found.complete else interruption(found.provenance.stopped)
+    finish(plan_files(found, **outputs), show, trouble=stopped)

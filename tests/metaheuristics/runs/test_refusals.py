@@ -42,7 +42,7 @@ def _refused(path, error, *words, **call):
         ({"start": 0.125}, ["start", "0.125"]),
         ({"duration": 0.75}, ["duration", "0.75", "0.8"]),
         ({"residual_window": 0.5}, ["residual_window", "0.5"]),
-        ({"torque_limit": 0.625}, ["limits", "torque", "0.625"]),
+        ({"torque_limit": 0.625}, ["torque_limit", "0.625"]),
         ({"plant": SingleLinkManipulator(omega=11.5)}, ["plant", "11.5"]),
         ({"plant": ArmOnFlexibleLink(omega=8.5)}, ["plant", "8.5"]),
     ],
@@ -57,10 +57,10 @@ def test_a_checkpoint_of_another_task_is_refused(checkpoints, method, change, wo
 def test_the_difference_is_named_as_of_the_file_and_as_asked_for(tmp_path):
     limited, path = dataclasses.replace(TASKS["vepso"], torque_limit=0.3), tmp_path / "checkpoint"
     run("vepso", limited, generations=2, checkpoint=path)
-    with pytest.raises(ValueError, match=r"its limits torque is 0\.3, not None$"):
+    with pytest.raises(ValueError, match=r"its task torque_limit is 0\.3, not None$"):
         run("vepso", generations=2, resume=path)
     run("vepso", generations=2, checkpoint=path)
-    with pytest.raises(ValueError, match=r"its limits torque is None, not 0\.3$"):
+    with pytest.raises(ValueError, match=r"its task torque_limit is None, not 0\.3$"):
         run("vepso", limited, generations=2, resume=path)
 
 

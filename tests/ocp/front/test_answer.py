@@ -224,6 +224,62 @@ def test_equality_is_of_everything_but_the_time():
         assert front() != front(**change), change
 
 
+# -- what is made is what can be loaded --
+
+WRONG = {
+    "a method of nothing": ({"method": None}, "method is None; give a text"),
+    "a seed of text": ({"seed": "one"}, "seed is 'one'; give a whole number or null"),
+    "a seed below zero": ({"seed": -1}, "seed is -1; give a whole number >= 0"),
+    "a reference of one": ({"reference": (1.0,)}, "reference is"),
+    "a reference of zero": ({"reference": (1.0, 0.0)}, r"reference\[1\] is 0.0; give a number > 0"),
+    "settings of lists": ({"settings": {"bound": [0.1]}}, "settings"),
+    "settings of nothing": ({"settings": None}, "settings is None; give a table"),
+    "a hypervolume above one": ({"history": (Generation(20, 1.5),)}, "hypervolume is 1.5"),
+    "evaluations of a half": ({"evaluations": 0.5}, "evaluations is 0.5; give a whole number"),
+    "no task": ({"task": "arm"}, "task is 'arm'; give a PointToPoint"),
+    "no profile": ({"profile": None}, "profile is None; give a JointProfile"),
+    "a point of a number": ({"found": (3.0,)}, "point 1 is 3.0; give a FrontPoint"),
+    "a coefficient too few": ({"found": (FrontPoint((1.0,), 1e-4, 0.5),)}, "got 1 coefficients"),
+    "an energy that is none": ({"found": points((1e-4, math.nan))}, "energy of point 1 is nan"),
+    "a residual below zero": ({"found": points((-1e-4, 0.5))}, "residual of point 1 is -0.0001 m"),
+    "a control character": ({"method": "\x1b[2J"}, "'method' has a control character"),
+}
+
+
+@pytest.mark.parametrize(("changes", "words"), WRONG.values(), ids=WRONG)
+def test_what_could_not_be_loaded_is_not_made(changes, words):
+    with pytest.raises(ValueError, match=words) as caught:
+        front(**changes)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("entries", "words"),
+    [
+        ((3.0, 1e-4, 0.5), "coefficients are 3.0; give numbers"),
+        ((("a", "b"), 1e-4, 0.5), "coefficients are .*; give numbers"),
+        (((1.0,), None, 0.5), "residual is None; give a number"),
+        (((1.0,), 1e-4, "0.5"), "energy is '0.5'; give a number"),
+    ],
+)
+def test_a_point_is_of_numbers(entries, words):
+    with pytest.raises(ValueError, match=words):
+        FrontPoint(*entries)
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.float32])
+def test_numpy_numbers_are_saved_and_come_back(tmp_path, kind):
+    rows = np.array([[0.25, -0.5], [0.5, -0.5]], dtype=kind)  # exact in either
+    found = [FrontPoint(row, kind(r), kind(e)) for row, r, e in zip(rows, (0.25, 0.5), (1.0, 0.5),
+                                                                    strict=True)]  # fmt: skip
+    one = front(found, seed=np.int64(3), settings={"bound": kind(0.5)}, evaluations=np.int32(60))
+    same = front(points((0.25, 1.0), (0.5, 0.5)), settings={"bound": 0.5})
+    assert one.points[0] == FrontPoint((0.25, -0.5), 0.25, 1.0)
+    assert (one.settings, one.seed, one.evaluations) == (same.settings, 3, 60)
+    one.save(tmp_path / "front.json")
+    assert Front.load(tmp_path / "front.json") == one
+
+
 # -- files --
 
 figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energies

@@ -123,13 +123,13 @@ def test_the_seed_is_kept_with_the_answer():
 
 @pytest.mark.parametrize(("bound", "spread"), [(0.05, 0.05), (None, 0.2), (3.0, 3.0)])
 def test_starts_are_the_plain_cycloid_and_random_ones_in_the_box(bound, spread):
-    starts = start_coefficients(6, SolveSettings(bound=bound, starts=50, seed=3))
+    starts = start_coefficients(CycloidPolynomial(6), SolveSettings(bound=bound, starts=50, seed=3))
     assert len(starts) == 50
     assert starts[0].tolist() == [0.0] * 6
     assert 0.9 * spread < np.abs(starts).max() <= spread
-    again = start_coefficients(6, SolveSettings(bound=bound, starts=50, seed=3))
+    again = start_coefficients(CycloidPolynomial(6), SolveSettings(bound=bound, starts=50, seed=3))
     assert np.array_equal(starts, again)
-    other = start_coefficients(6, SolveSettings(bound=bound, starts=50, seed=4))
+    other = start_coefficients(CycloidPolynomial(6), SolveSettings(bound=bound, starts=50, seed=4))
     assert not np.array_equal(starts, other)
 
 

@@ -19,8 +19,8 @@ import pytest
 import studies.cli.commands.evaluate
 import studies.cli.commands.floor
 import studies.cli.commands.plan
-import studies.reports.comparison
 import studies.reproduction.recompute
+import studies.runs.loading
 import studies.runs.polishing
 import studies.runs.searching
 import studies.study.work
@@ -310,7 +310,7 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.cli.commands.evaluate, "evaluate_coefficients", note)
     monkeypatch.setattr(studies.runs.searching, "search", note)
     monkeypatch.setattr(studies.runs.searching, "search_many", note)
-    monkeypatch.setattr(studies.reports.comparison, "load_fronts", note)
+    monkeypatch.setattr(studies.runs.loading, "load_front", note)
     monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
     monkeypatch.setattr(studies.study.work, "run_study", note)
     monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)
@@ -428,7 +428,7 @@ def test_a_bad_search_is_refused_with_its_value_and_a_remedy(refused, line, valu
     ("line", "words"),
     [
         ("replan", ["replan", "'plan'"]),
-        ("plan", ["PLANT"]),
+        ("plan", ["--target"]),
         ("plan single-link --duration 1", ["--target"]),
         ("plan single-link --target 1", ["--duration"]),
         (f"evaluate {MOVE}", ["--coefficients"]),
@@ -632,21 +632,63 @@ def interrupt(process, delay):
         process.communicate()  # closes its pipes
 
 
-# At once and soon: casadi is building the program; after a second: IPOPT is at work. casadi has a
-# habit of losing an interrupt: then the 400 starts go on to their end, and a plan is printed.
-@pytest.mark.parametrize("delay", [0.002, 0.03, 1.0])
-def test_ctrl_c_ends_a_solve_and_writes_nothing(folder, delay):
-    process = subprocess.Popen(
-        [sys.executable, "-c", ANNOUNCED, *shlex.split(f"plan {MOVE} --starts 400 {EVERY_FILE}")],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stdout.readline() == "begun\n"
+# The same, which says so when the third start begins.
+AT_THE_THIRD = """
+import studies.cli
+from ocp.program.problem import Problem
+
+solve, begun = Problem.solve, []
+
+def announced(*given, **settings):
+    begun.append(0)
+    if len(begun) == 3:
+        print("begun", flush=True)
+    return solve(*given, **settings)
+
+Problem.solve = announced
+studies.cli.main()
+"""
+
+
+@pytest.fixture
+def solving():
+    """Begin a plan of 400 starts, until it says so."""
+
+    def begin(code):
+        words = shlex.split(f"plan {MOVE} --starts 400 {EVERY_FILE}")
+        process = subprocess.Popen(
+            [sys.executable, "-c", code, *words],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        assert process.stdout.readline() == "begun\n"
+        return process
+
+    return begin
+
+
+# casadi is building the program.
+@pytest.mark.parametrize("delay", [0.002, 0.03])
+def test_ctrl_c_before_a_start_is_solved_writes_nothing(folder, solving, delay):
+    process = solving(ANNOUNCED)
     out, err = interrupt(process, delay)
     assert (process.returncode, out) == (1, "")
     assert err.lstrip("\n") == f"{INTERRUPTED}\n"  # click first ends the terminal's line of ^C
     assert list(folder.iterdir()) == []
+
+
+# IPOPT is at work. casadi has a habit of losing an interrupt: then all 400 starts are done.
+def test_ctrl_c_keeps_the_best_of_the_starts_that_were_solved(solving):
+    process = solving(AT_THE_THIRD)
+    out, err = interrupt(process, 0.01)
+    assert process.returncode == 1
+    done = re.search(r"interrupted after (\d+) of 400 starts; what was found until then is", err)
+    assert 1 <= int(done[1]) < 400
+    plan = Plan.load("plan.json")
+    assert not plan.complete
+    assert plan.residual < 1e-8  # at rest: it was verified and mended
+    assert f"Interrupted after {done[1]} of 400 starts: the best of these." in " ".join(out.split())
 
 
 def test_ctrl_c_ends_a_reproduction_and_keeps_what_was_solved(folder):

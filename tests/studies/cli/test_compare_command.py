@@ -11,12 +11,12 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-import studies.comparison.check
 import studies.comparison.measures
 import studies.reports.comparison
+import studies.runs.loading
+from metaheuristics.objective.claims import check_figures
 from models import ArmOnFlexibleLink
 from ocp import FrontPoint, PointToPoint, SolverFailedError, evaluate_coefficients
-from studies.comparison.check import check_figures
 from studies.comparison.tables import runs_table, tables
 from studies.display.words import title_of
 from studies.figures.comparison import BANDS, PANELS, comparison_figure, looks, panel_figure
@@ -45,7 +45,7 @@ def files(good, poor, tmp_path, monkeypatch):
     """Two files, in the folder of the test."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
-    monkeypatch.setattr(studies.comparison.check, "check_figures", lambda front, name: None)
+    monkeypatch.setattr(studies.runs.loading, "check_figures", lambda front, name: None)
     good.save("good.json")
     poor.save("poor.json")
     return tmp_path
@@ -258,7 +258,7 @@ def test_compare_measures_against_a_named_front(call, files, good):
 
 def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     class Found:
-        energy = 0.1234
+        energy, complete = 0.1234, True
 
     monkeypatch.setattr(studies.reports.comparison, "energy_floor", lambda task: Found())
     code, out, _ = call("compare good.json poor.json --as-found")

@@ -100,12 +100,12 @@ def test_a_search_that_finds_nothing_says_why(call, folder):
 
 
 @pytest.mark.parametrize("several", ["", "--runs 2 --workers 2"])
-def test_a_population_beyond_the_memory_ends_in_one_line(call, folder, several):
+def test_a_population_beyond_the_memory_is_refused_in_one_line(call, folder, several):
     # 10 million million individuals: 160 TB, more than a process can address
     code, out, err = call(f"{SMALL} --population 10000000000000 {several} --output f.json")
-    assert (code, out, err.count("\n")) == (1, "", 1)
-    assert "out of memory" in err
-    assert "smaller population" in err
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "population" in err
+    assert "10000000000000" in err
     assert list(folder.iterdir()) == []
 
 
@@ -328,3 +328,37 @@ def test_a_broken_limit_is_shown_with_what_is_reached(call):
     assert peak > 0.01
     shown = re.search(r"limits +(.*\S)", out).group(1)
     assert shown == f"torque 0.01 N m (broken: {peak:.4g} N m), deflection 1 m"
+
+
+TABLED = "single-link --target 30deg --duration 0.8 --terms 2 --bound 0.2"
+
+
+@pytest.mark.parametrize("method", ["epsilon", "nsga2"])
+def test_the_points_are_written_as_a_table(call, tmp_path, method):
+    more = "--points 3 --starts 1" if method == "epsilon" else "--population 20 --generations 2"
+    code, out, _ = call(
+        f"front {TABLED} --method {method} {more} --output {tmp_path / 'f.json'} "
+        f"--csv {tmp_path / 'f.csv'}"
+    )
+    assert code == 0
+    assert out.splitlines()[-1] == f"wrote {tmp_path / 'f.csv'}"
+    Front.load(tmp_path / "f.json").save_csv(tmp_path / "again.csv")
+    assert (tmp_path / "f.csv").read_bytes() == (tmp_path / "again.csv").read_bytes()
+
+
+def test_every_seed_has_its_table(call, tmp_path):
+    code, _, _ = call(
+        f"front {TABLED} --method nsga2 --population 20 --generations 2 --runs 2 "
+        f"--csv {tmp_path / 'f.csv'}"
+    )
+    assert code == 0
+    assert sorted(path.name for path in tmp_path.glob("*.csv")) == ["f-seed0.csv", "f-seed1.csv"]
+
+
+@pytest.mark.parametrize("other", ["--output", "--figure"])
+@pytest.mark.parametrize("method", ["epsilon", "nsga2"])
+def test_a_table_does_not_take_the_place_of_another_file(call, tmp_path, method, other):
+    name = tmp_path / "f.png"
+    code, out, err = call(f"front {TABLED} --method {method} --csv {name} {other} {name}")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert f"are both {name}; give two files" in err

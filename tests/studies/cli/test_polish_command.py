@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import studies.runs.loading
 import studies.runs.polishing
 from models import ArmOnFlexibleLink
 from ocp import (
@@ -112,6 +113,7 @@ def test_points_that_fail_or_are_beaten_are_told(call, monkeypatch, front_of):
     monkeypatch.setattr(
         studies.runs.polishing, "polish_front", lambda *_, **__: Polish(after, gains)
     )
+    monkeypatch.setattr(studies.runs.loading, "check_figures", lambda front, name: None)  # invented
     before.save("f.json")
     _, out, _ = call("polish f.json")
     assert out.splitlines()[-4:] == [

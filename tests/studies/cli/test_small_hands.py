@@ -81,7 +81,7 @@ def test_a_motion_beyond_small_deflections_is_warned_of(call):
 
 def test_one_is_one(call, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
-    line = f"front {MOVE} --method weighted --terms 1 --bound 1e-9 --points 2 --quiet"
+    line = f"front {MOVE} --method weighted --terms 1 --bound 1e-15 --points 2 --quiet"
     code, out, _ = call(line)
     assert code == 0
     assert "weighted: 1 point, " in out

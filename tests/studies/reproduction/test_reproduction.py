@@ -12,6 +12,7 @@ from rich.console import Console
 
 from ocp import CycloidPolynomial, SolveStatus, plan_move
 from studies.figures import BLUE, GREEN, RED
+from studies.figures.looks import ORANGE
 from studies.paper.printed import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
@@ -27,6 +28,7 @@ from studies.paper.printed import (
 from studies.reproduction.claims import claims
 from studies.reproduction.recompute import SEARCHES, pieces_of_paper, recompute_paper
 from studies.reproduction.report import (
+    against_earlier,
     print_reproduction,
     redrawn,
     reproduction_files,
@@ -80,6 +82,7 @@ def test_every_problem_is_solved_once_and_announced(reproduction, begun):
     kinds = Counter(name.partition(": ")[0] for name in begun)
     assert kinds == {
         "gradient": 6 * 5 * 2,  # conditions, N = 2 to 10, with and without the box
+        "earlier study": 6,  # conditions
         "floor": 6,  # conditions
         "vepso": 2 * 3 + 4,  # Tables 2 and 5; what 3 and 6 have beyond them
         "nsga2": 2 * 3 + 4,
@@ -418,7 +421,8 @@ def test_the_report_says_what_it_wrote_and_writes_nothing_else(report):
     folder, written = report
     assert sorted(written) == sorted(folder.iterdir())
     assert sorted(path.name for path in written) == [
-        "figure_2.png", "figure_5.png", "floor.csv", "floor.png", "report.md",
+        "figure_2.png", "figure_3.png", "figure_5.png", "figure_6.png",
+        "floor.csv", "floor.png", "report.md",
         "table_2.csv", "table_3.csv", "table_5.csv", "table_6.csv",
     ]  # fmt: skip
 
@@ -432,6 +436,8 @@ def test_csv_holds_the_figures_in_full(reproduction, report, number):
         assert (row["move"], row["terms"]) == (result.row.condition.label, str(result.row.terms))
         assert as_number(row["earlier_study_J"]) == result.row.earlier_energy
         assert as_number(row["printed_J"]) == result.row.energy
+        earlier, read_here = result.earlier, row["earlier_study_as_read_here_J"]
+        assert as_number(read_here) == (earlier and earlier.energy)
         printed = result.printed
         assert as_number(row["printed_coefficients_J"]) == (printed and printed.energy)
         for name, plan in (("in", result.in_box), ("no", result.free)):
@@ -477,7 +483,7 @@ def test_markdown_holds_the_claims_with_verdict_and_evidence(reproduction, repor
 def test_markdown_shows_pictures_that_are_there(report):
     folder, _ = report
     pictures = re.findall(r"!\[.*?\]\((.*?)\)", (folder / "report.md").read_text())
-    assert pictures == ["floor.png", "figure_2.png", "figure_5.png"]
+    assert pictures == ["floor.png", *(f"figure_{number}.png" for number in (2, 3, 5, 6))]
     for name in pictures:
         assert (folder / name).read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
 
@@ -500,6 +506,37 @@ def test_figures_2_and_5_draw_cycloid_printed_coefficients_and_gradient(
     # black line indicates the results obtained from the cycloidal motion'.
     colours = ["black", GREEN, RED, BLUE]
     assert [drawn[label].get_color() for label in labels[:4]] == colours
+
+
+@pytest.mark.parametrize(
+    ("condition", "labels"),
+    [
+        (SINGLE_LINK_SIXTH, ["network, ref. [23] as read here, by gradient", "paper, N = 6"]),
+        (
+            ARM_HALF,
+            ["Gaussians, ref. [24] as read here, by gradient", "paper, N = 6, a_5 mended"],
+        ),
+    ],
+    ids=["Fig. 3", "Fig. 6"],
+)
+def test_figures_3_and_6_draw_the_earlier_study_as_read_here(reproduction, condition, labels):
+    figure = against_earlier(reproduction, condition, "A title")
+    drawn = {line.get_label(): line.get_color() for line in figure.axes[0].get_lines()}
+    # The paper, 3.1 and 3.2: 'in blue and orange lines', the earlier study in orange.
+    assert [drawn[label] for label in labels] == [ORANGE, BLUE]
+
+
+@pytest.mark.parametrize("table", [3, 6])
+def test_the_earlier_studies_profiles_have_16_parameters_and_arrive_at_rest(reproduction, table):
+    rows = [result for result in reproduction.rows if result.row.table == table]
+    for result in rows:
+        assert result.earlier is not None
+        assert result.earlier.profile.size == 16  # section 3.2 of the paper
+        assert result.earlier.residual < 1e-8
+        # Not worse than what that study printed, found by a metaheuristic: Tables 3 and 6.
+        assert result.earlier.energy < result.row.earlier_energy
+    others = [r for r in reproduction.rows if r.row.table not in (3, 6)]
+    assert all(result.earlier is None for result in others)
 
 
 def test_the_mended_coefficients_stand_in_a_column_of_their_own(reproduction):

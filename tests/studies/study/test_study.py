@@ -37,7 +37,7 @@ FLOOR = 0.0165
 def _floor_at_once():
     """The floor has tests of its own."""
     with pytest.MonkeyPatch.context() as patch:
-        found = types.SimpleNamespace(energy=FLOOR)
+        found = types.SimpleNamespace(energy=FLOOR, complete=True)
         patch.setattr(study_pieces, "energy_floor", lambda task: found)
         yield
 

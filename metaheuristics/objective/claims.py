@@ -1,0 +1,105 @@
+"""Files are claims: whether the figures that one states are those of its motions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from metaheuristics.objective.population import BLOCK, PopulationObjective
+from ocp import Front, FrontPoint, JointProfile, PointToPoint
+from ocp.answers.provenance import AGREEMENT, REST
+from ocp.front.evaluation import refuse_beyond_box
+from ocp.plan.verification import OVERRUN
+from ocp.simulation.rollout import default_steps
+from ocp.task.quantities import QUANTITIES
+
+_SAMPLE = BLOCK
+"""Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves
+all of these as they were."""
+
+
+@lru_cache(maxsize=4)
+def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
+    """The objective at the steps that fronts are verified with; made once for a task."""
+    return PopulationObjective(task, profile, steps=default_steps(task))
+
+
+def check_figures(front: Front, name: str) -> None:
+    """Evaluate motions of a front again, and refuse it where the figures differ.
+
+    Parameters
+    ----------
+    front : Front
+        The front; an empty one passes.
+    name : str
+        What to call it in a message.
+
+    Raises
+    ------
+    ValueError
+        As `refuse_beyond_box` and `check_points`.
+    """
+    try:
+        objective = objective_of(front.task, front.profile)
+        if front.points:
+            table = np.array([point.coefficients for point in front.points])
+            refuse_beyond_box(front.profile, table, front.settings.get("bound"))
+        check_points(objective, front.points, limited=True)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}; find the front again") from None
+
+
+def check_points(
+    objective: PopulationObjective,
+    points: Sequence[FrontPoint],
+    *,
+    limited: bool = False,
+) -> None:
+    """Evaluate motions again, and refuse them where the figures differ.
+
+    Parameters
+    ----------
+    objective : PopulationObjective
+        What evaluates them.
+    points : sequence of FrontPoint
+        The motions with the figures that are claimed; at most `_SAMPLE` of them, spread evenly,
+        the first and the last among them, are evaluated.
+    limited : bool
+        Whether they must keep the limits of the task.
+
+    Raises
+    ------
+    ValueError
+        When an energy differs by more than `AGREEMENT`, or a residual by more than that and
+        `REST`, or a limit is broken by more than `OVERRUN`.
+    """
+    count = len(points)
+    if not count:
+        return
+    places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int)).tolist()
+    with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused below
+        values = objective(np.array([points[i].coefficients for i in places]))
+    rows = zip(places, values.residual, values.energy, values.violations, strict=True)
+    for i, residual, energy, violations in rows:
+        which = f"point {i + 1} of {count}"
+        for figure, unit, stated, found, least in (
+            ("residual", "m", points[i].residual, residual, REST),
+            ("energy", "J", points[i].energy, energy, 0.0),
+        ):
+            if not abs(stated - found) <= AGREEMENT * abs(found) + least:
+                gives = f"{found:.4g} {unit}" if np.isfinite(found) else "no finite figure"
+                raise ValueError(
+                    f"{which} states {figure} {stated:.4g} {unit}, but its coefficients give "
+                    f"{gives}"
+                )
+        for (quantity, limit), passed in zip(
+            objective.task.limits.items(), violations, strict=True
+        ):
+            if limited and not passed <= OVERRUN:
+                raise ValueError(
+                    f"{which} breaks the {quantity} limit of {limit:g} "
+                    f"{QUANTITIES[quantity].unit}: its coefficients give "
+                    f"{limit * (1 + passed):.4g}"
+                )

@@ -1,0 +1,121 @@
+"""The cycloid whose input is a weighted sum of units that have parameters of their own."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models import Expression
+from ocp.profiles.cycloid import Cycloid, with_bump
+
+REACH = 1.25
+"""Units are placed at first in even cells of T between plus and minus this: the outermost do most
+of their work at the ends of the move, with their middle beyond them."""
+_LIGHT = 0.1
+"""Random starts have weights within this share of their bound: with heavy ones the joint swings to
+and fro, and IPOPT runs out of iterations on its way back."""
+
+
+class Range(NamedTuple):
+    """Values of one kind of parameter, one a unit, each of shape (units,).
+
+    Attributes
+    ----------
+    first : ndarray
+        Where the first start has them.
+    spread : ndarray
+        Random starts lie within this of the first.
+    least, most : ndarray
+        Where they must stay.
+    """
+
+    first: NDArray[np.float64]
+    spread: NDArray[np.float64]
+    least: NDArray[np.float64]
+    most: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CycloidOfUnits(Cycloid):
+    """U = t/TE + (1 - T^2) (v_0 + sum_j v_j g(x_j, y_j, T)), T = -1 + 2 t/TE.
+
+    The coefficients are v_0 to v_n, then x_1 to x_n, then y_1 to y_n: 1 + 3 n of them. A bound is
+    for the weights v, x and y have `ranges` of their own; all are numbers of order one.
+
+    Units can take each other's place, or all but cancel each other with weights that grow for ever.
+    So weights are always bounded, by `default_bound` where nothing else is asked for, and starts
+    are near the plain cycloid, with the units side by side.
+    """
+
+    default_bound: ClassVar[float | None] = 0.5
+
+    @property
+    def size(self) -> int:
+        """How many coefficients the profile has: a constant, and three for each unit."""
+        return 1 + 3 * self.terms
+
+    @classmethod
+    def of_size(cls, size: int) -> Self:
+        """The family's member that has so many coefficients; ValueError where none has."""
+        terms, rest = divmod(size - 1, 3)
+        if rest or terms < 1:
+            raise ValueError(
+                f"got {size} coefficients; {cls.name} has one and three for each unit: give 4, 7, "
+                "10, ... numbers"
+            )
+        return cls(terms)
+
+    @property
+    @abstractmethod
+    def ranges(self) -> tuple[Range, Range]:
+        """Where the units' own parameters x and y may be."""
+
+    @staticmethod
+    @abstractmethod
+    def unit(
+        x: Expression, y: Expression, T: Expression
+    ) -> tuple[Expression, Expression, Expression]:
+        """One unit g and its first two derivatives by T; finite for all x and y."""
+
+    @property
+    def plain(self) -> NDArray[np.float64]:
+        """No weight, and the units side by side."""
+        return np.concatenate([np.zeros(1 + self.terms), *(kind.first for kind in self.ranges)])
+
+    def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """`bound` for the weights, `ranges` for the rest."""
+        weights = np.full(1 + self.terms, self.default_bound if bound is None else bound)
+        return (
+            np.concatenate([-weights, *(kind.least for kind in self.ranges)]),
+            np.concatenate([weights, *(kind.most for kind in self.ranges)]),
+        )
+
+    def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Light weights, and the units nearly side by side."""
+        lower, upper = self.box(bound)
+        weights = _LIGHT * upper[: 1 + self.terms]
+        around = np.concatenate([weights, *(kind.spread for kind in self.ranges)])
+        return np.maximum(lower, self.plain - around), np.minimum(upper, self.plain + around)
+
+    def input(
+        self, coefficients: Sequence[Expression], fraction: Expression
+    ) -> tuple[Expression, Expression, Expression]:
+        """U and its derivatives; the weights alone enter linearly."""
+        n, T = self.terms, 2 * fraction - 1  # eq (7)
+        constant, *weights = coefficients[: 1 + n]
+        p, dp, ddp = constant + 0 * T, 0 * T, 0 * T
+        own = zip(coefficients[1 + n : 1 + 2 * n], coefficients[1 + 2 * n :], strict=True)
+        for v, (x, y) in zip(weights, own, strict=True):
+            g, dg, ddg = self.unit(x, y, T)
+            p, dp, ddp = p + v * g, dp + v * dg, ddp + v * ddg
+        return with_bump(fraction, p, dp, ddp)
+
+
+def side_by_side(units: int) -> NDArray[np.float64]:
+    """Middles of even cells between -1 and 1, shape (units,)."""
+    return (2 * np.arange(units) + 1 - units) / units

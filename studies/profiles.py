@@ -1,0 +1,55 @@
+"""The joint profiles by the names that a command knows them by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ocp import (
+    CycloidGaussians,
+    CycloidNetwork,
+    CycloidPolynomial,
+    CycloidSpline,
+    JointProfile,
+    PointToPoint,
+    shaped_cycloid,
+)
+from ocp.profiles.cycloid import Cycloid
+from ocp.profiles.shapers import SHAPERS
+
+POLYNOMIAL = "polynomial"
+FAMILIES: Mapping[str, type[Cycloid]] = {
+    POLYNOMIAL: CycloidPolynomial,
+    "gaussians": CycloidGaussians,
+    "network": CycloidNetwork,
+    "spline": CycloidSpline,
+}
+"""Profiles with coefficients to choose; each takes a number of terms and has one by default."""
+PROFILES = (*FAMILIES, *SHAPERS)
+
+
+def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> JointProfile:
+    """A profile by its name.
+
+    Parameters
+    ----------
+    name : str
+        One of `PROFILES`.
+    task : PointToPoint
+        The move, whose plant an input shaper is for.
+    terms : int, optional
+        Size of a family; its own default otherwise.
+
+    Returns
+    -------
+    JointProfile
+        The profile.
+
+    Raises
+    ------
+    ValueError
+        When `terms` is out of range, or the duration is too short for the shaper.
+    """
+    if name not in FAMILIES:
+        return shaped_cycloid(task, name)
+    family = FAMILIES[name]
+    return family() if terms is None else family(terms)

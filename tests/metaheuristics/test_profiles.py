@@ -1,0 +1,69 @@
+"""Searches over other profiles than the polynomial: each in its own box, on every plant."""
+
+import math
+
+import numpy as np
+import pytest
+
+from metaheuristics import search
+from metaheuristics.objective.population import PopulationObjective
+from metaheuristics.objective.problem import MoveProblem
+from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+from ocp import CycloidGaussians, CycloidNetwork, CycloidSpline, PointToPoint, rollout
+
+TASKS = {
+    "single link": PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8),
+    "arm": PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8),
+    "two links": PointToPoint(DualLinkManipulator(), math.pi / 2, 0.9),
+}
+PROFILES = {
+    "gaussians": CycloidGaussians(3),
+    "network": CycloidNetwork(3),
+    "spline": CycloidSpline(5),
+}
+
+
+@pytest.fixture(params=PROFILES)
+def profile(request):
+    return PROFILES[request.param]
+
+
+@pytest.mark.parametrize("method", ["vepso", "nsga2"])
+@pytest.mark.parametrize("name", TASKS)
+def test_a_search_stays_in_the_profiles_box_and_finds_what_it_says(profile, method, name):
+    task = TASKS[name]
+    found = search(task, method, profile=profile, population=20, generations=10, seed=1)
+    assert found.profile == profile
+    assert found.settings["bound"] == profile.default_bound
+    lower, upper = profile.box(profile.default_bound)
+    assert found.points
+    for point in found.points:
+        assert np.all((lower <= point.coefficients) & (point.coefficients <= upper))
+    point = found.cheapest()
+    motion = rollout(task, profile, point.coefficients).motion
+    assert point.energy == pytest.approx(motion.energy, rel=1e-6)
+    assert point.residual == pytest.approx(motion.residual, rel=1e-6)
+
+
+def test_a_population_is_what_single_rollouts_are(profile):
+    task, random = TASKS["arm"], np.random.default_rng(5)
+    population = random.uniform(*profile.start_box(0.5), size=(7, profile.size))
+    values = PopulationObjective(task, profile, steps=60)(population)
+    for row, energy, residual in zip(population, values.energy, values.residual, strict=True):
+        motion = rollout(task, profile, row, steps=60).motion
+        assert energy == pytest.approx(motion.energy, rel=1e-9)
+        assert residual == pytest.approx(motion.residual, rel=1e-7, abs=1e-12)
+
+
+def test_a_problems_bounds_are_the_profiles_box(profile):
+    problem = MoveProblem(PopulationObjective(TASKS["arm"], profile, steps=5), 0.3)
+    for found, wanted in zip((problem.xl, problem.xu), profile.box(0.3), strict=True):
+        assert found == pytest.approx(wanted)
+
+
+def test_a_checkpoint_of_a_network_is_resumed(tmp_path):
+    settings = {"profile": CycloidNetwork(2), "population": 10, "seed": 3}
+    task, file = TASKS["single link"], tmp_path / "state.json"
+    search(task, "vepso", generations=4, checkpoint=file, **settings)
+    again = search(task, "vepso", generations=4, resume=file, **settings)
+    assert again.points == search(task, "vepso", generations=4, **settings).points

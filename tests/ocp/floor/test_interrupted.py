@@ -1,0 +1,59 @@
+"""Ctrl-C while a floor's grid is refined: the coarser grids are not lost."""
+
+import signal
+from dataclasses import replace
+
+import pytest
+
+import ocp.floor.search as search
+from ocp import Floor, energy_floor
+
+
+@pytest.fixture
+def ctrl_c_in(monkeypatch):
+    """Let Ctrl-C come when a function of the search is called for the nth time."""
+
+    def put(name, number):
+        known, calls = getattr(search, name), []
+
+        def interrupted(*given, **settings):
+            calls.append(name)
+            if len(calls) == number:
+                signal.raise_signal(signal.SIGINT)
+            return known(*given, **settings)
+
+        monkeypatch.setattr(search, name, interrupted)
+
+    return put
+
+
+@pytest.mark.parametrize("number", [2, 3])  # of one start, the first call is for the second grid
+def test_the_grids_that_were_solved_are_kept(tasks, ctrl_c_in, tmp_path, number):
+    ctrl_c_in("_refined", number)
+    floor = energy_floor(tasks["arm"], starts=1, tolerance=1e-4)
+    assert not floor.complete
+    assert floor.provenance.stopped == f"{number} grids"
+    assert len(floor.levels) == number
+    assert floor.energy == pytest.approx(floor.levels[-1].energy, rel=1e-2)
+    floor.save(tmp_path / "floor.json")
+    assert Floor.load(tmp_path / "floor.json") == floor
+
+
+def test_the_verification_does_not_lose_them(tasks, ctrl_c_in):
+    ctrl_c_in("_least_verified", 1)
+    floor = energy_floor(tasks["arm"], starts=1, tolerance=0.5)
+    assert floor.provenance.stopped == f"{len(floor.levels)} grids"
+
+
+def test_before_there_are_two_grids_there_is_nothing_to_keep(tasks, ctrl_c_in):
+    ctrl_c_in("_refined", 1)
+    with pytest.raises(KeyboardInterrupt):
+        energy_floor(tasks["arm"], starts=1)
+
+
+def test_ctrl_c_in_the_plan_that_it_starts_from_is_not_swallowed(tasks, monkeypatch, solved):
+    whole = solved(tasks["arm"], 6)
+    part = replace(whole, provenance=replace(whole.provenance, stopped="1 of 1 starts"))
+    monkeypatch.setattr(search, "plan_move", lambda *given, **settings: part)
+    with pytest.raises(KeyboardInterrupt):
+        energy_floor(tasks["arm"], starts=2)

@@ -1,0 +1,123 @@
+"""Fronts as data: columns, tables, and fronts of coefficients that were found elsewhere."""
+
+import csv
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ocp import CycloidPolynomial, Front, epsilon_front, resimulate
+
+ROWS = np.array([[0.0, 0.0], [0.003347, -0.1697], [0.02, 0.05], [-0.05, -0.2]])
+
+
+@pytest.fixture(scope="module")
+def task(tasks):
+    return tasks["single link"]
+
+
+@pytest.fixture(scope="module")
+def given(task):
+    return Front.from_coefficients(task, ROWS, method="a swarm", settings={"bound": 0.2}, seed=3)
+
+
+def by_cvodes(task, rows):
+    """(residual, energy) of every row by the independent integrator."""
+    motions = [resimulate(task, CycloidPolynomial(2), row) for row in rows]
+    return {tuple(row): (m.residual, m.energy) for row, m in zip(rows, motions, strict=True)}
+
+
+def test_coefficients_become_a_front_of_those_that_none_beats(task, given):
+    figures = by_cvodes(task, ROWS)
+    expected = [
+        (row, f)
+        for row, f in figures.items()
+        if not any(g[0] <= f[0] and g[1] <= f[1] and g != f for g in figures.values())
+    ]
+    expected.sort(key=lambda one: one[1])
+    assert 1 < len(expected) < len(ROWS)
+    found = [(p.coefficients, (p.residual, p.energy)) for p in given.points]
+    assert found == expected
+    assert (given.method, given.seed, given.evaluations) == ("a swarm", 3, 4)
+    assert (given.failed, given.infeasible, given.complete) == (0, 0, True)
+    assert given.settings == {"bound": 0.2}
+
+
+def test_the_order_of_the_rows_does_not_matter(task, given):
+    backwards = Front.from_coefficients(
+        task, ROWS[::-1], method="a swarm", settings={"bound": 0.2}, seed=3
+    )
+    assert backwards == given
+
+
+def test_a_front_of_the_gradient_comes_back_from_its_coefficients(task):
+    swept = epsilon_front(task, CycloidPolynomial(2), points=4, starts=1)
+    table = np.column_stack([swept.columns()[name] for name in ("a_1", "a_2")])
+    assert Front.from_coefficients(task, table, method="again").points == swept.points
+
+
+def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
+    figures = by_cvodes(task, ROWS)
+    torques = [resimulate(task, CycloidPolynomial(2), row).peak_torque for row in ROWS]
+    most = np.median(torques)
+    limited = replace(task, torque_limit=most)
+    rows = [*ROWS, [1e300, 1e300]]
+    front = Front.from_coefficients(limited, rows, method="mine")
+    assert (front.evaluations, front.infeasible, front.failed) == (5, 2, 1)
+    kept = {
+        tuple(row) for row, torque in zip(ROWS, torques, strict=True) if torque < np.median(torques)
+    }
+    assert {point.coefficients for point in front.points} <= kept
+    assert all((p.residual, p.energy) == figures[p.coefficients] for p in front.points)
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ([0.1, 0.2], r"shape \(2,\); give \(motions, coefficients\)"),
+        ([], "give .motions, coefficients., a motion a row"),
+        ([[0.1, "x"]], "give a row of numbers for each motion"),
+        ([[0.1], [0.1, 0.2]], "give a row of numbers for each motion"),
+        ([[0.1, math.nan]], "coefficient 2 is nan; give a finite number"),
+        ([[0.1, 0.5]], "point 1 of 1 has the coefficient 0.5, beyond the stated bound of 0.2"),
+    ],
+)
+def test_what_is_no_table_of_coefficients_is_refused(task, rows, words):
+    with pytest.raises(ValueError, match=words) as caught:
+        Front.from_coefficients(task, rows, method="mine", settings={"bound": 0.2})
+    assert "\n" not in str(caught.value)
+
+
+def test_rows_of_another_length_than_the_profile_are_refused(task):
+    with pytest.raises(ValueError, match="got 2 coefficients for a profile of 3"):
+        Front.from_coefficients(task, ROWS, method="mine", profile=CycloidPolynomial(3))
+
+
+def test_a_front_is_columns(given):
+    columns = given.columns()
+    assert list(columns) == ["residual_m", "energy_J", "a_1", "a_2"]
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    assert list(rows) == [(p.residual, p.energy, *p.coefficients) for p in given.points]
+
+
+def test_an_empty_front_is_empty_columns(given):
+    columns = replace(given, points=()).columns()
+    assert list(columns) == ["residual_m", "energy_J", "a_1", "a_2"]
+    assert all(column.shape == (0,) for column in columns.values())
+
+
+@pytest.mark.parametrize("points", [None, ()])
+def test_a_front_is_saved_as_a_table_with_every_digit(given, tmp_path, points):
+    front = given if points is None else replace(given, points=points)
+    front.save_csv(tmp_path / "f.csv")
+    with open(tmp_path / "f.csv", newline="") as file:
+        header, *rows = csv.reader(file)
+    assert header == list(front.columns())
+    found = [[float(cell) for cell in row] for row in rows]
+    assert found == [[p.residual, p.energy, *p.coefficients] for p in front.points]
+
+
+def test_a_table_that_cannot_be_written_is_told(given, tmp_path):
+    with pytest.raises(ValueError, match="does not exist; make it first"):
+        given.save_csv(tmp_path / "missing" / "f.csv")

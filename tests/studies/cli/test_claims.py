@@ -1,0 +1,189 @@
+"""Files are claims: what one states is held against the plant before it counts."""
+
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
+from models import SingleLinkManipulator
+from ocp import CycloidPolynomial, PointToPoint, epsilon_front
+from ocp.base import files
+
+MOVE = "single-link --target 30deg --duration 0.8"
+
+
+@pytest.fixture(scope="module")
+def found():
+    """A front of the plant, whose figures are its own."""
+    task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8, torque_limit=0.5)
+    return epsilon_front(task, CycloidPolynomial(2), bound=0.3, points=4, starts=1)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch, found):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "1000")
+    found.save("f.json")
+    return tmp_path
+
+
+READS = ["polish f.json --output out.json", "compare f.json f.json --no-floor --output out"]
+
+
+def doubled(document):
+    for point in document["points"]:
+        point["energy"] *= 2
+
+
+def one_doubled(document):
+    document["points"][1]["energy"] /= 1.01
+
+
+def enormous(document):
+    document["settings"]["bound"] = None
+    for point in document["points"]:
+        point["coefficients"] = [1e308, 1e308]
+
+
+def beyond_the_bound(document):
+    document["settings"]["bound"] = 0.01
+
+
+def beyond_a_limit(document):
+    document["task"]["torque_limit"] = 0.05
+
+
+def of_energies_beyond_reason(document):
+    for point in document["points"]:
+        point["energy"] *= 1e307
+
+
+CLAIMS = {
+    doubled: "point 1 of 4 states energy 0.",
+    one_doubled: "point 2 of 4 states energy 0.",
+    enormous: "its coefficients give no finite figure",
+    beyond_the_bound: "beyond the stated bound of 0.01",
+    beyond_a_limit: "breaks the torque limit of 0.05 N m",
+    of_energies_beyond_reason: "e+305 J, but its coefficients give 0.",
+}
+
+
+@pytest.mark.parametrize("line", READS)
+@pytest.mark.parametrize(("change", "words"), CLAIMS.items())
+def test_a_front_that_its_plant_does_not_bear_out_is_refused(call, folder, line, change, words):
+    document = json.loads(Path("f.json").read_text())
+    change(document)
+    Path("f.json").write_text(json.dumps(document))
+    code, out, err = call(line)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith("quietarm: f.json: ")
+    assert words in err
+    assert not list(folder.glob("out*"))
+
+
+@pytest.mark.parametrize("figure", [0, 1])
+def test_a_checkpoint_that_its_plant_does_not_bear_out_is_refused(call, figure):
+    search = f"front {MOVE} --method nsga2 --bound 0.2 --population 20 --generations"
+    assert call(f"{search} 2 --checkpoint c")[0] == 0
+    header, state = load_checkpoint("c")
+    for known in ("population", "optimum", "pop", "opt"):  # whichever of these there are
+        if known in state["algorithm"]:
+            F = state["algorithm"][known]["F"]
+            F[:, figure] = np.where(F[:, figure] < 1e29, F[:, figure] / 2, F[:, figure])
+    save_checkpoint("c", header, state)
+    code, out, err = call(f"{search} 2 --resume c")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert (
+        f"c is not a valid checkpoint: point 1 of 20 states {('residual', 'energy')[figure]}" in err
+    )
+
+
+@pytest.fixture
+def read_in_a_process(folder):
+    """Read a file as a process does that can be given up; its status and what it said."""
+
+    def read(line):
+        done = subprocess.run(
+            [sys.executable, "-m", "studies", *line.split()],
+            stdin=subprocess.PIPE, capture_output=True, text=True, timeout=240, check=False,
+        )  # fmt: skip
+        return done.returncode, done.stdout, done.stderr
+
+    return read
+
+
+@pytest.mark.parametrize("name", ["pipe", "/dev/zero", "/dev/stdin"])
+@pytest.mark.parametrize(
+    "line",
+    ["polish {}", "compare f.json {}", f"front {MOVE} --method nsga2 --bound 0.2 --resume {{}}"],
+)
+def test_a_pipe_or_a_device_is_refused_at_once(read_in_a_process, line, name):
+    os.mkfifo("pipe")
+    code, out, err = read_in_a_process(line.format(name))
+    assert (code, out) == (2, "")
+    assert err == f"quietarm: {name} is no ordinary file; save it as one and give its name\n"
+
+
+def test_a_file_larger_than_any_of_quietarm_is_refused(call, monkeypatch):
+    monkeypatch.setattr(files, "MOST_BYTES", 100)
+    code, out, err = call("polish f.json")
+    assert (code, out) == (2, "")
+    assert "f.json is larger than 0.0001 MB, as no file of quietarm is; give another" in err
+
+
+@pytest.mark.parametrize("line", READS)
+@pytest.mark.parametrize(
+    ("where", "value"),
+    [
+        (["method"], "\x1b[2Jnsga2"),
+        (["format"], "\x1b[2J"),
+        (["settings", "bound"], "\x9b2J"),
+        (["settings", "\x1b[2J"], 1),
+        (["versions", "numpy"], "1\r2"),
+        (["failures"], [{"asked": {"residual_limit": 0.1}, "reason": "\x07"}]),
+        (["task", "plant", "name"], "\x1b]0;x\x07"),
+    ],
+)
+def test_control_characters_of_a_file_do_not_reach_the_terminal(call, line, where, value):
+    document = json.loads(Path("f.json").read_text())
+    inner = document
+    for key in where[:-1]:
+        inner = inner[key]
+    inner[where[-1]] = value
+    Path("f.json").write_text(json.dumps(document))
+    code, out, err = call(line)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert err.rstrip("\n").isprintable()
+
+
+def test_control_characters_of_a_name_do_not_reach_the_terminal(call):
+    Path("f.json").rename("\x1b[31m.json")
+    code, out, err = call(["polish", "\x1b[31m.json", "--points", "2", "--output", "\x1b[2J.json"])
+    assert code == 0
+    assert out.splitlines()[-1] == r"wrote \x1b[2J.json"
+    code, out, err = call(["polish", "\x1b[32m.json"])
+    assert (code, err) == (
+        2,
+        "quietarm: \\x1b[32m.json cannot be read: no such file or directory\n",
+    )
+
+
+def test_verified_is_said_only_where_the_integrators_agree(call):
+    def row(coefficients):
+        code, out, _ = call(f"evaluate {MOVE} --coefficients={coefficients}")
+        assert code == 0
+        (line,) = re.findall("^.*verified.*$", out, re.MULTILINE)
+        return line.strip()
+
+    differ = r"by CVODES.* \d+ fixed steps differ by \de{}\d+ in energy and \S+ mm in residual"
+    assert re.fullmatch("verified +" + differ.format("-"), row("0.01,-0.1"))
+    far = differ.format(r"\+")
+    beyond = ", where 0.001 of each is agreement; give smaller coefficients"
+    assert re.fullmatch("not verified +the figures are " + far + beyond, row("100"))
