@@ -189,6 +189,13 @@ _OUTPUT_OPTIONS = (
     click.option("--figure", type=PICTURE,
                  help="Draw the move over the plain cycloid (.png, .pdf or .svg)."),
 )  # fmt: skip
+_WORKERS_OPTIONS = (
+    click.option("--workers", type=int, default=1, show_default=True,
+                 help="Processes of this machine that share the work; 1 stays in this one."),
+    click.option("--scheduler", metavar="ADDRESS",
+                 help="Let the workers of this dask scheduler share the work, as in "
+                 "tcp://host:8786."),
+)  # fmt: skip
 
 
 quiet_option = click.option("--quiet", is_flag=True, help="Show no progress.")
@@ -202,6 +209,11 @@ def task_options(command: F) -> F:
 def output_options(command: F) -> F:
     """Add the options for what to write."""
     return _with(_OUTPUT_OPTIONS, command)
+
+
+def workers_options(command: F) -> F:
+    """Add the options for where the work is done."""
+    return _with(_WORKERS_OPTIONS, command)
 
 
 def _with(options: tuple[Callable[[F], F], ...], command: F) -> F:

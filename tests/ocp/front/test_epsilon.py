@@ -1,10 +1,7 @@
 """The front by epsilon-constraint: its ends, its spacing, and that no point could be cheaper."""
 
 import math
-import multiprocessing
-import os
 import signal
-import sys
 import time
 
 import numpy as np
@@ -112,63 +109,6 @@ def test_its_iterations_are_all_iterations_of_the_solver(monkeypatch):
     assert front.iterations == sum(counted)
 
 
-def test_processes_find_the_same_front():
-    task, bound = CASES["arm"]
-    alone, shared = (
-        epsilon_front(task, CycloidPolynomial(3), bound=bound, points=6, workers=workers)
-        for workers in (1, 2)
-    )
-    np.testing.assert_allclose(shared.energies, alone.energies, rtol=1e-5)
-    np.testing.assert_allclose(shared.residuals, alone.residuals, rtol=1e-5, atol=STILL)
-
-
-def test_ctrl_c_ends_processes_soon_and_keeps_what_they_found():
-    task, bound = CASES["arm"]
-    sent = []
-
-    def interrupt(done, total):
-        if done >= 8 and not sent:
-            sent.append(done)
-            signal.raise_signal(signal.SIGINT)
-
-    front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=5000, workers=2, report=interrupt
-    )
-    assert len(front.points) < 2500  # of 5000: it did not go on to the end
-    assert multiprocessing.active_children() == []
-    assert not front.complete
-    assert len(front.points) > 2  # more than the ends
-    for point in front.points[1:-1:5]:
-        motion = resimulate(task, front.profile, point.coefficients)
-        assert (point.residual, point.energy) == (motion.residual, motion.energy)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
-def test_a_process_that_dies_costs_its_own_stretch_only():
-    task, bound = CASES["arm"]
-    killed = []
-
-    def report(done, total):
-        children = multiprocessing.active_children()
-        if children and not killed:
-            child = min(children, key=lambda one: int(one.name.rpartition("-")[2]))
-            killed.append(child.pid)
-            os.kill(child.pid, signal.SIGKILL)
-
-    front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=400, workers=2, report=report
-    )
-    assert len(killed) == 1
-    assert len(front.failures) == 199  # of 398 between the ends
-    for failure in front.failures:
-        # the first stretch begins at the cheap end
-        assert failure.asked["residual_limit"] > front.points[-2].residual
-        assert failure.reason == (
-            "its process died (killed by SIGKILL); where memory ran short, give fewer workers"
-        )
-    assert len(front.points) == 201
-
-
 def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
     task, bound = CASES["arm"]
 
@@ -240,7 +180,6 @@ def test_an_impossible_task_is_refused():
     ("arguments", "text"),
     [
         ({"points": 1}, "points is 1; give a whole number from 2 up"),
-        ({"workers": 0}, "workers is 0; give a whole number from 1 up"),
         ({"bound": -1.0}, "bound on the coefficients is -1"),
         ({"profile": CycloidPolynomial(0)}, "0 terms has nothing to choose"),
     ],
@@ -325,17 +264,15 @@ def test_settings_of_a_sweep_reach_its_solves():
 
 
 @pytest.mark.parametrize("points", [2, 6])
-@pytest.mark.parametrize("workers", [1, 2])
-def test_there_is_a_point_at_every_residual_that_is_asked_for(points, workers):
+def test_there_is_a_point_at_every_residual_that_is_asked_for(points):
     task, bound = CASES["arm"]
     at, told = (1e-4, 1e-3, 5e-3, 1.0), []  # at 1 m there is no front
     front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=points, at=at, workers=workers,
+        task, CycloidPolynomial(3), bound=bound, points=points, at=at,
         report=lambda done, total: told.append((done, total)),
     )  # fmt: skip
     assert len(front.points) == points + 3
-    if workers == 1:  # else the last words of a process may come too late
-        assert told[-1] == (points + 3, points + 3)
+    assert told[-1] == (points + 3, points + 3)
     assert {total for _, total in told} == {points + 3}
     for residual in at[:3]:
         assert residual * (1 - 3e-4) < front.cheapest(residual).residual <= residual
