@@ -20,6 +20,7 @@ from studies.cli.quantities import (
     parse_coefficients,
     parse_length,
     parse_rate,
+    parse_share,
     parse_time,
     parse_weights,
 )
@@ -117,6 +118,7 @@ SETTING = Parsed("parameter=value", parse_setting)
 ANGLE = _Angle("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
+SHARE = Parsed("share", parse_share)
 COEFFICIENTS = Parsed("numbers", parse_coefficients)
 WEIGHTS = Parsed("weights", parse_weights)
 INPUT = Parsed("file", _is_input)
