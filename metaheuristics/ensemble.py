@@ -1,8 +1,8 @@
-"""The same search from many seeds, in processes, and the spread of what it finds."""
+"""The same search from many seeds, and the spread of what it finds."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
@@ -12,15 +12,25 @@ import numpy as np
 from metaheuristics.algorithms.presets import PRESETS
 from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.search import search
+from metaheuristics.sharing.pieces import (
+    INTERRUPTED,
+    Done,
+    InterruptedPiece,
+    Listener,
+    LostPieceError,
+    Piece,
+    Say,
+)
+from metaheuristics.sharing.running import run_pieces
+from metaheuristics.sharing.workers import Workers
 from ocp import Front, PointToPoint, QuietarmError
 from ocp.base.checks import whole
-from ocp.base.workers import Say, Workers, number_of_workers, remedy
 
 SEARCH_RESIDUAL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
 MOST_RUNS = 10_000
 
-_KILLED_REMEDY = "where memory ran short, give fewer workers or a smaller population"
+_REMEDY = "where memory ran short, give fewer workers or a smaller population"
 
 
 class Report(Protocol):
@@ -32,21 +42,25 @@ class Report(Protocol):
 
 
 class LostSeedsError(QuietarmError):
-    """Processes died while they searched.
+    """Workers died while they searched, or the scheduler that was to share the seeds is gone.
 
     Attributes
     ----------
     fronts : list of Front
-        What the other seeds found.
+        What the seeds found that are done, and the others so far.
     """
 
-    def __init__(self, lost: Mapping[int, str], fronts: list[Front], runs: int) -> None:
+    def __init__(self, shared: Done, fronts: list[Front], runs: int) -> None:
         self.fronts = fronts
-        seeds = ", ".join(f"seed {seed} ({how})" for seed, how in sorted(lost.items()))
-        super().__init__(
-            f"the process of {seeds} died; {len(fronts)} of {runs} seeds are done; "
-            + remedy(lost.values(), _KILLED_REMEDY)
-        )
+        lost = ", ".join(f"seed {seed} ({why})" for seed, why in sorted(shared.failures.items()))
+        words = [
+            shared.stopped,
+            f"lost {lost}" if lost else "",
+            f"{len(shared.answers)} of {runs} seeds are done",
+            f"{len(shared.parts)} in part" if shared.parts else "",
+            _REMEDY if lost else "",
+        ]
+        super().__init__("; ".join(filter(None, words)))
 
 
 @dataclass(frozen=True)
@@ -110,6 +124,7 @@ def search_many(
     runs: int,
     *,
     workers: int = 1,
+    scheduler: str | None = None,
     seed: int = 0,
     report: Report = lambda progress, seed: None,
     done: Callable[[Front], None] = lambda front: None,
@@ -126,7 +141,10 @@ def search_many(
     runs : int
         Number of seeds, from `seed` on.
     workers : int
-        Processes; 1 runs in this one.
+        Processes of this machine that share the seeds, by dask; 1 runs in this one.
+    scheduler : str, optional
+        Address of a dask scheduler whose workers share the seeds instead, as
+        ``tcp://host:8786``.
     seed : int
         First seed.
     report : callable, optional
@@ -145,60 +163,89 @@ def search_many(
     Raises
     ------
     ValueError
-        When `runs` or `workers` is below 1, a setting is out of range, or several runs are to
-        share a checkpoint or an algorithm of your own.
+        When `runs` or `workers` is below 1, a setting is out of range, several runs are to share a
+        checkpoint or an algorithm of your own, dask is not installed or no scheduler answers.
     LostSeedsError
-        When a process died, as where memory runs out; it holds the fronts of the other seeds.
+        When a seed cost its worker time and again, as where memory runs out, or the scheduler is
+        gone; it holds the fronts of the other seeds.
+    KeyboardInterrupt
+        When it was interrupted before anything was found.
     """
-    seeds, workers = seeds_of(seed, runs), number_of_workers(workers)
+    seeds, where = seeds_of(seed, runs), Workers(workers, scheduler)
     if not isinstance(method, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ValueError(
             f"method is {type(method).__name__}; give {' or '.join(map(repr, PRESETS))}, or call "
             "`search` once a seed with an algorithm of your own"
         )
-    if runs > 1 and (settings.get("checkpoint") or settings.get("resume")):
+    _refuse_checkpoints(settings, runs, where)
+    pieces = [
+        Piece(one, f"seed {one}", partial(one_seed, task, method, settings, one)) for one in seeds
+    ]
+    listener = Listener(
+        report=lambda seed, progress: report(progress, seed),
+        ended=lambda seed, front: done(front),
+    )
+    shared = run_pieces(pieces, listener, workers=where, note=LostPieceError)
+    found = {**shared.parts, **shared.answers}
+    fronts: list[Front] = [found[one] for one in seeds if one in found]
+    if shared.failures or shared.stopped not in ("", INTERRUPTED):
+        raise LostSeedsError(shared, fronts, runs)
+    if not fronts:
+        raise KeyboardInterrupt
+    return fronts
+
+
+def _refuse_checkpoints(settings: Mapping[str, Any], runs: int, where: Workers) -> None:
+    if not (settings.get("checkpoint") or settings.get("resume")):
+        return
+    if runs > 1:
         raise ValueError(
             f"a checkpoint holds one search, and there are {runs} runs; leave checkpoint and "
             "resume out, or give 1 run"
         )
-    if min(workers, runs) == 1:
-        return _one_after_another(task, method, seeds, report, done, settings)
-    pool = Workers(
-        partial(_search, task, method, settings),
-        {one: one for one in seeds},
-        report=lambda seed, progress: report(progress, seed),
-        done=lambda _, front: done(front) if front.complete else None,
-    )
-    pool.run(min(workers, runs))
-    fronts = [pool.answers[one] for one in seeds if one in pool.answers]
-    if pool.lost:
-        raise LostSeedsError(pool.lost, fronts, runs)
-    return fronts
+    if where.scheduler is not None:
+        raise ValueError(
+            "a checkpoint is a file of this machine; leave checkpoint and resume out, or the "
+            "scheduler"
+        )
 
 
-def _search(
-    task: PointToPoint, method: str, settings: Mapping[str, Any], seed: int, say: Say
-) -> Front:
-    return search(task, method, seed=seed, report=say, **settings)
-
-
-def _one_after_another(
+def one_seed(
     task: PointToPoint,
     method: str,
-    seeds: Iterable[int],
-    report: Report,
-    done: Callable[[Front], None],
     settings: Mapping[str, Any],
-) -> list[Front]:
-    fronts: list[Front] = []
-    try:
-        for seed in seeds:
-            tell = partial(report, seed=seed)
-            fronts.append(search(task, method, seed=seed, report=tell, **settings))
-            if not fronts[-1].complete:
-                break
-            done(fronts[-1])
-    except KeyboardInterrupt:
-        if not fronts:
-            raise
-    return fronts
+    seed: int,
+    known: Done,
+    say: Say,
+) -> Front:
+    """A search as a piece of work.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    method : str
+        ``"nsga2"`` or ``"vepso"``.
+    settings : mapping
+        As for `search`.
+    seed : int
+        Its seed.
+    known : Done
+        What became of the pieces before it, which it does not need.
+    say : Say
+        Told of every generation, and of the front so far.
+
+    Returns
+    -------
+    Front
+        What it found.
+
+    Raises
+    ------
+    InterruptedPiece
+        When it was interrupted, with the front so far.
+    """
+    front = search(task, method, seed=seed, report=say.report, found=say.found, **settings)
+    if not front.complete:
+        raise InterruptedPiece(front)
+    return front

@@ -36,6 +36,7 @@ def search(
     checkpoint: str | Path | None = None,
     resume: str | Path | None = None,
     report: Report = lambda progress: None,
+    found: Callable[[Front], None] | None = None,
     warn: Callable[[str], None] = _warn,
 ) -> Front:
     """Search the trade-off between residual and energy without derivatives.
@@ -64,6 +65,9 @@ def search(
         Checkpoint to go on from, of the same search and the same versions.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
+    found : callable, optional
+        Called with the front so far after the first generation and every second or so, for whom the
+        search itself may be lost; its ``complete`` is false.
     warn : callable, optional
         Called with a message when the last checkpoint could not be written, which does not stop
         the search; by default it becomes a RuntimeWarning.
@@ -84,7 +88,7 @@ def search(
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
     from metaheuristics.algorithms.provenance import settings_of
     from metaheuristics.algorithms.states import Resumable
-    from metaheuristics.runs.front import front_of
+    from metaheuristics.runs.front import HandingOver, front_of
     from metaheuristics.runs.keeping import Keeper, resume_from
     from metaheuristics.runs.loop import Loop
 
@@ -102,8 +106,11 @@ def search(
         resume_from(resume, loop)
     # From here on Ctrl-C ends the search after the current generation and does nothing else: the
     # checkpoint holds whole generations, and the front is worked out to the end.
+    reports = [report, *([keeper.after_generation] if keeper else [])]
+    if found is not None:  # before the report, so that what is heard of can be kept
+        reports.insert(0, HandingOver(loop, found).after_generation)
     with note_interrupts() as interrupts:
-        loop.run(interrupts, report, *([keeper.after_generation] if keeper else []))
+        loop.run(interrupts, *reports)
         trouble = keeper.write() if keeper and loop.history else ""
         front = front_of(loop)
     if trouble:

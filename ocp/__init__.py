@@ -1,8 +1,8 @@
 """What is asked, and the gradient answer.
 
 The rooms, each of which may import those before it: `base`, `task`, `profiles`, `simulation`,
-`program` and `answers`, `plan`, `front` and `floor`. All of them may import `models`; what a user
-needs is here.
+`robustness`, `program` and `answers`, `plan`, `front` and `floor`. All of them may import
+`models`; what a user needs is here.
 """
 
 # ruff: noqa: E402  # the check must come before anything that imports models
@@ -29,6 +29,9 @@ from ocp.profiles.network import CycloidNetwork
 from ocp.profiles.polynomial import MAX_TERMS, CycloidPolynomial
 from ocp.profiles.shaped_cycloid import ShapedCycloid
 from ocp.profiles.spline import CycloidSpline
+from ocp.robustness.measures import Robustness, Sweep, evaluate_robustness
+from ocp.robustness.plants import with_errors
+from ocp.robustness.population import Figures
 from ocp.simulation.cvodes import Trajectory
 from ocp.simulation.objective import Motion
 from ocp.simulation.residual import residual_matrix
@@ -43,6 +46,7 @@ __all__ = [
     "CycloidPolynomial",
     "CycloidSpline",
     "FailedPoint",
+    "Figures",
     "FileFormatError",
     "Floor",
     "FloorSettings",
@@ -58,16 +62,19 @@ __all__ = [
     "PointToPoint",
     "Polish",
     "QuietarmError",
+    "Robustness",
     "Rollout",
     "ShapedCycloid",
     "SolveSettings",
     "SolveStatus",
     "SolverFailedError",
+    "Sweep",
     "Trajectory",
     "Verification",
     "energy_floor",
     "epsilon_front",
     "evaluate_coefficients",
+    "evaluate_robustness",
     "non_dominated",
     "plan_move",
     "polish_front",
@@ -79,4 +86,5 @@ __all__ = [
     "shaped_cycloid",
     "symbolic_rollout",
     "weighted_front",
+    "with_errors",
 ]

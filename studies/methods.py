@@ -44,8 +44,6 @@ class Method:
     sweep : callable
         For the gradient: finds the front of a task, a profile and settings. A metaheuristic is
         known to `metaheuristics.search` by its name.
-    parallel : bool
-        Whether processes can share its work.
     """
 
     name: str
@@ -53,7 +51,6 @@ class Method:
     kind: Kind
     polished: bool = False
     sweep: Callable[..., Front] = field(default=_no_sweep, compare=False)
-    parallel: bool = True
 
     def then_polished(self) -> Method:
         """The same method with its front polished."""
@@ -65,7 +62,7 @@ class Method:
 EPSILON = Method(
     "epsilon", "epsilon constraint", Kind.GRADIENT, sweep=partial(epsilon_front, at=LEVELS)
 )
-WEIGHTED = Method("weighted", "weighted sum", Kind.GRADIENT, sweep=weighted_front, parallel=False)
+WEIGHTED = Method("weighted", "weighted sum", Kind.GRADIENT, sweep=weighted_front)
 NSGA2 = Method("nsga2", "NSGA-II", Kind.METAHEURISTIC)
 VEPSO = Method("vepso", "VEPSO", Kind.METAHEURISTIC)
 

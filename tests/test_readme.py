@@ -150,6 +150,14 @@ def test_the_example_of_a_front_finds_and_saves_it(tmp_path):
     assert len(front.points) == 20
 
 
+def test_the_example_of_robustness_says_what_a_wrong_plant_leaves(tmp_path):
+    printed = run_python(PYTHON[3], tmp_path)
+    low, high, residual = map(float, re.sub(r"[(),]", "", printed).split())
+    assert -0.1 < low < 0 < high < 0.1  # docs/physics.md, 'Robustness': a few per cent
+    # 'The published optima are not optimal': the frequency 10 % wrong leaves some 20 mm.
+    assert 10e-3 < residual < 200e-3
+
+
 def test_the_example_of_a_picture_draws_it(tmp_path):
     more = """
 assert [ax.get_title(loc="left") for ax in (left, middle)] == [
@@ -157,7 +165,7 @@ assert [ax.get_title(loc="left") for ax in (left, middle)] == [
 ]
 assert all(ax.figure is figure and ax.get_lines() for ax in (left, middle, right))
 """
-    assert run_python(PYTHON[3] + more, tmp_path) == ""
+    assert run_python(PYTHON[4] + more, tmp_path) == ""
     assert (tmp_path / "mine.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -176,7 +184,7 @@ def test_the_functions_that_draw_are_public_and_documented():
 
 
 def test_the_plant_of_your_own_is_one_file_that_everything_works_with(tmp_path):
-    crane = PYTHON[4]
+    crane = PYTHON[5]
     use = """
 from ocp import PointToPoint, plan_move
 
@@ -189,7 +197,7 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
 
 
 def test_no_example_is_left_untested():
-    assert len(PYTHON) == 5
+    assert len(PYTHON) == 6
     languages = re.findall(r"^```(\w+)$", README, re.MULTILINE)
     assert set(languages) == {"console", "python"}
 
@@ -208,7 +216,7 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
     method = words[words.index("--method") + 1] if "--method" in words else words[0]
-    quiet = ["--quiet"] if words[0] in {"front", "polish", "study"} else []
+    quiet = ["--quiet"] if words[0] in {"front", "polish", "robustness", "study"} else []
     return [*words, *quiet, *(SHORTER.get(method, []) if words[0] != "plan" else [])]
 
 
@@ -220,7 +228,7 @@ def test_the_commands_run_one_after_another(tmp_path, lines):
         assert command == ".venv/bin/quietarm"
         if "--plant-file" in words:  # the README says that its plant's lines are in it
             asked.add(words[words.index("--plant-file") + 1])
-            (tmp_path / "crane.py").write_text(PYTHON[4])
+            (tmp_path / "crane.py").write_text(PYTHON[5])
         ran = subprocess.run(
             [BIN / "quietarm", *shortened(words)],
             cwd=tmp_path,

@@ -1,20 +1,54 @@
-"""The front of a search."""
+"""The front of a search, at its end and on the way."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
+import time
+from collections.abc import Callable
+from dataclasses import asdict, replace
 
 import numpy as np
 
 from metaheuristics.algorithms.provenance import flat
 from metaheuristics.objective.population import PopulationObjective
 from metaheuristics.runs.loop import Loop
+from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.runs.settings import search_versions
 from ocp import Front, FrontPoint, non_dominated
 from ocp.simulation.rollout import default_steps
 
 WITHIN = 1e-6
 """Share by which a peak of the finer rollout may exceed its limit: the search kept it exactly."""
+
+
+_HAND_OVER_PAUSE = (1.0, 5.0)
+_HAND_OVER_SHARE = 0.05
+"""Shortest and longest time [s] between fronts that are handed over, and the share of it that they
+take between these."""
+
+
+class HandingOver:
+    """Hands over the front so far: after the first generation, and every second or so.
+
+    Parameters
+    ----------
+    loop : Loop
+        The search.
+    found : callable
+        Called with the front, which is not complete.
+    """
+
+    def __init__(self, loop: Loop, found: Callable[[Front], None]) -> None:
+        self._loop, self._found, self._due = loop, found, 0.0
+
+    def after_generation(self, progress: SearchProgress) -> None:
+        """Hand over the front if the last one is old enough."""
+        began = time.perf_counter()
+        if began >= self._due:
+            self._found(replace(front_of(self._loop), complete=False))
+            ended = time.perf_counter()
+            shortest, longest = _HAND_OVER_PAUSE
+            pause = (ended - began) / _HAND_OVER_SHARE  # the first takes long: casadi builds
+            self._due = ended + min(max(pause, shortest), longest)
 
 
 def front_of(loop: Loop) -> Front:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -77,7 +77,6 @@ def all_checked(
     found: Sequence[tuple[Solution, Mapping[str, float]]],
     *,
     interrupted: bool = False,
-    heed: Callable[[], None] = lambda: None,
 ) -> tuple[list[FrontPoint | FailedPoint], bool]:
     """Check many solutions; after Ctrl-C as many as there is time for, spread evenly.
 
@@ -89,8 +88,6 @@ def all_checked(
         As for `checked`.
     interrupted : bool
         Whether Ctrl-C came before.
-    heed : callable, optional
-        Called before each; raises KeyboardInterrupt once it is to stop.
 
     Returns
     -------
@@ -103,10 +100,6 @@ def all_checked(
     with note_interrupts() as came:
         evenly = sorted(range(len(found)), key=lambda i: f"{i:032b}"[::-1])  # ever finer
         for i in evenly:
-            try:
-                heed()
-            except KeyboardInterrupt:
-                interrupted = True
             if interrupted or came:
                 until = min(until, time.monotonic() + _TIME_AFTER_CTRL_C)
             if time.monotonic() > until:

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from functools import partial
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ocp.answers.provenance import SolveSettings, number_of_points
 from ocp.base.checks import positive
-from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
 from ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
@@ -38,8 +35,6 @@ they do not; a better motion is carried on to the points between."""
 
 _Points = tuple[list[FrontPoint | FailedPoint], bool]
 """The points, and whether all were done."""
-_Piece = tuple[list[float], NDArray[np.float64], NDArray[np.float64]]
-"""One process's part of the front: its limits, and coefficients from the points above and below."""
 
 
 def epsilon_front(
@@ -52,7 +47,6 @@ def epsilon_front(
     starts: int = 4,
     seed: int = 0,
     steps: int | None = None,
-    workers: int = 1,
     report: Report = no_report,
 ) -> Front:
     """Find the front of residual and energy by the gradient, least energy at each residual limit.
@@ -80,8 +74,6 @@ def epsilon_front(
         Seed of the random starts.
     steps : int, optional
         Steps of the solver's discretisation, as for `plan_move`.
-    workers : int
-        Processes that share the sweep; 1 stays in this one.
     report : callable, optional
         Called with the number of points done and of all.
 
@@ -89,8 +81,7 @@ def epsilon_front(
     -------
     Front
         Method ``"epsilon"``; figures by the independent integrator. Points that could not be found
-        are in its `failures`, those of a process that died among them. After Ctrl-C what was found
-        until then, with ``complete`` false.
+        are in its `failures`. After Ctrl-C what was found until then, with ``complete`` false.
 
     Raises
     ------
@@ -102,7 +93,7 @@ def epsilon_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points, workers = number_of_points(points), number_of_workers(workers)
+    points = number_of_points(points)
     at = [positive("residual", residual, "m") for residual in at]
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = find_ends(sweep)
@@ -110,51 +101,28 @@ def epsilon_front(
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
     found.append(checked(sweep, ends.cheapest, asked, free=True))
     also = _between(ends, at)
-    report(2, points + len(also))
-    heard = _Heard(report, points + len(also))
-    iterations, complete = 0, True
+    total = points + len(also)
+    report(2, total)
     try:
-        limits, scouts = _spaced_limits(sweep, ends, points)
-        limits = sorted([*limits, *also], reverse=True)
-        if workers == 1:
-            stretch = _Stretch(sweep, limits, partial(heard, 0))
-            stretch_points, complete = stretch.run(ends.cheapest, ends.still.coefficients)
-            found += stretch_points
-        else:
-            shared, iterations, complete = _in_processes(
-                sweep, ends, limits, scouts, workers, heard
-            )
-            found += shared
+        limits = sorted([*_spaced_limits(sweep, ends, points), *also], reverse=True)
+        stretch = _Stretch(sweep, limits, total, report)
+        between, complete = stretch.run(ends.cheapest, ends.still.coefficients)
+        found += between
     except KeyboardInterrupt:
         complete = False
-    front = front_of(sweep, "epsilon", found, points, iterations=iterations, complete=complete)
+    front = front_of(sweep, "epsilon", found, points, complete=complete)
     extra = {"at": ", ".join(f"{residual:g}" for residual in at)} if at else {}
     return replace(front, settings={**front.settings, **extra})
 
 
-class _Heard:
-    """Adds up how many points the stretches have done, and reports when the sum changes."""
-
-    def __init__(self, report: Report, points: int) -> None:
-        self.report, self.points, self.last = report, points, 2
-        self.done: dict[int, int] = {}
-
-    def __call__(self, stretch: int, done: int) -> None:
-        self.done[stretch] = done
-        now = 2 + sum(self.done.values())  # the ends are found
-        if now != self.last:
-            self.last = now
-            self.report(now, self.points)
-
-
-def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], list[Solution]]:
+def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> list[float]:
     """Residual limits, falling, at which the points between the ends lie at even distances.
 
     Scouts go along the front from its cheap end in steps of about equal length, both objectives
     scaled to the ends, by the slope that the solver's multiplier gives.
     """
     if ends.are_one or points == 2:
-        return [], [ends.cheapest]
+        return []
     stillest, width, height = ends.still.residual, ends.width, ends.height
     scouts, limit = [ends.cheapest], ends.cheapest.residual
     stride = 2 * width / min(_SCOUTS, points)  # the scaled front is between sqrt(2) and 2 long
@@ -170,7 +138,7 @@ def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> tuple[list[float], 
     along = np.hypot(np.diff(residuals) / width, np.diff(energies) / height).cumsum()
     along = np.concatenate([[0.0], along])
     spaced = np.interp(np.linspace(0.0, along[-1], points)[1:-1], along, residuals)
-    return spaced.tolist(), scouts
+    return spaced.tolist()
 
 
 def _between(ends: Ends, at: Sequence[float]) -> list[float]:
@@ -187,17 +155,14 @@ def _differ(one: Solution, other: Solution) -> bool:
 
 
 class _Stretch:
-    """A stretch of the front: its limits, falling, and the best solution at each.
-
-    The report is called with the number done after every solve; it may raise KeyboardInterrupt to
-    end the sweep.
-    """
+    """The front between its ends: the limits, falling, and the best solution at each."""
 
     def __init__(
-        self, sweep: Sweep, limits: Sequence[float], report: Callable[[int], None]
+        self, sweep: Sweep, limits: Sequence[float], points: int, report: Report = no_report
     ) -> None:
-        self.sweep, self.limits, self.report = sweep, list(limits), report
+        self.sweep, self.limits = sweep, list(limits)
         self.best: list[Solution | None] = [None] * len(self.limits)
+        self.points, self.report = points, report
         self.done = 0
 
     def run(self, above: Guess, below: Guess) -> _Points:
@@ -222,8 +187,13 @@ class _Stretch:
             if self.sweep.iterations < most:
                 self._try(i, guess)
         self._carry_on(doubtful, most)
-        self.done = len(self.limits)
-        self.report(self.done)
+        self._tell(len(self.limits))
+
+    def _tell(self, done: int) -> None:
+        """Report how many limits are done, where that changes."""
+        if done != self.done:
+            self.done = done
+            self.report(2 + done, self.points)  # the ends are found
 
     def _back(self, below: Guess) -> set[int]:
         """Sweep back from the still end; the points at which it ended elsewhere.
@@ -252,8 +222,8 @@ class _Stretch:
         found = self.sweep.solve(guess, self.limits[i])
         if best is None or better(found, best):
             self.best[i] = found
-        self.done = self.done if done is None else done
-        self.report(self.done)
+        if done is not None:
+            self._tell(done)
         return found
 
     def _carry_on(self, changed: Iterable[int], most: int) -> None:
@@ -279,52 +249,5 @@ class _Stretch:
             FailedPoint(asked, best.status.text) for best, asked in tried if not best.status.solved
         ]
         solved = [(best, asked) for best, asked in tried if best.status.solved]
-        points, whole = all_checked(
-            self.sweep, solved, interrupted=interrupted, heed=lambda: self.report(self.done)
-        )
+        points, whole = all_checked(self.sweep, solved, interrupted=interrupted)
         return [*points, *failed], whole
-
-
-def _in_processes(
-    sweep: Sweep,
-    ends: Ends,
-    limits: list[float],
-    scouts: list[Solution],
-    workers: int,
-    heard: Callable[[int, int], None],
-) -> tuple[list[FrontPoint | FailedPoint], int, bool]:
-    """Share the limits among processes, each of which starts from the known point next to its own.
-
-    Returns what was found, the iterations, and whether all was done.
-    """
-    known = [*scouts, ends.still]
-    residuals = np.array([one.residual for one in known])  # falling
-    settings = replace(sweep.settings, steps=sweep.steps)
-    stretches = dict[int, _Piece]()
-    for i, chunk in enumerate(np.array_split(limits, workers)):
-        if len(chunk):
-            above = known[int(np.flatnonzero(residuals >= chunk[0])[-1])]
-            below = known[int(np.flatnonzero(residuals <= chunk[-1])[0])]
-            stretches[i] = (chunk.tolist(), above.coefficients, below.coefficients)
-    work = partial(_one_stretch, sweep.task, sweep.profile, settings)
-    pool = Workers(work, stretches, heard)
-    pool.run(workers)
-    found: list[FrontPoint | FailedPoint] = []
-    iterations, complete = 0, not pool.interrupted
-    for i in sorted(pool.answers):
-        (points, whole_stretch), more = pool.answers[i]
-        found += points
-        iterations += more
-        complete = complete and whole_stretch
-    for i, how in sorted(pool.lost.items()):
-        reason = death_of_process(how)
-        found += [FailedPoint({RESIDUAL_LIMIT: limit}, reason) for limit in stretches[i][0]]
-    return found, iterations, complete
-
-
-def _one_stretch(
-    task: PointToPoint, profile: JointProfile, settings: SolveSettings, piece: _Piece, say: Say
-) -> tuple[_Points, int]:
-    limits, above, below = piece
-    sweep = Sweep(task, profile, settings)
-    return _Stretch(sweep, limits, say).run(above, below), sweep.iterations

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings
 from ocp.base.checks import finite
-from ocp.base.workers import Say, Workers, death_of_process, number_of_workers
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
 from ocp.front.checking import RESIDUAL_LIMIT, checked
 from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import Report, Sweep, no_report
-from ocp.profiles.joint_profile import JointProfile
-from ocp.task.point_to_point import PointToPoint
 
 
 @dataclass(frozen=True)
@@ -63,10 +59,13 @@ class Polish:
     front: Front
     gains: tuple[Gain, ...]
 
+    @property
+    def complete(self) -> bool:
+        """Whether no Ctrl-C ended the work early."""
+        return self.front.complete
 
-def polish_front(
-    front: Front, *, steps: int | None = None, workers: int = 1, report: Report = no_report
-) -> Polish:
+
+def polish_front(front: Front, *, steps: int | None = None, report: Report = no_report) -> Polish:
     """Start the gradient from every point of a front, with the point's residual as the limit.
 
     Parameters
@@ -75,8 +74,6 @@ def polish_front(
         A front of any method; the bound among its settings is kept.
     steps : int, optional
         Steps of the solver's discretisation, as for `plan_move`.
-    workers : int
-        Processes that share the points; 1 stays in this one. What is found is the same.
     report : callable, optional
         Called with the number of points done and of all.
 
@@ -84,16 +81,14 @@ def polish_front(
     -------
     Polish
         The improved front, whose method is that of the front and ", polished". After Ctrl-C its
-        points not yet done are as given, and it is not complete; those of a process that died are
-        as given, too, and in its failures.
+        points not yet done are as given, and it is not complete.
 
     Raises
     ------
     ValueError
-        When the front has no point, or `workers` is below 1.
+        When the front has no point.
     """
     front.stillest()  # refuses an empty front
-    workers = min(number_of_workers(workers), len(front.points))
     bound = front.settings.get("bound")
     settings = SolveSettings(
         bound=None if bound is None else finite("bound", bound),
@@ -102,24 +97,11 @@ def polish_front(
         steps=steps,
     )
     sweep = Sweep(front.task, front.profile, settings)
-    pieces = {i: front.points[i::workers] for i in range(workers)}
-    done = dict.fromkeys(pieces, 0)
-
-    def heard(piece: int, now: int) -> None:
-        done[piece] = now
-        report(sum(done.values()), len(front.points))
-
-    if workers == 1:
-        answers = {0: _polished(sweep, pieces[0], partial(heard, 0))}
-    else:
-        answers = _in_processes(sweep, pieces, heard)
-    tried = {i + k * workers: one for i, piece in answers.items() for k, one in enumerate(piece)}
-    untried = {
-        i: _Tried([point], _no_gain(point, tried=False))
-        for i, point in enumerate(front.points)
-        if i not in tried
-    }
-    return _together(front, sweep, tried | untried, complete=front.complete and not untried)
+    tried = _polished(sweep, front.points, report)
+    untried = [
+        _Tried([point], _no_gain(point, tried=False)) for point in front.points[len(tried) :]
+    ]
+    return _together(front, sweep, tried + untried, complete=front.complete and not untried)
 
 
 class _Tried(NamedTuple):
@@ -129,42 +111,13 @@ class _Tried(NamedTuple):
     gain: Gain
 
 
-_Pieces = Mapping[int, Sequence[FrontPoint]]
-
-
-def _in_processes(
-    sweep: Sweep, pieces: _Pieces, heard: Callable[[int, int], None]
-) -> dict[int, list[_Tried]]:
-    pool = Workers(partial(_one_piece, sweep.task, sweep.profile, sweep.settings), pieces, heard)
-    pool.run(len(pieces))
-    sweep.iterations += sum(iterations for _, iterations in pool.answers.values())
-    lost = {
-        i: [_failed(point, death_of_process(how)) for point in pieces[i]]
-        for i, how in pool.lost.items()
-    }
-    return {i: tried for i, (tried, _) in pool.answers.items()} | lost
-
-
-def _one_piece(
-    task: PointToPoint,
-    profile: JointProfile,
-    settings: SolveSettings,
-    points: Sequence[FrontPoint],
-    say: Say,
-) -> tuple[list[_Tried], int]:
-    sweep = Sweep(task, profile, settings)
-    return _polished(sweep, points, say), sweep.iterations
-
-
-def _polished(
-    sweep: Sweep, points: Sequence[FrontPoint], report: Callable[[int], None]
-) -> list[_Tried]:
+def _polished(sweep: Sweep, points: Sequence[FrontPoint], report: Report) -> list[_Tried]:
     """The points one after another; after Ctrl-C those that were done."""
     tried: list[_Tried] = []
     with suppress(KeyboardInterrupt):
         for point in points:
             tried.append(_one_polished(sweep, point))
-            report(len(tried))
+            report(len(tried), len(points))
     return tried
 
 
@@ -189,13 +142,12 @@ def _no_gain(point: FrontPoint, tried: bool = True) -> Gain:
     return Gain(point.residual, point.energy, point.energy, tried)
 
 
-def _together(front: Front, sweep: Sweep, tried: Mapping[int, _Tried], complete: bool) -> Polish:
+def _together(front: Front, sweep: Sweep, tried: Sequence[_Tried], complete: bool) -> Polish:
     """The improved front; points keep their order along the given one."""
-    in_order = [tried[i] for i in range(len(front.points))]
     polished = front_of(
         sweep,
         f"{front.method}, polished",
-        [found for one in in_order for found in one.found],
+        [found for one in tried for found in one.found],
         len(front.points),
         iterations=front.iterations, complete=complete, seconds=front.seconds,
     )  # fmt: skip
@@ -207,4 +159,4 @@ def _together(front: Front, sweep: Sweep, tried: Mapping[int, _Tried], complete:
         evaluations=front.evaluations,
         history=front.history,
     )
-    return Polish(with_origin, tuple(one.gain for one in in_order))
+    return Polish(with_origin, tuple(one.gain for one in tried))

@@ -107,18 +107,56 @@ def symbolic_rollout(
     SymbolicRollout
         Every joint, mode and torque at the Gauss nodes, and the state at arrival.
     """
-    start, target, duration = move
-    begin, length = mesh(ca.repmat(ca.DM(np.arange(steps)).T, candidates, 1), steps)
-    h = duration * length
-    times = [begin + node * length for node in GAUSS_NODES]
-    joints = [profile.motion(coefficients, at, start, target, duration) for at in times]
+    times, length = node_times(steps, candidates)
+    joints = [profile.motion(coefficients, at, *move) for at in times]
     if jerk:
         joints = [
             joint._replace(jerk=_jerk(profile, coefficients, at, move, steps))
             for joint, at in zip(joints, times, strict=True)
         ]
+    return rollout_along(plant, joints, move[2] * length)
+
+
+def node_times(steps: int, candidates: int = 1) -> tuple[list[ca.DM], ca.DM]:
+    """Times of each Gauss node and lengths of the steps, as fractions of the duration.
+
+    Parameters
+    ----------
+    steps : int
+        Number of steps.
+    candidates : int
+        Number of rows.
+
+    Returns
+    -------
+    times : list of DM, each of shape (candidates, steps)
+        One entry a node.
+    length : DM, shape (candidates, steps)
+        The steps.
+    """
+    begin, length = mesh(ca.repmat(ca.DM(np.arange(steps)).T, candidates, 1), steps)
+    return [begin + node * length for node in GAUSS_NODES], length
+
+
+def rollout_along(plant: Plant, joints: list[JointMotion], h: Expression) -> SymbolicRollout:
+    """Simulate the modes from rest along joint motions that are known at the nodes.
+
+    Parameters
+    ----------
+    plant : Plant
+        What moves; its parameters may be expressions of the same shape as well.
+    joints : list of JointMotion
+        The joint at each Gauss node of every step, entries of shape (candidates, steps).
+    h : Expression, shape (candidates, steps)
+        Length of every step [s].
+
+    Returns
+    -------
+    SymbolicRollout
+        Every joint, mode and torque at the Gauss nodes, and the state at arrival.
+    """
     steps_at_once = step(plant, joints, h)
-    W, dW, arrival = _march(steps_at_once, candidates, steps)
+    W, dW, arrival = _march(steps_at_once, *h.shape)
     ddW = steps_at_once.accelerations(W, dW)
     states = steps_at_once.nodes(W, dW, ddW)
     torque = [

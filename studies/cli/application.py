@@ -24,6 +24,7 @@ COMMANDS = {
     "polish": "Improve a front by the gradient.",
     "compare": "Compare fronts of one task.",
     "floor": "Find the least energy over all joint motions.",
+    "robustness": "Show what plans leave when the plant is not the assumed one.",
     "study": "Run every method on a task, and write one report.",
     "reproduce": "Recompute the paper.",
 }

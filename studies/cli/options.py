@@ -20,6 +20,7 @@ from studies.cli.quantities import (
     parse_coefficients,
     parse_length,
     parse_rate,
+    parse_share,
     parse_time,
     parse_weights,
 )
@@ -117,6 +118,7 @@ SETTING = Parsed("parameter=value", parse_setting)
 ANGLE = _Angle("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
+SHARE = Parsed("share", parse_share)
 COEFFICIENTS = Parsed("numbers", parse_coefficients)
 WEIGHTS = Parsed("weights", parse_weights)
 INPUT = Parsed("file", _is_input)
@@ -187,6 +189,13 @@ _OUTPUT_OPTIONS = (
     click.option("--figure", type=PICTURE,
                  help="Draw the move over the plain cycloid (.png, .pdf or .svg)."),
 )  # fmt: skip
+_WORKERS_OPTIONS = (
+    click.option("--workers", type=int, default=1, show_default=True,
+                 help="Processes of this machine that share the work; 1 stays in this one."),
+    click.option("--scheduler", metavar="ADDRESS",
+                 help="Let the workers of this dask scheduler share the work, as in "
+                 "tcp://host:8786."),
+)  # fmt: skip
 
 
 quiet_option = click.option("--quiet", is_flag=True, help="Show no progress.")
@@ -200,6 +209,11 @@ def task_options(command: F) -> F:
 def output_options(command: F) -> F:
     """Add the options for what to write."""
     return _with(_OUTPUT_OPTIONS, command)
+
+
+def workers_options(command: F) -> F:
+    """Add the options for where the work is done."""
+    return _with(_WORKERS_OPTIONS, command)
 
 
 def _with(options: tuple[Callable[[F], F], ...], command: F) -> F:

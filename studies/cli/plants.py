@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from typing import Any
 
 from models import Plant, known_plants
+from ocp.base.names import nearest
 
 
 def parse_plant(name: str) -> type[Plant]:
@@ -15,7 +15,7 @@ def parse_plant(name: str) -> type[Plant]:
     plants = known_plants()
     if name in plants:
         return plants[name]
-    hint = _nearest(name, plants)
+    hint = nearest(name, plants)
     raise ValueError(
         f"unknown plant {name!r}; {hint}(known: {', '.join(sorted(plants))}; your own by its "
         "--plant-file)"
@@ -79,7 +79,7 @@ def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
     for name, text in settings:
         if name not in known:
             listed = ", ".join(known) or "none"
-            hint = _nearest(name, known)
+            hint = nearest(name, known)
             raise ValueError(f"{kind.name} has no parameter {name!r}; {hint}(it has: {listed})")
         if name in given:
             raise ValueError(f"{name} is set twice; set it once")
@@ -101,9 +101,3 @@ def _number(entry: Field[Any], text: str) -> float:
         unit = entry.metadata.get("unit", "-")
         wanted = "number" if unit == "-" else f"number in {unit}, without the unit"
         raise ValueError(f"parameter {entry.name} is {text!r}; give a {wanted}") from None
-
-
-def _nearest(name: str, known: Iterable[str]) -> str:
-    part = [other for other in known if name and name.lower() in other.lower()]
-    near = part or difflib.get_close_matches(name.lower(), list(known), n=1, cutoff=0.3)
-    return f"did you mean {near[0]!r}? " if near else ""

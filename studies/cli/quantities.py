@@ -7,7 +7,7 @@ import re
 
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
-_PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ]*)")
+_PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%]*)")
 _LENGTHS = {"": 1.0, "m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
 _TIMES = {"": 1.0, "s": 1.0, "ms": 1e3}
 _ANGLES = {"": 1.0, "rad": 1.0, "deg": 180 / math.pi}
@@ -87,6 +87,11 @@ def parse_length(text: str) -> float:
 def parse_time(text: str) -> float:
     """Read a time: seconds, or with s or ms. ValueError when it is none."""
     return _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")
+
+
+def parse_share(text: str) -> float:
+    """Read a share: ``10%`` or 0.1. ValueError when it is none."""
+    return _with_unit(text, {"": 1.0, "%": 100.0}, "a share", "10% or 0.1")
 
 
 def parse_coefficients(text: str) -> list[float]:

@@ -1,4 +1,4 @@
-"""Pictures of answers: motions, fronts, sweeps, comparisons.
+"""Pictures of answers: motions, fronts, sweeps, comparisons, robustness.
 
 Every ``draw_...`` draws on the matplotlib axes that it is given, or on new ones, and returns them;
 every ``..._figure`` puts several together as the commands do. No picture is known to pyplot, so
@@ -28,6 +28,7 @@ from studies.figures.motion import (
     floor_figure,
     motion_figure,
 )
+from studies.figures.robustness import draw_robustness, robustness_figure
 from studies.figures.sweep import (
     draw_polish,
     draw_savings,
@@ -54,6 +55,7 @@ __all__ = [
     "draw_hypervolume",
     "draw_polish",
     "draw_quantity",
+    "draw_robustness",
     "draw_savings",
     "draw_seed_energies",
     "draw_still",
@@ -64,5 +66,6 @@ __all__ = [
     "look",
     "motion_figure",
     "polish_figure",
+    "robustness_figure",
     "sweep_figure",
 ]

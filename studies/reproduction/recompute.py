@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
 
-from metaheuristics.ensemble import Spread, energies_at, number_of_runs
+from metaheuristics.ensemble import Spread, energies_at, number_of_runs, one_seed
+from metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener, Piece, Say, to_the_end
+from metaheuristics.sharing.running import run_pieces
 from ocp import (
     CycloidPolynomial,
     Floor,
@@ -30,15 +32,6 @@ from studies.paper.printed import (
     ROWS,
     SINGLE_LINK_SIXTH,
     Row,
-)
-from studies.runs.pieces import (
-    Begin,
-    Done,
-    InterruptedPiece,
-    Piece,
-    run_pieces,
-    searched,
-    to_the_end,
 )
 
 BEYOND_SIX = (8, 10)
@@ -180,12 +173,15 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
         for condition, terms in dict.fromkeys((row.condition, row.terms) for row in ROWS):
             for seed in range(seeds):
                 name = f"{method.name}: {_label(condition, terms)}, seed {seed}"
-                search = partial(_searched, condition, method, terms, seed)
+                settings = {"profile": CycloidPolynomial(terms), "bound": condition.bound}
+                search = partial(one_seed, condition.task, method.name, settings, seed)
                 work.append(Piece((method, condition, terms, seed), name, search))
     return work
 
 
-def recompute_paper(begin: Begin = lambda name: None, seeds: int = 1) -> Reproduction:
+def recompute_paper(
+    begin: Callable[[str], None] = lambda name: None, seeds: int = 1
+) -> Reproduction:
     """Recompute the paper's tables with gradient, metaheuristics and floor beside them.
 
     Parameters
@@ -208,8 +204,8 @@ def recompute_paper(begin: Begin = lambda name: None, seeds: int = 1) -> Reprodu
     InterruptedPiece
         When it was interrupted; its part is a `Done`.
     """
-    done = run_pieces(pieces_of_paper(seeds), begin)
-    if done.interrupted:
+    done = run_pieces(pieces_of_paper(seeds), Listener(begin))
+    if done.stopped:
         raise InterruptedPiece(done)
     with note_interrupts():  # nothing is left to be stopped
         return Reproduction(
@@ -239,23 +235,18 @@ def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
     )
 
 
-def _solved(condition: Case, terms: int, boxed: bool, done: Done) -> Plan:
+def _solved(condition: Case, terms: int, boxed: bool, earlier: Done, say: Say) -> Plan:
     bound = condition.bound if boxed else None
     return to_the_end(plan_move(condition.task, CycloidPolynomial(terms), bound=bound))
 
 
-def _solved_as_earlier(condition: Case, done: Done) -> Plan:
+def _solved_as_earlier(condition: Case, earlier: Done, say: Say) -> Plan:
     _, _, profile = EARLIER[condition.task.plant.name]
-    return plan_move(condition.task, profile, starts=EARLIER_STARTS)
+    return to_the_end(plan_move(condition.task, profile, starts=EARLIER_STARTS))
 
 
-def _floor(condition: Case, done: Done) -> Floor:
+def _floor(condition: Case, earlier: Done, say: Say) -> Floor:
     return to_the_end(energy_floor(condition.task))
-
-
-def _searched(condition: Case, method: Method, terms: int, seed: int, done: Done) -> Front:
-    (front,) = searched(condition, method, terms, seed=seed)
-    return front
 
 
 def _label(condition: Case, terms: int) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from metaheuristics.ensemble import SEARCH_RESIDUAL
+from metaheuristics.sharing.pieces import Done, Piece
 from ocp import Floor, Front, Plan
 from studies.display.tables import Cell, Column, Table
-from studies.runs.pieces import Done, Piece
 
 FILE = "unfinished.csv"
 

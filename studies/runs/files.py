@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from ocp.base.workers import number_of_workers
+from metaheuristics.sharing.workers import Workers
 
 
 def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
@@ -21,7 +21,7 @@ def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
 
 def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
     """Warn where more workers start than there are cores; no more start than pieces of work."""
-    cores, workers = os.cpu_count() or 1, min(number_of_workers(workers), pieces)
+    cores, workers = os.cpu_count() or 1, Workers(workers).local(pieces)
     if workers > cores:
         console.print(
             f"{workers} workers will share {cores} core{'s' * (cores > 1)}", highlight=False

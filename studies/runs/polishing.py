@@ -17,7 +17,7 @@ from studies.display.saving import drawing, finish, interruption
 from studies.display.tables import Column, Table
 from studies.display.words import counted, millimetres, print_lines
 from studies.reports.sweep import failure_lines
-from studies.runs.files import refuse_same_file, warn_of_workers
+from studies.runs.files import refuse_same_file
 from studies.runs.loading import load_front
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ _ROWS = 10
 def run_polish(
     path: Path,
     points: int | None,
-    workers: int,
     output: Path | None,
     csv_file: Path | None,
     figure: Path | None,
@@ -44,8 +43,6 @@ def run_polish(
         The front.
     points : int or None
         How many of its points; None is all.
-    workers : int
-        Processes that share them.
     output, csv_file, figure : Path or None
         Files for the improved front, the gains and the picture.
     quiet : bool
@@ -66,9 +63,8 @@ def run_polish(
     with working("checking", errors, quiet=quiet):
         whole_front = load_front(path)
     front = whole_front if points is None else thinned(whole_front, points)
-    warn_of_workers(errors, workers, len(front.points))
     with count(len(front.points), "points", errors, quiet=quiet) as report:
-        polish = polish_front(front, workers=workers, report=report)
+        polish = polish_front(front, report=report)
     gains = [gain for gain in polish.gains if gain.tried]
     if not gains:
         raise KeyboardInterrupt

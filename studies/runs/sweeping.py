@@ -16,7 +16,7 @@ from studies.display.progress import count
 from studies.display.saving import drawing, finish, interruption
 from studies.methods import Method
 from studies.reports.sweep import failure_lines, print_sweep
-from studies.runs.files import refuse_same_file, warn_of_workers
+from studies.runs.files import refuse_same_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -79,7 +79,6 @@ def _swept(task: PointToPoint, method: Method, options: dict[str, Any], quiet: b
     weights = options.pop("weights", ())
     if weights:
         options["weights"] = weights
-    warn_of_workers(errors, options.get("workers", 1), options["points"] - 2)  # less the ends
     total = len(weights) or options["points"]
     with count(total, "weights" if weights else "points", errors, quiet=quiet) as report:
         return method.sweep(task, report=report, **options)

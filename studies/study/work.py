@@ -3,91 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TypeVar
+from typing import Any
 
-from metaheuristics.ensemble import seeds_of
-from metaheuristics.runs.settings import number_of_generations, number_of_individuals
-from ocp import (
-    CycloidPolynomial,
-    Floor,
-    Front,
-    InfeasibleTaskError,
-    Polish,
-    SolverFailedError,
-    energy_floor,
-    polish_front,
-)
-from ocp.answers.provenance import number_of_points
-from ocp.base.checks import whole
+from metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, Piece
+from metaheuristics.sharing.running import run_pieces
+from metaheuristics.sharing.workers import Workers
+from ocp import Floor, Front, Polish, QuietarmError, SolverFailedError
 from ocp.base.interrupts import note_interrupts
-from ocp.base.workers import number_of_workers
 from studies.comparison.measures import Comparison, compare_fronts
 from studies.display.words import title_of
-from studies.methods import METHODS, Kind, Method, methods_of
+from studies.methods import METHODS
 from studies.paper.case import Case
 from studies.paper.points import PaperPoint, paper_points
 from studies.paper.printed import CONDITIONS
-from studies.runs.pieces import (
-    Begin,
-    Done,
-    InterruptedPiece,
-    NotTriedError,
-    Piece,
-    run_pieces,
-    searched,
-    to_the_end,
-)
-
-FLOOR = "floor"
-_Answer = TypeVar("_Answer")
-
-
-@dataclass(frozen=True)
-class StudySettings:
-    """How thorough a study is.
-
-    Parameters
-    ----------
-    terms : int
-        Terms of the polynomial.
-    points : int
-        Points of the gradient's fronts.
-    runs : int
-        Seeds of each metaheuristic.
-    seed : int
-        First seed.
-    workers : int
-        Processes.
-    population, generations : int, optional
-        Of the metaheuristics; the paper's by default.
-
-    Raises
-    ------
-    ValueError
-        When one is out of range.
-    """
-
-    terms: int = 6
-    points: int = 50
-    runs: int = 3
-    seed: int = 0
-    workers: int = 1
-    population: int | None = None
-    generations: int | None = None
-
-    def __post_init__(self) -> None:
-        CycloidPolynomial(self.terms)
-        whole("terms", self.terms, 1)
-        number_of_points(self.points)
-        seeds_of(self.seed, self.runs)
-        number_of_workers(self.workers)
-        if self.population is not None:
-            number_of_individuals(self.population)
-        if self.generations is not None:
-            number_of_generations(self.generations)
+from studies.study.pieces import FLOOR, Key, StudySettings, pieces_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,13 +63,16 @@ class Study:
     seconds : float
         How long it took.
     done : int or None
-        How many pieces of work came to an end before Ctrl-C; None where all did.
+        How many pieces of work came to an end before it was stopped; None where all did.
+    stopped : str
+        Why it was stopped; empty where it was not.
     """
 
     settings: StudySettings
     cases: tuple[CaseStudy, ...]
     seconds: float
     done: int | None = None
+    stopped: str = ""
 
 
 def amount_of_work(cases: Sequence[Case], settings: StudySettings) -> int:
@@ -148,7 +83,7 @@ def amount_of_work(cases: Sequence[Case], settings: StudySettings) -> int:
 def run_study(
     cases: Sequence[Case] = CONDITIONS,
     settings: StudySettings | None = None,
-    begin: Begin = lambda name: None,
+    begin: Callable[[str], None] = lambda name: None,
 ) -> Study:
     """Run every method on every case and compare what they find.
 
@@ -166,110 +101,47 @@ def run_study(
     -------
     Study
         Fronts, comparison, floor and polish of every case. A method that fails on a case is left
-        out of it, with its reason. After Ctrl-C what was found until then.
+        out of it, with its reason. After Ctrl-C, or without its scheduler, what was found until
+        then.
 
     Raises
     ------
     KeyboardInterrupt
         When it was interrupted before anything was found.
+    QuietarmError
+        When its scheduler went, or its workers could not be reached, before anything was found.
     """
-    began, ended = time.perf_counter(), 0
+    began = time.perf_counter()
     settings = StudySettings() if settings is None else settings
+    pieces = [piece for case in cases for piece in pieces_of(case, settings)]
+    where = Workers(settings.workers, settings.scheduler)
+    done = run_pieces(pieces, Listener(begin), workers=where, note=QuietarmError)
     found: list[CaseStudy] = []
-    for case in cases:
-        done = run_pieces(pieces_of(case, settings), begin, go_on=True)
-        ended += done.number
-        with note_interrupts() as came:  # what was found is put together to the end
+    with note_interrupts():  # what was found is put together to the end
+        for case in cases:
             found += _case_study(case, settings, done)
-        if done.interrupted or came:
-            if not found:
-                raise KeyboardInterrupt
-            break
-    else:
-        return Study(settings, tuple(found), time.perf_counter() - began)
-    return Study(settings, tuple(found), time.perf_counter() - began, done=ended)
-
-
-def pieces_of(case: Case, settings: StudySettings) -> list[Piece]:
-    """The work on one case; every answer is kept under the name of its method, or `FLOOR`."""
-    work: dict[str, Callable[[Done], object]] = {}
-    for method in methods_of(Kind.GRADIENT):
-        work[method.name] = partial(_swept, case, method, settings)
-    for method in methods_of(Kind.METAHEURISTIC):
-        work[method.name] = partial(_searched, case, method, settings)
-        work[method.then_polished().name] = partial(_polished, method, settings)
-    work[FLOOR] = lambda done: to_the_end(energy_floor(case.task))
-    title = title_of(case.task)
-    return [Piece(name, f"{title}: {name}", one) for name, one in work.items()]
-
-
-def _swept(case: Case, method: Method, settings: StudySettings, done: Done) -> list[Front]:
-    for other in methods_of(Kind.GRADIENT):  # they begin with the same end, and would fail alike
-        if isinstance(done.failures.get(other.name), InfeasibleTaskError):
-            raise NotTriedError(f"not tried, as {other.name} found no motion within the limits")
-    front = method.sweep(
-        case.task,
-        CycloidPolynomial(settings.terms),
-        bound=case.bound,
-        points=settings.points,
-        **({"workers": settings.workers} if method.parallel else {}),
-    )
-    return _whole(front, [front])
-
-
-def _searched(case: Case, method: Method, settings: StudySettings, done: Done) -> list[Front]:
-    return searched(
-        case,
-        method,
-        settings.terms,
-        settings.runs,
-        seed=settings.seed,
-        workers=settings.workers,
-        population=settings.population,
-        generations=settings.generations,
-    )
-
-
-def _polished(method: Method, settings: StudySettings, done: Done) -> Polish:
-    first = next((front for front in done.answers.get(method.name, []) if front.points), None)
-    if first is None:
-        raise NotTriedError(f"not tried, as {method.name} found no front to start from")
-    polish = polish_front(first, workers=settings.workers)
-    return _whole(polish.front, polish)
-
-
-def _whole(front: Front, answer: _Answer) -> _Answer:
-    """The answer that the front belongs to; InterruptedPiece where it was interrupted."""
-    if not front.complete:
-        raise InterruptedPiece(answer)
-    return answer
+    if not found and done.stopped == INTERRUPTED:
+        raise KeyboardInterrupt
+    if not found:
+        raise QuietarmError(f"{done.stopped}; nothing was found before")
+    number = done.number if done.stopped else None
+    return Study(settings, tuple(found), time.perf_counter() - began, number, done.stopped)
 
 
 def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStudy]:
-    """What was found for a case, if anything was before Ctrl-C."""
-    fronts, failures = list[Front](), list[str]()
-    names = [str(piece.key) for piece in pieces_of(case, settings)]
-    for name in names:
-        if name in done.failures:
-            failures.append(f"{name}: {done.failures[name]}")
-        elif name in done.parts:
-            fronts += [] if name == FLOOR else _fronts_of(done.parts[name])
-            failures.append(f"{name}: interrupted, with what was found until then")
-        elif name not in done.answers:
-            failures.append(f"{name}: not done before the interruption")
-        elif name != FLOOR:
-            found = _fronts_of(done.answers[name])
-            kept = [front for front in found if front.points]
-            if len(kept) < len(found):
-                failures.append(f"{name}: {len(found) - len(kept)} of {len(found)} found no point")
-            fronts += kept
-    if not fronts and done.interrupted:
+    """What was found for a case, if anything was before the work was stopped."""
+    pieces = pieces_of(case, settings)
+    fronts = [front for piece in pieces for front in _fronts_of(piece, done) if front.points]
+    failures = _what_is_missing(pieces, done)
+    if not fronts and done.stopped:
         return []
-    if len(fronts) < 2 and not done.interrupted:
+    if len(fronts) < 2 and not done.stopped:
         where = title_of(case.task)
         raise SolverFailedError(f"{where}: no two fronts to compare; {'; '.join(failures)}")
-    floor = done.answers.get(FLOOR, done.parts.get(FLOOR))
-    polishes = {m.name: done.answers.get(m.then_polished().name) for m in METHODS.values()}
+    floor = _found(Key(case, FLOOR), done)
+    polishes = {
+        m.name: done.answers.get(Key(case, m.then_polished().name)) for m in METHODS.values()
+    }
     study = CaseStudy(
         case=case,
         comparison=compare_fronts(fronts, floor=None if floor is None else floor.energy, least=1),
@@ -281,5 +153,37 @@ def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStu
     return [study]
 
 
-def _fronts_of(answer: list[Front] | Polish) -> list[Front]:
-    return [answer.front] if isinstance(answer, Polish) else answer
+def _found(key: Hashable, done: Done) -> Any:
+    """What a piece found, whole or in part; None where it found nothing."""
+    return done.answers.get(key, done.parts.get(key))
+
+
+def _fronts_of(piece: Piece, done: Done) -> list[Front]:
+    """The front that a piece found, whole or in part."""
+    found = _found(piece.key, done)
+    if isinstance(found, Polish):
+        return [found.front]
+    return [found] if isinstance(found, Front) else []
+
+
+def _what_is_missing(pieces: Sequence[Piece], done: Done) -> list[str]:
+    """What did not come to its end, and why: a line for each method and reason."""
+    names = [piece.key.name for piece in pieces if isinstance(piece.key, Key)]
+    troubles = Counter(zip(names, (_trouble(piece, done) for piece in pieces), strict=True))
+    lines = list[str]()
+    for (name, trouble), count in troubles.items():
+        seeds = f" ({count} of {names.count(name)} seeds)" if names.count(name) > 1 else ""
+        if trouble:
+            lines.append(f"{name}{seeds}: {trouble}")
+    return lines
+
+
+def _trouble(piece: Piece, done: Done) -> str:
+    """Why the answer of a piece is missing; empty where it is not."""
+    if piece.key in done.failures:
+        return str(done.failures[piece.key])
+    if piece.key in done.parts:
+        return "interrupted, with what was found until then"
+    if piece.key not in done.answers:
+        return "not done before the interruption"
+    return "found no point" if any(not f.points for f in _fronts_of(piece, done)) else ""

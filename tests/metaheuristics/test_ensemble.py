@@ -3,7 +3,6 @@
 import dataclasses
 import math
 import multiprocessing
-import re
 import signal
 import subprocess
 import sys
@@ -166,9 +165,7 @@ def test_ctrl_c_before_a_search_has_begun_keeps_the_others(monkeypatch, at, kept
         assert [front.seed for front in search_many(TASK, "vepso", 3, **SMALL)] == kept
 
 
-def test_ctrl_c_ends_processes_and_keeps_what_they_found(monkeypatch):
-    # so that a busy machine does not cost a front
-    monkeypatch.setattr("ocp.base.workers._PATIENCE", 120.0)
+def test_ctrl_c_ends_processes_and_keeps_what_they_found():
     report = interrupt_at({0, 1})
     fronts = search_many(TASK, "nsga2", 4, workers=2, report=report, **LONG)
     assert [(front.seed, front.complete) for front in fronts] == [(0, False), (1, False)]
@@ -178,28 +175,16 @@ def test_ctrl_c_ends_processes_and_keeps_what_they_found(monkeypatch):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
-def test_a_process_that_dies_costs_its_own_seed_only(tmp_path, monkeypatch):
+def test_a_seed_whose_worker_dies_is_searched_by_another(tmp_path, monkeypatch):
     order = tmp_path / "order"
     order.touch()
     monkeypatch.setenv(dying.ORDER, str(order))
     settings = {**SMALL, "generations": 20, "profile": dying.Dying(6)}
-    heard = set()
-    with pytest.raises(LostSeedsError) as caught:
-        search_many(
-            TASK, "nsga2", 3, workers=2, **settings,
-            report=lambda progress, seed: heard.add(seed),
-        )  # fmt: skip
-    assert not order.exists()
-    message = str(caught.value)
-    (lost,) = re.findall(r"seed (\d) \(killed by SIGKILL\)", message)
-    assert int(lost) in heard  # it died in the middle of its search
-    assert "2 of 3 seeds are done" in message
-    assert "fewer workers or a smaller population" in message
-    assert "\n" not in message
-    assert [front.seed for front in caught.value.fronts] == [s for s in (0, 1, 2) if s != int(lost)]
+    fronts = search_many(TASK, "nsga2", 3, workers=2, **settings)
+    assert not order.exists()  # one did die, in the middle of its search
     settings["profile"] = CycloidPolynomial(6)  # the same motions
-    for front in caught.value.fronts:
-        assert front.points == search(TASK, "nsga2", seed=front.seed, **settings).points
+    for seed, front in enumerate(fronts):
+        assert front.points == search(TASK, "nsga2", seed=seed, **settings).points
 
 
 def test_a_front_goes_to_another_process_and_back_whole():
@@ -214,16 +199,18 @@ def test_a_front_goes_to_another_process_and_back_whole():
     assert dataclasses.asdict(same) == dataclasses.asdict(found)
 
 
-def test_a_process_without_memory_costs_its_own_seed_only():
+def test_a_worker_without_memory_costs_its_own_seed_only():
     with pytest.raises(LostSeedsError) as caught:
         search_many(TASK, "nsga2", 2, workers=2, **{**SMALL, "profile": dying.Hungry(2)})
-    assert "seed 0 (out of memory), seed 1 (out of memory)" in str(caught.value)
-    assert "fewer workers or a smaller population" in str(caught.value)
+    assert str(caught.value) == (
+        "lost seed 0 (out of memory), seed 1 (out of memory); 0 of 2 seeds are done; where memory "
+        "ran short, give fewer workers or a smaller population"
+    )
     assert caught.value.fronts == []
 
 
 def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
-    # every process runs the script anew, as Python's spawn does
+    # every worker runs the script anew, as Python's spawn does
     (tmp_path / "script.py").write_text(
         "from metaheuristics.ensemble import search_many\n"
         "from models import SingleLinkManipulator\n"
@@ -235,7 +222,7 @@ def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
         [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, timeout=600
     )
     last = ran.stderr.splitlines()[-1]
-    assert last.startswith("metaheuristics.ensemble.LostSeedsError: the process of seed 0 (status ")
+    assert last.startswith("ocp.base.errors.QuietarmError: the workers could not be started; ")
     assert "run it under if __name__ == '__main__'" in last
 
 

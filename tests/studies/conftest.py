@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from metaheuristics import ensemble
 from models import SingleLinkManipulator
 from ocp import (
     CycloidPolynomial,
@@ -26,7 +27,6 @@ from studies.cli import main
 from studies.display import progress
 from studies.methods import METHODS
 from studies.reproduction import recompute
-from studies.runs import pieces
 
 
 @pytest.fixture(scope="session")
@@ -37,19 +37,21 @@ def begun():
 
 @pytest.fixture(scope="session")
 def reproduction(begun):
-    """The paper recomputed, once for all tests: twenty seconds.
+    """The paper recomputed, once for all tests.
 
-    Searches and floors are cut short: how well they find is tested where they are.
+    Searches, floors and the earlier studies are cut short: how well they find is tested where they
+    are.
     """
-    search, generations = pieces.search_many, {"vepso": 60, "nsga2": 5}
+    search, generations = ensemble.search, {"vepso": 60, "nsga2": 5}
     floor = recompute.energy_floor
 
-    def short(task, method, runs, **settings):
-        return search(task, method, runs, generations=generations[method], **settings)
+    def short(task, method, **settings):
+        return search(task, method, generations=generations[method], **settings)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pieces, "search_many", short)
-        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=2))
+        patch.setattr(ensemble, "search", short)
+        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.02))
+        patch.setattr(recompute, "EARLIER_STARTS", 1)
         return recompute.recompute_paper(begun.append)
 
 
@@ -78,17 +80,6 @@ def call(capfd, monkeypatch):
     return run_here
 
 
-# The command, which after Ctrl-C waits for what its processes found however slow the machine is.
-PATIENT = """
-import ocp.base.workers
-import studies.cli
-
-assert ocp.base.workers._PATIENCE > 0
-ocp.base.workers._PATIENCE = 60.0
-studies.cli.main()
-"""
-
-
 @pytest.fixture
 def at_a_terminal():
     """Start a line as a process with a group of its own, as a shell does; killed at the end."""
@@ -97,7 +88,7 @@ def at_a_terminal():
     def start(line):
         begun.append(
             subprocess.Popen(
-                [sys.executable, "-c", PATIENT, *shlex.split(line)],
+                [sys.executable, "-m", "studies", *shlex.split(line)],
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 text=True,

@@ -18,6 +18,7 @@ from studies.cli.options import (
     quiet_option,
     task_options,
     terms_option,
+    workers_options,
 )
 from studies.methods import METHODS, WEIGHTED, Kind, methods_of
 from studies.profiles import profile_of
@@ -28,10 +29,8 @@ _ONLY_FOR = {
     "points": GRADIENT,
     "starts": GRADIENT,
     "weights": [WEIGHTED.name],
-    "workers": [method.name for method in METHODS.values() if method.parallel],
-    **dict.fromkeys(
-        ("population", "generations", "runs", "checkpoint", "resume"), METAHEURISTICS
-    ),
+    **dict.fromkeys(("population", "generations", "runs"), METAHEURISTICS),
+    **dict.fromkeys(("workers", "scheduler", "checkpoint", "resume"), METAHEURISTICS),
 }  # fmt: skip
 """For every option that not all methods have: the methods that have it."""
 
@@ -69,10 +68,7 @@ _ONLY_FOR = {
 @click.option(
     "--runs", type=int, default=1, show_default=True, help="Metaheuristic: number of seeds."
 )
-@click.option(
-    "--workers", type=int, default=1, show_default=True,
-    help="Processes: a metaheuristic's share the runs, epsilon's the points.",
-)  # fmt: skip
+@workers_options
 @click.option(
     "--checkpoint", type=STATE, help="Metaheuristic: write the state here every few seconds."
 )

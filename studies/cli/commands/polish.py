@@ -16,9 +16,6 @@ from studies.cli.options import INPUT, OUTPUT, PICTURE, plant_file_option, quiet
     help="Only this many points, spread evenly along the front; all of them by default, which "
     "takes about 50 ms each.",
 )  # fmt: skip
-@click.option(
-    "--workers", type=int, default=1, show_default=True, help="Processes that share the points."
-)
 @click.option("--output", type=OUTPUT, help="Write the improved front to this JSON file.")
 @click.option("--csv", "csv_file", type=OUTPUT, help="Write every point's gain to this CSV file.")
 @click.option(
@@ -29,7 +26,6 @@ from studies.cli.options import INPUT, OUTPUT, PICTURE, plant_file_option, quiet
 def polish(
     front: Path,
     points: int | None,
-    workers: int,
     output: Path | None,
     csv_file: Path | None,
     figure: Path | None,
@@ -48,4 +44,4 @@ def polish(
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.runs.polishing import run_polish
 
-    run_polish(front, points, workers, output, csv_file, figure, quiet)
+    run_polish(front, points, output, csv_file, figure, quiet)

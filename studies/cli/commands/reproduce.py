@@ -27,6 +27,7 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
     Example:
       quietarm reproduce --output results
     """  # noqa: D301  # \b is click's: do not rewrap
+    from metaheuristics.sharing.pieces import InterruptedPiece
     from ocp import QuietarmError
     from studies.display.progress import progress
     from studies.display.saving import finish, inside
@@ -35,7 +36,6 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
     from studies.reproduction.recompute import pieces_of_paper, recompute_paper
     from studies.reproduction.report import print_reproduction, reproduction_files
     from studies.reproduction.unfinished import FILE, unfinished_table
-    from studies.runs.pieces import InterruptedPiece
 
     pieces = pieces_of_paper(seeds)
     try:

@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from rich.console import Console
 
 from studies.cli.arguments import task_of
-from studies.cli.options import FOLDER, OUTPUT, quiet_option, task_options
+from studies.cli.options import FOLDER, OUTPUT, quiet_option, task_options, workers_options
 
 
 def _not_required(command: click.Command) -> click.Command:
@@ -31,7 +31,7 @@ def _not_required(command: click.Command) -> click.Command:
 )
 @click.option("--runs", type=int, default=3, show_default=True, help="Seeds of each metaheuristic.")
 @click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
-@click.option("--workers", type=int, default=1, show_default=True, help="Processes.")
+@workers_options
 @click.option(
     "--population", type=int, help="Individuals, or particles in a swarm; the paper's by default."
 )
@@ -63,11 +63,13 @@ def study(
     from studies.display.words import counted
     from studies.paper.case import Case
     from studies.paper.printed import CONDITIONS
+    from studies.runs.files import warn_of_workers
     from studies.study.files import front_files, page_file
     from studies.study.findings import case_findings, findings
-    from studies.study.work import StudySettings, amount_of_work, run_study
+    from studies.study.pieces import StudySettings
+    from studies.study.work import amount_of_work, run_study
 
-    names = ("terms", "points", "runs", "seed", "workers", "population", "generations")
+    names = ("terms", "points", "runs", "seed", "workers", "scheduler", "population", "generations")
     settings = StudySettings(**{name: rest.pop(name) for name in names})
     bound = rest.pop("bound")
     if rest["plant"] is None and rest["plant_file"] is None:
@@ -76,7 +78,9 @@ def study(
     else:
         _refuse_without_move(rest)
         cases = (Case(task_of(rest), bound),)
-    with progress(amount_of_work(cases, settings), Console(stderr=True), quiet=quiet) as begin:
+    errors, total = Console(stderr=True), amount_of_work(cases, settings)
+    warn_of_workers(errors, settings.workers, total)
+    with progress(total, errors, quiet=quiet) as begin:
         result = run_study(cases, settings, begin)
 
     def show(console: Console) -> None:
@@ -86,10 +90,9 @@ def study(
 
     trouble = None
     if result.done is not None:
-        total = amount_of_work(cases, settings)
         trouble = QuietarmError(
-            f"interrupted: {result.done} of {counted(total, 'piece')} of work are done; what was "
-            "found until then is kept"
+            f"{result.stopped}: {result.done} of {counted(total, 'piece')} of work are done; what "
+            "was found until then is kept"
         )
     together = None
     if fronts is not None:

@@ -134,7 +134,6 @@ def test_an_impossible_task_is_refused():
     ("arguments", "text"),
     [
         ({"points": 1}, "points is 1; give a whole number from 2 up"),
-        ({"workers": 0}, "workers is 0; give a whole number from 1 up"),
         ({"bound": -1.0}, "bound on the coefficients is -1"),
         ({"profile": CycloidPolynomial(0)}, "0 terms has nothing to choose"),
     ],
@@ -182,17 +181,15 @@ def test_settings_of_a_sweep_reach_its_solves():
 
 
 @pytest.mark.parametrize("points", [2, 6])
-@pytest.mark.parametrize("workers", [1, 2])
-def test_there_is_a_point_at_every_residual_that_is_asked_for(points, workers):
+def test_there_is_a_point_at_every_residual_that_is_asked_for(points):
     task, bound = CASES["arm"]
     at, told = (1e-4, 1e-3, 5e-3, 1.0), []  # at 1 m there is no front
     front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=points, at=at, workers=workers,
+        task, CycloidPolynomial(3), bound=bound, points=points, at=at,
         report=lambda done, total: told.append((done, total)),
     )  # fmt: skip
     assert len(front.points) == points + 3
-    if workers == 1:  # else the last words of a process may come too late
-        assert told[-1] == (points + 3, points + 3)
+    assert told[-1] == (points + 3, points + 3)
     assert {total for _, total in told} == {points + 3}
     for residual in at[:3]:
         assert residual * (1 - 3e-4) < front.cheapest(residual).residual <= residual

@@ -1,10 +1,6 @@
 """Polishing: no point gets worse, each keeps its residual, and they land on the front."""
 
 import math
-import multiprocessing
-import os
-import signal
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -45,15 +41,6 @@ def rough():
         settings={"bound": BOUND, "population": 60}, seed=0, reference=(0.015, 0.25),
         evaluations=60, seconds=1.0,
     )  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def many(rough):
-    """The same, with points enough for a minute."""
-    first = rough.points[0]
-    points = [replace(first, energy=first.energy * (1 - i / 1e4), residual=first.residual * (1 + i))
-              for i in range(1000)]  # fmt: skip
-    return replace(rough, points=non_dominated(points))
 
 
 @pytest.fixture(scope="module")
@@ -131,58 +118,3 @@ def test_ctrl_c_keeps_what_was_improved(rough):
 def test_an_empty_front_is_refused(rough):
     with pytest.raises(ValueError, match="front has no point"):
         polish_front(replace(rough, points=()))
-
-
-# Processes
-
-
-def test_processes_find_the_same(rough, polish):
-    heard = []
-    shared = polish_front(rough, workers=2, report=lambda done, total: heard.append((done, total)))
-    assert shared == polish
-    assert {total for _, total in heard} == {len(rough.points)}
-    assert heard == sorted(heard)
-
-
-def test_ctrl_c_ends_processes_soon_and_keeps_what_was_improved(many):
-    sent = []
-
-    def interrupt(done, total):
-        if done >= 4 and not sent:
-            sent.append(done)
-            signal.raise_signal(signal.SIGINT)
-
-    polish = polish_front(many, workers=2, report=interrupt)
-    assert multiprocessing.active_children() == []
-    assert not polish.front.complete
-    tried = [gain.tried for gain in polish.gains]
-    assert 4 <= sum(tried) < len(tried)
-    assert all(gain.share == 0 for gain in polish.gains if not gain.tried)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
-def test_a_process_that_dies_costs_its_own_points_only(rough, polish):
-    killed = []
-
-    def report(done, total):
-        if not killed:
-            child = min(
-                multiprocessing.active_children(), key=lambda one: int(one.name.rpartition("-")[2])
-            )
-            killed.append(child.pid)
-            os.kill(child.pid, signal.SIGKILL)
-
-    found = polish_front(rough, workers=2, report=report)
-    assert len(killed) == 1
-    assert {failure.reason for failure in found.front.failures} == {
-        "its process died (killed by SIGKILL); where memory ran short, give fewer workers"
-    }
-    lost = [failure.asked["residual_limit"] for failure in found.front.failures]
-    assert lost == [point.residual for point in rough.points[::2]]
-    assert found.gains[1::2] == polish.gains[1::2]
-    assert {gain.share for gain in found.gains[::2]} == {0.0}
-
-
-def test_no_workers_are_refused(rough):
-    with pytest.raises(ValueError, match="workers is 0; give a whole number from 1 up"):
-        polish_front(rough, workers=0)

@@ -1,13 +1,9 @@
-"""Sweeps of a front that are interrupted, lose a process or a solve, or use several processes."""
+"""Sweeps of a front that are interrupted, or lose a solve."""
 
-import multiprocessing
-import os
 import signal
-import sys
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 from front_moves import CASES
 
 from ocp import (
@@ -15,73 +11,12 @@ from ocp import (
     Front,
     SolverFailedError,
     epsilon_front,
-    resimulate,
     weighted_front,
 )
 from ocp.base.status import SolveStatus
 from ocp.front import checking, weighted
 from ocp.front.ends import find_ends
 from ocp.front.sweep import Sweep
-from ocp.plan.verification import STILL
-
-
-def test_processes_find_the_same_front():
-    task, bound = CASES["arm"]
-    alone, shared = (
-        epsilon_front(task, CycloidPolynomial(3), bound=bound, points=6, workers=workers)
-        for workers in (1, 2)
-    )
-    np.testing.assert_allclose(shared.energies, alone.energies, rtol=1e-5)
-    np.testing.assert_allclose(shared.residuals, alone.residuals, rtol=1e-5, atol=STILL)
-
-
-def test_ctrl_c_ends_processes_soon_and_keeps_what_they_found(monkeypatch):
-    # so that a busy machine does not cost what a process found
-    monkeypatch.setattr("ocp.base.workers._PATIENCE", 120.0)
-    task, bound = CASES["arm"]
-    sent = []
-
-    def interrupt(done, total):
-        if done >= 8 and not sent:
-            sent.append(done)
-            signal.raise_signal(signal.SIGINT)
-
-    front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=5000, workers=2, report=interrupt
-    )
-    assert len(front.points) < 2500  # of 5000: it did not go on to the end
-    assert multiprocessing.active_children() == []
-    assert not front.complete
-    assert len(front.points) > 2  # more than the ends
-    for point in front.points[1:-1:5]:
-        motion = resimulate(task, front.profile, point.coefficients)
-        assert (point.residual, point.energy) == (motion.residual, motion.energy)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
-def test_a_process_that_dies_costs_its_own_stretch_only():
-    task, bound = CASES["arm"]
-    killed = []
-
-    def report(done, total):
-        children = multiprocessing.active_children()
-        if children and not killed:
-            child = min(children, key=lambda one: int(one.name.rpartition("-")[2]))
-            killed.append(child.pid)
-            os.kill(child.pid, signal.SIGKILL)
-
-    front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=400, workers=2, report=report
-    )
-    assert len(killed) == 1
-    assert len(front.failures) == 199  # of 398 between the ends
-    for failure in front.failures:
-        # the first stretch begins at the cheap end
-        assert failure.asked["residual_limit"] > front.points[-2].residual
-        assert failure.reason == (
-            "its process died (killed by SIGKILL); where memory ran short, give fewer workers"
-        )
-    assert len(front.points) == 201
 
 
 def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):

@@ -7,7 +7,7 @@ from functools import partial
 
 import pytest
 
-import studies.study.work
+import studies.study.pieces
 from models import DualLinkManipulator
 from ocp import Front, Plan, PointToPoint, energy_floor
 
@@ -78,7 +78,7 @@ def test_floor(done, tmp_path):
 
 def test_study(done, tmp_path, monkeypatch):
     quick = partial(energy_floor, starts=1, tolerance=0.1)  # a floor is found in a test above
-    monkeypatch.setattr(studies.study.work, "energy_floor", quick)
+    monkeypatch.setattr(studies.study.pieces, "energy_floor", quick)
     done(
         f"study {MOVE} --acceleration-limit 60 --bound 0.5 --terms 5 --points 3 --runs 1 {SMALL} "
         "--output s.html --fronts fronts --quiet"

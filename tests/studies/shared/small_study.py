@@ -4,7 +4,7 @@ import types
 
 from studies.paper.case import Case
 from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
-from studies.study.work import StudySettings
+from studies.study.pieces import StudySettings
 
 QUICK = StudySettings(terms=2, points=6, runs=2, population=24, generations=8)
 CASES = (Case(SINGLE_LINK_SIXTH.task), Case(ARM_HALF.task))

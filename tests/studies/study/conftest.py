@@ -3,13 +3,13 @@
 import pytest
 from small_study import CASES, FLOOR, QUICK
 
-import studies.study.work as study_module
+import studies.study.pieces as study_pieces
 from studies.study.work import run_study
 
 
 @pytest.fixture(autouse=True)
 def _floor_at_once(monkeypatch):
-    monkeypatch.setattr(study_module, "energy_floor", lambda task: FLOOR)
+    monkeypatch.setattr(study_pieces, "energy_floor", lambda task: FLOOR)
 
 
 @pytest.fixture(scope="session")
@@ -22,5 +22,5 @@ def announced():
 def small(announced):
     """Two tasks, with searches cut short."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study_module, "energy_floor", lambda task: FLOOR)
+        patch.setattr(study_pieces, "energy_floor", lambda task: FLOOR)
         return run_study(CASES, QUICK, announced.append)

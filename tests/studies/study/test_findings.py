@@ -9,7 +9,7 @@ from small_study import FLOOR, QUICK
 from studies.comparison.measures import compare_fronts
 from studies.study.findings import case_findings, findings, percent, percents
 from studies.study.page import method_lines
-from studies.study.work import StudySettings
+from studies.study.pieces import StudySettings
 
 # What it says
 

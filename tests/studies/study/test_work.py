@@ -6,15 +6,17 @@ from dataclasses import replace
 import pytest
 from small_study import CASES, METHODS, QUICK
 
+import metaheuristics.ensemble as ensemble
+import studies.study.pieces as study_pieces
 import studies.study.work as study_module
 from ocp import InfeasibleTaskError, PointToPoint, SolverFailedError
 from studies.comparison.measures import compare_fronts
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
-from studies.runs import pieces
 from studies.study.findings import case_findings
 from studies.study.page import study_page
-from studies.study.work import Study, StudySettings, amount_of_work, run_study
+from studies.study.pieces import StudySettings
+from studies.study.work import Study, amount_of_work, run_study
 
 # What is run
 
@@ -25,7 +27,7 @@ def test_every_method_runs_on_every_task(small, announced):
         assert [run.front.method for run in found.comparison.runs] == METHODS
         assert found.failures == ()
         assert {run.front.settings["bound"] for run in found.comparison.runs} == {found.case.bound}
-    assert len(announced) == amount_of_work(CASES, QUICK) == 14
+    assert len(announced) == amount_of_work(CASES, QUICK) == 18
     assert announced[0] == "single-link, 0 to 30 deg in 0.8 s: epsilon"
 
 
@@ -66,8 +68,8 @@ def test_settings_out_of_range_are_refused(wrong):
 
 
 def searches_that_find(monkeypatch, answer):
-    """Let every search of a study answer so, by its method."""
-    monkeypatch.setattr(pieces, "search_many", lambda task, method, *given, **_: answer(method))
+    """Let every search of a study answer so, by its method and seed."""
+    monkeypatch.setattr(ensemble, "search", lambda task, method, seed, **_: answer(method)[seed])
 
 
 @pytest.fixture
@@ -85,7 +87,7 @@ def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch, let_sweep,
         raise SolverFailedError("it would not")
 
     let_sweep("weighted", fail)
-    monkeypatch.setattr(study_module, "energy_floor", fail)
+    monkeypatch.setattr(study_pieces, "energy_floor", fail)
     (found,) = run_study(CASES[:1], QUICK).cases
     assert "weighted" not in {run.front.method for run in found.comparison.runs}
     assert found.failures == ("weighted: it would not", "floor: it would not")
@@ -114,9 +116,9 @@ def test_without_a_front_to_start_from_there_is_no_polish(monkeypatch, known):
     begun = []
     (case,) = run_study(CASES[:1], QUICK, begun.append).cases
     assert case.failures == (
-        "nsga2: it would not",
+        "nsga2 (2 of 2 seeds): it would not",
         "nsga2, polished: not tried, as nsga2 found no front to start from",
-        "vepso: it would not",
+        "vepso (2 of 2 seeds): it would not",
         "vepso, polished: not tried, as vepso found no front to start from",
     )
     assert case.polishes == {}
@@ -131,24 +133,30 @@ def test_the_first_front_that_has_points_is_polished(monkeypatch, known):
 
     searches_that_find(monkeypatch, first_empty)
     (case,) = run_study(CASES[:1], QUICK).cases
-    assert case.failures == ("nsga2: 1 of 2 found no point", "vepso: 1 of 2 found no point")
+    assert case.failures == (
+        "nsga2 (1 of 2 seeds): found no point",
+        "vepso (1 of 2 seeds): found no point",
+    )
     for method in ("nsga2", "vepso"):
         assert len(case.polishes[method].gains) == len(fronts[method].points)
 
 
 def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(monkeypatch, known):
     cut = replace(known[2], complete=False)
-    searches_that_find(monkeypatch, lambda method: [cut, replace(cut, seed=1, points=())])
+    searches_that_find(monkeypatch, lambda method: [cut])
     begun = []
     found = run_study(CASES, QUICK, begun.append)
     assert len(begun) == 3
     assert found.done == 2
     (case,) = found.cases
     assert [run.front for run in case.comparison.runs] == [*known[:2], cut]
-    assert case.failures[0] == "nsga2: interrupted, with what was found until then"
-    assert case.failures[1:] == tuple(
-        f"{name}: not done before the interruption"
-        for name in ("nsga2, polished", "vepso", "vepso, polished", "floor")
+    assert case.failures == (
+        "nsga2 (1 of 2 seeds): interrupted, with what was found until then",
+        "nsga2 (1 of 2 seeds): not done before the interruption",
+        "nsga2, polished: not done before the interruption",
+        "vepso (2 of 2 seeds): not done before the interruption",
+        "vepso, polished: not done before the interruption",
+        "floor: not done before the interruption",
     )
     assert "not done before the interruption" in study_page(found)
 

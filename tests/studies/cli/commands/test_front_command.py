@@ -10,6 +10,7 @@ import pytest
 import studies.runs.searching
 from metaheuristics import search
 from metaheuristics.ensemble import LostSeedsError
+from metaheuristics.sharing.pieces import Done, LostPieceError
 from models import SingleLinkManipulator
 from ocp import CycloidPolynomial, Front, PointToPoint
 from studies.display.search_progress import SearchDisplay
@@ -154,7 +155,7 @@ def test_ctrl_c_keeps_the_seeds_that_are_done(call, interrupted_at):
 def test_ctrl_c_ends_all_processes_and_keeps_their_fronts(folder, at_a_terminal, ctrl_c):
     process = at_a_terminal(f"{SMALL} --generations 1000000 --runs 3 --workers 2 --output f.json")
     heard = set()
-    while heard != {"seed 0", "seed 1"}:
+    while not heard >= {"seed 0", "seed 1"}:
         line = process.stderr.readline()
         assert line, "the searches ended before the interrupt"
         heard.add(line.partition(",")[0])
@@ -174,14 +175,16 @@ def test_ctrl_c_ends_all_processes_and_keeps_their_fronts(folder, at_a_terminal,
 
 def test_what_is_found_beside_a_process_that_died_is_written(call, monkeypatch, front_of):
     def lose(*arguments, **settings):
-        raise LostSeedsError({1: "killed by SIGKILL"}, [front_of([(1, 0.2)], seed=0)], 2)
+        fronts = {0: front_of([(1, 0.2)], seed=0)}
+        lost = Done(answers=fronts, failures={1: LostPieceError("its worker died 3 times")})
+        raise LostSeedsError(lost, [fronts[0]], 2)
 
     monkeypatch.setattr(studies.runs.searching, "search_many", lose)
     code, out, err = call(f"{SMALL} --runs 2 --workers 2 --output f.json")
     assert (code, out.splitlines()[-1]) == (1, "wrote f-seed0.json")
     assert err == (
-        "quietarm: the process of seed 1 (killed by SIGKILL) died; 1 of 2 seeds are done; where "
-        "memory ran short, give fewer workers or a smaller population\n"
+        "quietarm: lost seed 1 (its worker died 3 times); 1 of 2 seeds are done; where memory ran "
+        "short, give fewer workers or a smaller population\n"
     )
     assert Front.load("f-seed0.json").seed == 0
 

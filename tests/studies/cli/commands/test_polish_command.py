@@ -147,7 +147,6 @@ def without(**changes):
         (lambda: without(points=[]), "", "the front has no point"),
         (lambda: without(settings={"bound": "wide"}), "", "bound is 'wide'; give a number"),
         (without, "--points 1", "points is 1; give a whole number from 2 up"),
-        (without, "--workers 0", "workers is 0; give a whole number from 1 up"),
         (without, "--output ./bad.json", "FRONT and --output are both bad.json"),
         (without, "--csv a.png --figure a.png", "--csv and --figure are both a.png"),
         (without, "--figure a.txt", "a.txt is no picture"),

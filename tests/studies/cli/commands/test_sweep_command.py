@@ -1,6 +1,5 @@
 """`quietarm front` by the gradient: whole runs of a small size, and what is refused."""
 
-import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -108,11 +107,10 @@ def test_a_front_without_a_point_is_an_error_that_says_why(call, answer, good, f
     assert err == "quietarm: no point was found: residual <= 2 mm: no optimum\n"
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_ctrl_c_keeps_and_writes_what_was_found(folder, at_a_terminal, ctrl_c, workers):
+def test_ctrl_c_keeps_and_writes_what_was_found(folder, at_a_terminal, ctrl_c):
     # far more points than are found before the signal comes
     line = f"front {MOVE} --method epsilon --points 10000 --output f.json --figure f.png"
-    process = at_a_terminal(f"{line} --workers {workers}")
+    process = at_a_terminal(line)
     found = 0
     while found <= 10:  # of which the ends of the front are two
         found, total, *_ = map(int, re.findall(r"\d+", process.stderr.readline()))
@@ -152,7 +150,6 @@ def test_the_picture_shows_points_gaps_and_failures(good):
     [
         ("--method epsilon --points 1", "points is 1; give a whole number from 2 up"),
         ("--method weighted --points 0", "points is 0; give a whole number from 2 up"),
-        ("--method epsilon --workers 0", "workers is 0; give a whole number from 1 up"),
         ("--method epsilon --starts 0", "starts is 0; give"),
         ("--method epsilon --bound -1", "bound on the coefficients is -1"),
         ("--method epsilon --terms 0", "0 terms"),
@@ -165,7 +162,7 @@ def test_the_picture_shows_points_gaps_and_failures(good):
             "--method weighted --weights 1:1 --points 9",
             "--points is for weights that the sweep chooses",
         ),
-        ("--method weighted --workers 1", "--workers is for epsilon, nsga2 and vepso, not for"),
+        ("--method epsilon --workers 1", "--workers is for nsga2 and vepso, not for epsilon"),
         ("--method epsilon --weights 1:1", "--weights is for weighted, not for epsilon"),
         ("--method epsilon --population 9", "--population is for nsga2 and vepso, not for epsilon"),
         ("--method weighted --generations 9", "--generations is for nsga2 and vepso"),
@@ -183,12 +180,3 @@ def test_bad_input_is_refused_in_one_line(call, folder, line, words):
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert words in err
     assert list(folder.iterdir()) == []
-
-
-def test_more_workers_than_cores_are_warned_of(call, answer, good, monkeypatch):
-    monkeypatch.setattr(os, "cpu_count", lambda: 1)
-    answer(good)
-    _, _, err = call(f"front {MOVE} --method epsilon --workers 2")
-    assert err == "2 workers will share 1 core\n"
-    _, _, err = call(f"front {MOVE} --method epsilon --workers 2 --points 3")
-    assert err == ""  # two of the points are the ends, found before: one worker starts

@@ -46,28 +46,26 @@ def stop(process, number):
 
 @pytest.mark.parametrize(
     ("piece", "number", "workers"),
-    [(2, signal.SIGTERM, 1), (4, signal.SIGINT, 2), (7, signal.SIGINT, 1), (7, signal.SIGTERM, 2)],
+    [(2, signal.SIGTERM, 1), (5, signal.SIGINT, 2), (9, signal.SIGINT, 1)],
 )
 def test_a_study_keeps_the_pieces_that_were_done(at_a_terminal, folder, piece, number, workers):
     process = at_a_terminal(f"{STUDY} --runs 2 --workers {workers} --fronts fronts")
-    read_until(process, f"[{piece}/7]")
+    read_until(process, f"[{piece}/9]")
     out, err = stop(process, number)
     assert process.returncode == 1
     assert "Traceback" not in err
     (done,) = re.fullmatch(
-        r"quietarm: interrupted: (\d) of 7 pieces of work are done; what was found until then is "
+        r"quietarm: interrupted: (\d) of 9 pieces of work are done; what was found until then is "
         r"kept", err.splitlines()[-1],
     ).groups()  # fmt: skip
-    assert int(done) in (piece - 1, piece)  # the piece that was at work may have come to its end
+    # a piece begins where a worker is free; those that were at work may have come to their end
+    assert piece - workers <= int(done) <= piece
     written = out.splitlines()[-2:]
     assert written[0] == "wrote study.html"
     fronts = [Front.load(path) for path in (folder / "fronts").iterdir()]
     assert written[1] == f"wrote {len(fronts)} fronts to fronts"
-    whole = ["epsilon", "weighted", *["nsga2"] * 2, "nsga2, polished", *["vepso"] * 2]
-    ends = [1, 2, 4, 5, 7, 8]  # fronts that there are after each piece
-    found = [front.method for front in fronts if front.complete]
-    for method in whole[: ends[piece - 2]]:
-        assert method in found
+    # every piece gives a front, but for the last, the floor
+    assert sum(front.complete for front in fronts) == min(int(done), 8)
     assert "interrupt" in (folder / "study.html").read_text()
 
 

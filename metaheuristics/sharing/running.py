@@ -1,0 +1,86 @@
+"""A list of work, run piece by piece here or shared by workers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from metaheuristics.sharing.pieces import (
+    INTERRUPTED,
+    Done,
+    InterruptedPiece,
+    Listener,
+    Piece,
+    Say,
+)
+from metaheuristics.sharing.workers import HERE, Workers
+from ocp import QuietarmError
+from ocp.base.interrupts import hear_interrupts
+
+
+def run_pieces(
+    pieces: Sequence[Piece],
+    listener: Listener | None = None,
+    *,
+    workers: Workers = HERE,
+    note: type[QuietarmError] | tuple[()] = (),
+) -> Done:
+    """Run pieces of work until Ctrl-C.
+
+    Parameters
+    ----------
+    pieces : sequence of Piece
+        The work; in this process in this order, with workers in it as far as they are free.
+    listener : Listener, optional
+        Who is told how it goes.
+    workers : Workers
+        Where it is done; a single piece stays in this process unless there is a scheduler.
+    note : type of QuietarmError, optional
+        Errors of a piece that are noted, to go on with the next; any other ends the work.
+
+    Returns
+    -------
+    Done
+        Every answer, and every failure that was noted; after Ctrl-C those that there are, and what
+        pieces that were at work had found.
+
+    Raises
+    ------
+    QuietarmError
+        When a piece fails with an error that is not noted, or the workers cannot be reached.
+    """
+    listener = Listener() if listener is None else listener
+    if workers.here or workers.local(len(pieces)) == 1:
+        return _one_after_another(pieces, listener, note)
+    # Not at the top: dask is an extra, and takes longer to load than all of quietarm.
+    from metaheuristics.sharing.sharing import share
+
+    return share(pieces, listener, workers, note)
+
+
+def _one_after_another(
+    pieces: Sequence[Piece], listener: Listener, note: type[QuietarmError] | tuple[()]
+) -> Done:
+    done = Done()
+    with hear_interrupts() as came:
+        for piece in pieces:
+            try:
+                listener.begin(piece.name)
+                say = Say(partial(listener.report, piece.key))
+                answer = piece.work(done.of(piece.after), say)
+                done.answers[piece.key] = answer
+                listener.ended(piece.key, answer)
+            except QuietarmError as error:
+                if not isinstance(error, note) and not came:
+                    raise
+                if not came:  # else it may have failed of that
+                    done.failures[piece.key] = error
+            except KeyboardInterrupt as stop:
+                done.stopped = INTERRUPTED
+                if isinstance(stop, InterruptedPiece):
+                    done.parts[piece.key] = stop.part
+            if came:  # a piece that ended well in spite of Ctrl-C does not tell of it
+                done.stopped = INTERRUPTED
+            if done.stopped:
+                break
+    return done

@@ -1,0 +1,57 @@
+"""Where work is done: in this process, in processes of this machine, or on a cluster."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+from ocp.base.checks import whole
+
+MOST_WORKERS = 1000
+_EXTRA = "pip install 'quietarm[cluster]'"
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Where pieces of work are done.
+
+    Attributes
+    ----------
+    number : int
+        Processes that are started on this machine; 1 starts none and stays in this one.
+    scheduler : str or None
+        Address of a dask scheduler whose workers do the work instead, as ``tcp://host:8786``.
+
+    Raises
+    ------
+    ValueError
+        When the number is out of range, both are given, or dask is not installed.
+    """
+
+    number: int = 1
+    scheduler: str | None = None
+
+    def __post_init__(self) -> None:
+        because = "each is a process with 0.1 GB of memory"
+        object.__setattr__(self, "number", whole("workers", self.number, 1, MOST_WORKERS, because))
+        if self.scheduler is not None and self.number > 1:
+            raise ValueError(
+                f"workers is {self.number} and the scheduler {self.scheduler} has its own; give "
+                "one of them"
+            )
+        if not self.here and find_spec("distributed") is None:
+            asked = f"workers is {self.number}" if self.scheduler is None else "a scheduler"
+            raise ValueError(f"{asked} needs dask: {_EXTRA}, or leave it out")
+
+    @property
+    def here(self) -> bool:
+        """Whether all is done in this process."""
+        return self.scheduler is None and self.number == 1
+
+    def local(self, pieces: int) -> int:
+        """How many processes are started here for so many pieces."""
+        return 0 if self.scheduler is not None else min(self.number, pieces)
+
+
+HERE = Workers()
+"""In this process."""

@@ -1,0 +1,189 @@
+"""A plant with errors: of its frequencies, of its damping, of any of its parameters."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from numbers import Real
+
+import casadi as ca
+import numpy as np
+
+from models import Expression, JointMotion, Plant
+from models.contract.calls import Calls
+from ocp.base.checks import positive
+from ocp.base.names import nearest
+from ocp.simulation.collocation import modal_system
+
+FREQUENCY, DAMPING = "frequency", "damping"
+_OF_MODES = (FREQUENCY, DAMPING)
+_SAME = 1e-9
+"""Share by which what the equations give may differ between two ways to change a parameter."""
+
+
+@dataclass(frozen=True)
+class ScaledModes(Plant):
+    """A plant whose natural frequencies and damping ratios are multiples of the assumed ones.
+
+    With the joint at rest at an angle, a plant's modes obey W'' = -D W' - K W. Here they obey
+    W'' = -s d D W' - s^2 K W: as if time ran s times as fast, so that every frequency is exactly s
+    times the assumed one, with the same damping ratio; and d scales the damping, exactly where the
+    modes are damped each on its own. What the moving joint adds stays as it is.
+
+    Parameters
+    ----------
+    plant : Plant
+        The assumed plant.
+    frequency, damping : Expression
+        The factors s and d.
+    """
+
+    plant: Plant
+    frequency: Expression = 1.0
+    damping: Expression = 1.0
+
+    def __post_init__(self) -> None:  # a factor may be a symbol, so no check of numbers
+        for name in ("name", "modes", "small_deflection"):
+            object.__setattr__(self, name, getattr(self.plant, name))
+
+    def modal_accelerations(
+        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
+    ) -> Sequence[Expression]:
+        """The plant's own, and what its other stiffness and damping add [m/s^2]."""
+        resting, modes = modal_system(self.plant, JointMotion(joint.angle, 0.0, 0.0)), range(len(W))
+        less_stiff = 1 - self.frequency * self.frequency
+        less_damped = 1 - self.frequency * self.damping
+        return [
+            assumed
+            + less_stiff * sum(resting.K[i][j] * W[j] for j in modes)
+            + less_damped * sum(resting.D[i][j] * dW[j] for j in modes)
+            for i, assumed in enumerate(self.plant.modal_accelerations(joint, W, dW))
+        ]
+
+    def torque(
+        self,
+        joint: JointMotion,
+        W: Sequence[Expression],
+        dW: Sequence[Expression],
+        ddW: Sequence[Expression],
+    ) -> Expression:
+        """Joint torque by the plant's own equation [N m]."""
+        return self.plant.torque(joint, W, dW, ddW)
+
+    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+        """Those of the plant [m]."""
+        return self.plant.tip_displacements(W)
+
+
+def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
+    """The plant as it is when the assumed one is wrong.
+
+    Parameters
+    ----------
+    plant : Plant
+        The assumed plant.
+    errors : mapping of str to Expression
+        Relative errors: ``"frequency"`` and ``"damping"`` of all modes alike, else of the parameter
+        of that name. Numbers, or symbols that stand for many of them.
+
+    Returns
+    -------
+    Plant
+        A plant with parameters 1 + error times the assumed ones; of symbols where they are symbols.
+    """
+    values = {
+        name: getattr(plant, name) * (1 + error)
+        for name, error in errors.items()
+        if name not in _OF_MODES
+    }
+    if all(isinstance(value, Real) for value in values.values()):
+        changed = replace(plant, **values) if values else plant
+    else:
+        changed = _with_symbols(plant, values)
+    factors = [1 + errors.get(name, 0.0) for name in _OF_MODES]
+    return ScaledModes(changed, *factors) if any(name in errors for name in _OF_MODES) else changed
+
+
+def _with_symbols(plant: Plant, values: Mapping[str, Expression]) -> Plant:
+    changed = copy.copy(plant)  # not by its class, which takes numbers
+    for name, value in values.items():
+        object.__setattr__(changed, name, value)
+    return changed
+
+
+def checked_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
+    """The errors that a plant may have, each from minus to plus its range.
+
+    Parameters
+    ----------
+    plant : Plant
+        The assumed plant.
+    ranges : mapping of str to float
+        Largest relative errors by name, as 0.1 for 10 %.
+
+    Returns
+    -------
+    dict of str to float
+        The same.
+
+    Raises
+    ------
+    ValueError
+        When there is no such parameter, a range is not between 0 and 1, or a plant at the end of
+        a range breaks the contract of plants.
+    """
+    if not ranges:
+        raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
+    return {name: _checked_range(plant, name, size) for name, size in ranges.items()}
+
+
+def _checked_range(plant: Plant, name: str, size: float) -> float:
+    refuse_unknown(plant, [name])
+    size = positive(f"range of {name}", size)
+    most = 1.0 if name == DAMPING else np.nextafter(1.0, 0.0)
+    if size > most:
+        becomes = "negative" if size > 1 else "0"
+        less = "100 % or less" if name == DAMPING else "less than 100 %"
+        raise ValueError(
+            f"an error of {100 * size:g} % makes the {name} {becomes}; give {less}, as 0.1 for 10 %"
+        )
+    if name not in _OF_MODES and getattr(plant, name) == 0:
+        raise ValueError(
+            f"parameter {name} of {plant.name} is 0: a share of it is no error; leave it out"
+        )
+    for error in (-size, size):
+        try:
+            with_errors(plant, {name: error}).validate()
+        except ValueError as problem:
+            side = "lower" if error < 0 else "higher"
+            raise ValueError(f"with {name} {100 * size:g} % {side}, {problem}") from None
+        _check_symbols(plant, name, error)
+    return size
+
+
+def refuse_unknown(plant: Plant, names: Iterable[str]) -> None:
+    """Refuse names that are no parameter of a plant; ValueError suggests the nearest."""
+    known = [*_OF_MODES, *plant.parameters]
+    for name in names:
+        if name not in known:
+            raise ValueError(
+                f"{plant.name} has no parameter {name!r}; {nearest(name, known)}(it has: "
+                f"{', '.join(known)})"
+            )
+
+
+def _check_symbols(plant: Plant, name: str, error: float) -> None:
+    """Whether the equations take a symbol for a parameter, and read it from nowhere else."""
+    if name in _OF_MODES:
+        return
+    value, symbol = getattr(plant, name) * (1 + error), ca.SX.sym(name)
+    motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 3 * plant.modes).tolist()
+    expressions = Calls(_with_symbols(plant, {name: symbol}), 1).outputs(motion).all
+    found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
+    anew = Calls(replace(plant, **{name: value}), 1).outputs(motion).all
+    if not np.allclose(found, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):
+        raise ValueError(
+            f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "
+            f"compute in them, from self.{name}, with casadi.sqrt and its like"
+        )

@@ -1,0 +1,192 @@
+"""What one joint motion leaves and costs on many plants with errors, in one casadi call.
+
+The same symbolic rollout as that of searches, with a plant in each row in the place of a candidate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models import Expression, JointMotion, Plant
+from ocp.base.interrupts import keep_interrupts
+from ocp.profiles.joint_profile import JointProfile
+from ocp.robustness.plants import with_errors
+from ocp.simulation.collocation import NODES, step
+from ocp.simulation.residual import residual_samples
+from ocp.simulation.rollout import ROLLOUT_STEPS, default_steps, node_times, rollout_along
+from ocp.task.point_to_point import PointToPoint
+
+_BLOCK = 100
+"""Plants a call: their intermediate values fit the processor's cache."""
+
+_STEPS_OF_CSE = 2 * ROLLOUT_STEPS
+"""Common terms are looked for up to these steps: that takes a third off a call, but a time that
+grows with the square of the steps."""
+
+
+@dataclass(frozen=True, eq=False)
+class Figures:
+    """What a motion leaves and costs; an entry a plant, arrays are read-only.
+
+    Attributes
+    ----------
+    residual : ndarray
+        F1 [m].
+    energy : ndarray
+        F2 [J].
+    peak_torque : ndarray
+        Largest absolute torque during the move [N m], over the nodes of the steps.
+    """
+
+    residual: NDArray[np.float64]
+    energy: NDArray[np.float64]
+    peak_torque: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            array.setflags(write=False)
+
+    def part(self, first: int, count: int) -> Figures:
+        """So many entries from the first on."""
+        return Figures(*(array[first : first + count].copy() for array in vars(self).values()))
+
+
+class ErrorPopulation:
+    """Residual, energy and peak torque of one motion on plants with errors.
+
+    The joint follows its planned path whatever the plant; energy and torque are what that takes.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move of the assumed plant.
+    profile : JointProfile
+        How the joint moves.
+    coefficients : array_like, shape (profile.size,)
+        The profile's coefficients.
+    ranges : mapping of str to float
+        Largest errors by name, as by `checked_ranges`.
+    """
+
+    @keep_interrupts()  # casadi loses a Ctrl-C
+    def __init__(
+        self,
+        task: PointToPoint,
+        profile: JointProfile,
+        coefficients: ArrayLike,
+        ranges: dict[str, float],
+    ) -> None:
+        self.names = tuple(ranges)
+        self._task = task
+        faster = 1 + max(ranges.values())  # any of the parameters may be a frequency
+        resolved = default_steps(task, least=1)
+        steps = max(ROLLOUT_STEPS, int(np.ceil(faster * resolved)))
+        self._samples = int(np.ceil(faster * residual_samples(task)))
+        self._joint = _joint_at_nodes(task, profile, coefficients, steps)
+        self._function = _compiled(task.plant, steps, self.names)
+
+    @keep_interrupts()
+    def __call__(
+        self, errors: ArrayLike, report: Callable[[int, int], object] | None = None
+    ) -> Figures:
+        """Evaluate plants with errors.
+
+        Parameters
+        ----------
+        errors : array_like, shape (plants, names)
+            Relative errors, in the order of the ranges.
+        report : callable, optional
+            Is told how many plants of how many are done.
+
+        Returns
+        -------
+        Figures
+            One entry a plant.
+
+        Raises
+        ------
+        ValueError
+            When the shape does not fit the names.
+        """
+        plants = np.asarray(errors, dtype=float)
+        if plants.ndim != 2 or plants.shape[1] != len(self.names):
+            raise ValueError(f"errors have shape {plants.shape}; give (plants, {len(self.names)})")
+        rows = [np.empty((0, 3))]
+        for first in range(0, len(plants), _BLOCK):
+            block = plants[first : first + _BLOCK]
+            rows.append(self._evaluate(block))
+            if report is not None:
+                report(first + len(block), len(plants))
+        return Figures(*np.vstack(rows).T.copy())
+
+    def _evaluate(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
+        count, window = len(block), self._task.residual_window
+        padded = np.zeros((_BLOCK, block.shape[1]))
+        padded[:count] = block
+        between = window / (self._samples - 1)
+        inputs = ca.DM(padded), self._joint, self._task.target, self._task.duration, between
+        values = [value.full()[:count] for value in self._function(*inputs)]
+        arrival, transition, tips, energy, torque = values
+        size = arrival.shape[1]
+        of_window = _marched(
+            arrival[:, :, None], transition.reshape(count, size, size), self._samples
+        )
+        tip_of_mode = tips.reshape(count, -1, size // 2)
+        residual = np.abs(tip_of_mode @ of_window[:, : size // 2]).max(axis=(1, 2))
+        return np.column_stack([residual, energy, np.abs(torque).max(axis=1)])
+
+
+def _marched(
+    state: NDArray[np.float64], transition: NDArray[np.float64], samples: int
+) -> NDArray[np.float64]:
+    """States (plants, states, samples) by powers of the transition (plants, states, states)."""
+    while state.shape[2] < samples:
+        state = np.concatenate([state, transition @ state], axis=2)
+        transition = transition @ transition
+    return state[:, :, :samples]
+
+
+def _joint_at_nodes(
+    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, steps: int
+) -> ca.DM:
+    """Angle, speed and acceleration at every node of a step, shape (3 * NODES, steps)."""
+    checked, (times, _) = profile.checked(coefficients, task.duration), node_times(steps)
+    return ca.vertcat(*(row for at in times for row in profile.motion(checked, at, *task.move)[:3]))
+
+
+@lru_cache(maxsize=16)
+def _compiled(plant: Plant, steps: int, names: tuple[str, ...]) -> ca.Function:
+    """(errors, joint at nodes, target, duration, time between samples) -> what `_evaluate` needs.
+
+    A row a plant: state on arrival; the transition of the state between two samples at rest and the
+    tips of the modes, both row by row; energy; torque at the nodes.
+    """
+    errors, joint = ca.MX.sym("e", _BLOCK, len(names)), ca.MX.sym("joint", 3 * NODES, steps)
+    target, duration, between = (ca.MX.sym(name) for name in ("target", "duration", "dt"))
+    columns = dict(zip(names, ca.horzsplit(errors, 1), strict=True))
+    moving = with_errors(plant, {n: ca.repmat(e, 1, steps) for n, e in columns.items()})
+    resting, modes = with_errors(plant, columns), range(plant.modes)
+    rows = [ca.repmat(row, _BLOCK, 1) for row in ca.vertsplit(joint)]
+    joints = [JointMotion(*rows[3 * node : 3 * node + 3]) for node in range(NODES)]
+    rollout = rollout_along(moving, joints, duration * node_times(steps, _BLOCK)[1])
+    by_column = step(resting, [JointMotion(target, 0.0, 0.0)] * NODES, between).transition()[1]
+    transition = [column[row] for row in range(2 * plant.modes) for column in by_column]
+    of_mode = [resting.tip_displacements([float(i == j) for i in modes]) for j in modes]
+    tips = [column[tip] for tip in range(plant.tips) for column in of_mode]
+    outputs = [
+        rollout.arrival, _rows(transition), _rows(tips), rollout.energy,
+        ca.horzcat(*rollout.torque),
+    ]  # fmt: skip
+    inputs = [errors, joint, target, duration, between]
+    return ca.Function("errors", inputs, outputs, {"cse": steps <= _STEPS_OF_CSE})
+
+
+def _rows(columns: list[Expression]) -> Expression:
+    """Columns side by side, a row a plant; some may not depend on the errors."""
+    return ca.horzcat(*(ca.DM.zeros(_BLOCK, 1) + column for column in columns))

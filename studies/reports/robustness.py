@@ -1,0 +1,171 @@
+"""What `quietarm robustness` shows and writes: a table, its meaning, a picture, the samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from ocp import Plan, Robustness, Sweep
+from ocp.base.files import write_whole
+from ocp.base.printable import printable
+from ocp.robustness.measures import TOLERATED
+from studies.display.saving import File, drawing, inside
+from studies.display.tables import Cell, Column, Table, print_table
+from studies.display.words import move_of, plant_words
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+REPORT, PICTURE = "report.md", "robustness.png"
+_SHARES = {50: "median of the samples", 95: "95 % of them within", 100: "largest of them"}
+_DIGITS, _LENGTH = "{:.5g}".format, "{:.3g}".format
+_TOLERATED = f"within {100 * TOLERATED:g} %"
+Figured = Mapping[str, tuple[Plan, Robustness]]
+"""Every plan with its figures, by what it is called."""
+
+
+def robustness_table(plans: Figured) -> Table:
+    """The figures of every plan."""
+    lines = _lines(next(iter(plans.values()))[1])
+    columns = [Column("plan"), Column("plant"), Column("move"), Column("profile")]
+    rows: list[list[Cell]] = []
+    for label, (plan, found) in plans.items():
+        task = plan.task
+        row: list[Cell] = [label, plant_words(task.plant), move_of(task), plan.profile.label]
+        rows.append([*row, *(cell(found) for _, cell in lines)])
+    return Table("Robustness", [*columns, *(column for column, _ in lines)], rows)
+
+
+_Line = tuple[Column, Callable[[Robustness], float | None]]
+
+
+def _lines(some: Robustness) -> list[_Line]:
+    """Every figure, with how it is read off the figures of a plan."""
+    lines: list[_Line] = [
+        (Column("plain cycloid leaves [mm]", _LENGTH, "cycloid_residual_mm"),
+         lambda found: 1e3 * found.cycloid),
+    ]  # fmt: skip
+    lines += _of_figure("residual", "mm", 1e3, _LENGTH)
+    for i in range(len(some.sweeps)):
+        lines += _of_sweep(i, some.sweeps[i])
+    lines += _of_figure("energy", "J", 1.0, _DIGITS)
+    lines += _of_figure("peak_torque", "N m", 1.0, _DIGITS)
+    return lines
+
+
+def _of_figure(name: str, unit: str, scale: float, form: Callable[[float], str]) -> list[_Line]:
+    words, key = name.replace("_", " "), f"{name}_{unit.replace(' ', '')}"
+
+    def percentile(share: float) -> Callable[[Robustness], float]:
+        return lambda found: scale * found.percentile(name, share)
+
+    return [
+        (Column(f"{words} [{unit}]", form, key),
+         lambda found: scale * float(getattr(found.assumed, name)[0])),
+        *((Column(f"  {word}", form, f"{key}_p{share}"), percentile(share))
+          for share, word in _SHARES.items()),
+    ]  # fmt: skip
+
+
+def _of_sweep(number: int, sweep: Sweep) -> list[_Line]:
+    name, size = sweep.name, f"{100 * float(sweep.errors[-1]):g} %"
+
+    def residual(pick: Callable[[NDArray[np.float64]], float]) -> Callable[[Robustness], float]:
+        return lambda found: 1e3 * float(pick(found.sweeps[number].figures.residual))
+
+    def end(which: int) -> Callable[[Robustness], float | None]:
+        def read(found: Robustness) -> float | None:
+            ends = found.sweeps[number].insensitivity
+            return None if ends is None else 100 * ends[which]
+
+        return read
+
+    return [
+        (Column(f"  {name} -{size}", _LENGTH, f"residual_{name}_lower_mm"), residual(_first)),
+        (Column(f"  {name} +{size}", _LENGTH, f"residual_{name}_higher_mm"), residual(_last)),
+        (Column("    largest between", _LENGTH, f"residual_{name}_largest_mm"), residual(np.max)),
+        (Column(f"    {_TOLERATED} from [%]", _LENGTH, f"{name}_tolerated_from_percent"), end(0)),
+        (Column("      to [%]", _LENGTH, f"{name}_tolerated_to_percent"), end(1)),
+    ]  # fmt: skip
+
+
+def _first(values: NDArray[np.float64]) -> float:
+    return values[0]
+
+
+def _last(values: NDArray[np.float64]) -> float:
+    return values[-1]
+
+
+def how_to_read(plans: Figured) -> list[str]:
+    """What the figures mean, a sentence or two each."""
+    some = next(iter(plans.values()))[1]
+    return [
+        "The joint follows the planned path whatever the plant; energy and torque are what that "
+        "takes. An error of the frequency or of the damping is one of all modes alike.",
+        f"{_TOLERATED.capitalize()}: the errors around none up to which the residual stays "
+        f"within {100 * TOLERATED:g} % of what the plain cycloid of the same duration leaves on "
+        "the assumed plant, all else as assumed; empty where it is above without an error. At an "
+        "end of the range it may reach farther.",
+        f"Samples: {len(some.errors)}, seed {some.seed}, all errors at once and uniform within "
+        f"{', '.join(f'+-{100 * size:g} % of {name}' for name, size in some.ranges.items())}.",
+    ]
+
+
+def print_robustness(console: Console, plans: Figured) -> None:
+    """Print the table and how to read it."""
+    print_table(console, robustness_table(plans))
+    for line in how_to_read(plans):
+        console.print(f"- {printable(line)}", highlight=False, style="dim")
+
+
+def robustness_files(folder: Path, plans: Figured) -> list[File]:
+    """What writes each file to a folder."""
+
+    def picture() -> Figure:
+        from studies.figures.robustness import robustness_figure
+
+        return robustness_figure({label: figures for label, (_, figures) in plans.items()})
+
+    def report(path: Path) -> None:
+        parts = ["# Robustness\n", robustness_table(plans).markdown(), "**How to read it**\n"]
+        parts += [f"- {line}" for line in how_to_read(plans)]
+        write_whole(path, "\n".join([*parts, f"\n![Residual over errors]({PICTURE})\n"]))
+
+    writes = {
+        REPORT: report,
+        "robustness.csv": robustness_table(plans).save_csv,
+        "sweeps.csv": _sweeps(plans).save_csv,
+        "samples.csv": _samples(plans).save_csv,
+        PICTURE: drawing(picture),
+    }
+    return inside(folder, writes)
+
+
+_FIGURES = tuple(Column(name) for name in ("residual_m", "energy_J", "peak_torque_Nm"))
+
+
+def _sweeps(plans: Figured) -> Table:
+    """Every point of every curve, a row each."""
+    rows: list[list[Cell]] = []
+    for label, (_, found) in plans.items():
+        for sweep in found.sweeps:
+            columns = sweep.errors, *vars(sweep.figures).values()
+            rows += [[label, sweep.name, *row] for row in zip(*map(list, columns), strict=True)]
+    return Table("Sweeps", [Column("plan"), Column("of"), Column("error"), *_FIGURES], rows)
+
+
+def _samples(plans: Figured) -> Table:
+    """Every sample, a row each."""
+    names = list(next(iter(plans.values()))[1].ranges)
+    columns = [Column("plan"), *(Column(f"{name}_error") for name in names), *_FIGURES]
+    rows: list[list[Cell]] = []
+    for label, (_, found) in plans.items():
+        entries = *found.errors.T, *vars(found.samples).values()
+        rows += [[label, *row] for row in zip(*(e.tolist() for e in entries), strict=True)]
+    return Table("Samples", columns, rows)

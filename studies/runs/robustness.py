@@ -1,0 +1,91 @@
+"""What `quietarm robustness` does: plans from files over errors of their plants."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+from rich.console import Console
+
+from ocp import Plan, evaluate_robustness
+from ocp.robustness.plants import checked_ranges
+from studies.display.progress import count
+from studies.display.saving import finish
+from studies.reports.robustness import Figured, print_robustness, robustness_files
+
+DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
+"""The errors where none is asked for."""
+
+
+def run_robustness(
+    paths: Sequence[Path],
+    ranges: Mapping[str, float],
+    samples: int,
+    seed: int,
+    output: Path | None,
+    quiet: bool,
+) -> None:
+    """Evaluate saved plans over errors of their plants, show the figures and write them.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        The plans.
+    ranges : mapping of str to float
+        Largest relative errors by name; `DEFAULT_RANGES` where there are none.
+    samples, seed : int
+        Monte Carlo samples of each plan, and their seed.
+    output : Path or None
+        Folder for table, picture and samples.
+    quiet : bool
+        Show no progress.
+
+    Raises
+    ------
+    FileFormatError
+        When a file is no plan.
+    ValueError
+        When there is no plan, one is given twice, or its plant cannot have the errors.
+    QuietarmError
+        When the work was interrupted.
+    """
+    ranges = dict(ranges) or dict(DEFAULT_RANGES)
+    plans = _loaded(paths)
+    for label, plan in plans.items():
+        try:
+            checked_ranges(plan.task.plant, ranges)
+        except ValueError as error:
+            raise ValueError(f"{label}: {error}") from None
+    figured: Figured = _evaluated(plans, ranges, samples, seed, quiet)
+    files = [] if output is None else robustness_files(output, figured)
+    finish(files, partial(print_robustness, plans=figured), quiet=quiet)
+
+
+def _loaded(paths: Sequence[Path]) -> dict[str, Plan]:
+    """The plans by what they are called: the name of their file, or the whole path."""
+    if not paths:
+        raise ValueError("no plan is given; give files that were written by quietarm plan --output")
+    for path in paths:
+        if list(paths).count(path) > 1:
+            raise ValueError(f"{path} is given twice; give it once")
+    stems = [path.stem for path in paths]
+    names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
+    return {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
+
+
+def _evaluated(
+    plans: Mapping[str, Plan], ranges: Mapping[str, float], samples: int, seed: int, quiet: bool
+) -> Figured:
+    each, figured = samples, {}
+    with count(each * len(plans), "evaluations", Console(stderr=True), quiet=quiet) as report:
+        for number, (label, plan) in enumerate(plans.items()):
+
+            def told(done: int, total: int, number: int = number) -> None:
+                report(number * total + done, len(plans) * total)
+
+            figured[label] = plan, evaluate_robustness(
+                plan.task, plan.profile, plan.coefficients, ranges,
+                samples=samples, seed=seed, report=told,
+            )  # fmt: skip
+    return figured

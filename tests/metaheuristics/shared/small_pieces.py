@@ -1,0 +1,44 @@
+"""Pieces of work for workers, which import them."""
+
+import os
+import signal
+from pathlib import Path
+
+from metaheuristics.objective.population import PopulationObjective
+from models import SingleLinkManipulator
+from ocp import CycloidPolynomial, PointToPoint
+
+
+def add(known, say):
+    return sum(known.answers.values()) + 1
+
+
+def refuse(known, say):
+    raise ValueError("give another")
+
+
+def exhaust(known, say):
+    raise MemoryError
+
+
+def built(known, say):
+    """Which worker it is, and how often it has built the same objective of a population."""
+    from metaheuristics.objective import population
+
+    PopulationObjective(PointToPoint(SingleLinkManipulator(), 0.5, 0.8), CycloidPolynomial(2))
+    return os.getpid(), population._compiled.cache_info().misses
+
+
+def kill_once(path, known, say):
+    """End the worker with SIGKILL, unless it was done before."""
+    if not Path(path).exists():
+        Path(path).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "done by another"
+
+
+def kill_always(path, known, say):
+    """End every worker with SIGKILL, and note it."""
+    with Path(path).open("a") as file:
+        file.write("x")
+    os.kill(os.getpid(), signal.SIGKILL)

@@ -1,0 +1,202 @@
+"""Pieces shared by real workers: those of a scheduler started by its own command, and local ones.
+
+In order: the scheduler has no workers at first, and is ended by the last test that needs it.
+"""
+
+import contextlib
+import math
+import multiprocessing
+import os
+import signal
+import socket
+import subprocess
+import sys
+from functools import partial
+
+import pytest
+import small_pieces
+
+import metaheuristics.sharing.cluster as cluster
+import metaheuristics.sharing.workers as workers_module
+from metaheuristics import search, search_many
+from metaheuristics.ensemble import LostSeedsError, one_seed
+from metaheuristics.sharing.pieces import Listener, LostPieceError, Piece
+from metaheuristics.sharing.running import run_pieces
+from metaheuristics.sharing.workers import Workers
+from models import SingleLinkManipulator
+from ocp import PointToPoint, QuietarmError
+
+TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+SMALL = {"bound": 0.2, "population": 8, "generations": 3}
+LONG = {**SMALL, "population": 40, "generations": 100_000}  # it never ends by itself
+SIGKILL = pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
+
+
+@contextlib.contextmanager
+def dask(*words, until):
+    """A command of dask's own, from the line on standard error that holds these words."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "dask", *words],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    try:
+        line = next(line for line in process.stderr if until in line)
+        yield process, line.split()[-1]
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+
+@pytest.fixture(scope="module")
+def scheduler():
+    """A scheduler: its process and its address."""
+    words = "scheduler --host 127.0.0.1 --port 0 --no-dashboard"
+    with dask(*words.split(), until="Scheduler at:") as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def address(scheduler, tmp_path_factory):
+    """The address of a scheduler that has two workers."""
+    _, address = scheduler
+    words = f"worker {address} --nworkers 2 --nthreads 1 --no-dashboard --local-directory"
+    folder = tmp_path_factory.mktemp("workers")
+    with dask(*words.split(), str(folder), until="Registered to:") as (process, _):
+        next(line for line in process.stderr if "Registered to:" in line)  # the second one
+        yield address
+
+
+def test_a_scheduler_without_workers_is_refused(scheduler):
+    _, address = scheduler
+    with pytest.raises(QuietarmError, match=f"{address} has no workers; start some with `dask wor"):
+        search_many(TASK, "vepso", 2, scheduler=address, **SMALL)
+
+
+def test_its_workers_find_the_fronts_of_single_searches(address):
+    done, heard = [], set()
+    fronts = search_many(
+        TASK, "vepso", 3, scheduler=address, **SMALL, done=done.append,
+        report=lambda progress, seed: heard.add(seed),
+    )  # fmt: skip
+    assert fronts == [search(TASK, "vepso", seed=seed, **SMALL) for seed in (0, 1, 2)]
+    assert sorted(front.seed for front in done) == [0, 1, 2]
+    assert heard == {0, 1, 2}
+
+
+def test_what_casadi_needs_is_built_once_a_worker(address):
+    pieces = [Piece(i, str(i), small_pieces.built) for i in range(8)]
+    counts = {}
+    for process, misses in run_pieces(pieces, workers=Workers(scheduler=address)).answers.values():
+        counts.setdefault(process, set()).add(misses)
+    assert len(counts) <= 2
+    assert all(len(misses) == 1 for misses in counts.values())
+
+
+def test_pieces_wait_for_those_they_come_after_and_failures_are_noted(address):
+    pieces = [
+        Piece("a", "a", small_pieces.add),
+        Piece("b", "b", small_pieces.add, after=("a",)),
+        Piece("none", "none", small_pieces.exhaust),
+        Piece("c", "c", small_pieces.add, after=("a", "b", "none")),
+    ]
+    begun, where = [], Workers(scheduler=address)
+    done = run_pieces(pieces, Listener(begun.append), workers=where, note=LostPieceError)
+    assert done.answers == {"a": 1, "b": 2, "c": 4}
+    assert {key: str(error) for key, error in done.failures.items()} == {"none": "out of memory"}
+    assert begun == ["a", "none", "b", "c"]
+    with pytest.raises(ValueError, match="give another"):
+        run_pieces([Piece("a", "a", small_pieces.refuse)], workers=where, note=QuietarmError)
+
+
+@SIGKILL
+def test_a_piece_whose_worker_is_killed_is_done_by_another(address, tmp_path):
+    killing = partial(small_pieces.kill_once, str(tmp_path / "killed"))
+    pieces = [Piece("killing", "killing", killing), Piece("other", "other", small_pieces.add)]
+    done = run_pieces(pieces, workers=Workers(scheduler=address))
+    assert done.answers == {"killing": "done by another", "other": 1}
+
+
+def test_after_ctrl_c_what_was_found_is_there_and_the_workers_are_free(address):
+    heard = set()
+
+    def interrupt(progress, seed):
+        if seed not in heard:
+            heard.add(seed)
+            if heard == {0, 1}:
+                signal.raise_signal(signal.SIGINT)
+
+    fronts = search_many(TASK, "nsga2", 4, scheduler=address, report=interrupt, **LONG)
+    assert [(front.seed, front.complete) for front in fronts] == [(0, False), (1, False)]
+    assert all(front.points for front in fronts)
+    # else these would wait for ever: a worker does one piece at a time
+    pieces = [Piece(i, str(i), small_pieces.add) for i in range(4)]
+    assert run_pieces(pieces, workers=Workers(scheduler=address)).number == 4
+
+
+def test_a_scheduler_that_goes_leaves_what_was_found(address, scheduler):
+    process, _ = scheduler
+    ended = []
+
+    def note_end(key, answer):
+        ended.append(key)
+
+    def end_scheduler(key, progress):
+        if ended and process.poll() is None:
+            process.kill()
+            process.wait()
+
+    pieces = [
+        Piece("short", "short", small_pieces.add),
+        Piece("long", "long", partial(one_seed, TASK, "nsga2", LONG, 0)),
+    ]
+    listener = Listener(report=end_scheduler, ended=note_end)
+    done = run_pieces(pieces, listener, workers=Workers(scheduler=address))
+    assert done.stopped == f"the scheduler at {address} is gone"
+    assert done.answers == {"short": 1}
+    assert not done.parts["long"].complete
+    assert done.parts["long"].points
+    error = LostSeedsError(done, list(done.parts.values()), 2)
+    assert str(error) == f"{done.stopped}; 1 of 2 seeds are done; 1 in part"
+
+
+def test_where_no_scheduler_answers_it_is_said(monkeypatch):
+    monkeypatch.setattr(cluster, "_CONNECT_SECONDS", 0.1)
+    with socket.socket() as silent:  # keeps its port, but does not listen
+        silent.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(ValueError, match=rf"no scheduler answers at {address} \(") as caught:
+            search_many(TASK, "vepso", 2, scheduler=address, **SMALL)
+    assert "\n" not in str(caught.value)
+
+
+@SIGKILL
+def test_a_piece_that_kills_its_worker_three_times_is_reported(tmp_path):
+    deaths = tmp_path / "deaths"
+    killing = partial(small_pieces.kill_always, str(deaths))
+    pieces = [Piece("killing", "killing", killing), Piece("other", "other", small_pieces.add)]
+    done = run_pieces(pieces, workers=Workers(2), note=LostPieceError)
+    assert done.answers == {"other": 1}
+    assert str(done.failures["killing"]) == "its worker died 3 times"
+    assert deaths.read_text() == "xxx"
+    assert multiprocessing.active_children() == []
+
+
+def test_without_dask_it_is_said_what_to_install(monkeypatch):
+    monkeypatch.setattr(workers_module, "find_spec", lambda name: None)
+    assert Workers().here
+    for asked in ({"workers": 2}, {"scheduler": "tcp://127.0.0.1:8786"}):
+        with pytest.raises(ValueError, match=r"needs dask: pip install 'quietarm\[cluster\]'"):
+            search_many(TASK, "vepso", 2, **asked, **SMALL)
+
+
+def test_workers_of_two_kinds_are_refused():
+    with pytest.raises(ValueError, match="workers is 2 and the scheduler tcp://a:1 has its own"):
+        Workers(2, "tcp://a:1")
+
+
+@pytest.mark.parametrize("name", ["checkpoint", "resume"])
+def test_a_checkpoint_is_not_for_the_workers_of_a_scheduler(tmp_path, name):
+    with pytest.raises(ValueError, match="a checkpoint is a file of this machine"):
+        search_many(TASK, "vepso", 1, scheduler="tcp://a:1", **SMALL, **{name: tmp_path / "state"})

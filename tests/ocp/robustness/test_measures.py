@@ -1,0 +1,215 @@
+"""Sweeps and samples against single evaluations by CVODES and against closed forms."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from models import DualLinkManipulator, SingleLinkManipulator
+from ocp import (
+    CycloidPolynomial,
+    PointToPoint,
+    evaluate_robustness,
+    resimulate,
+    shaped_cycloid,
+    with_errors,
+)
+from ocp.robustness.population import ErrorPopulation
+from ocp.simulation.residual import MOST_SAMPLES
+
+LINEAR = SingleLinkManipulator(beta2=0.0, zeta=0.0)
+RANGES = {
+    "single link": {"frequency": 0.2, "damping": 0.5, "beta1": 0.1, "alpha1": 0.1, "phi": 0.05},
+    "arm": {"frequency": 0.2, "alpha1": 0.5, "alpha3": 0.1, "beta2": 0.3, "c": 0.2},
+    "two links": {"omega1": 0.15, "omega2": 0.15, "a2": 0.1, "b1": 0.9, "g1": 0.05},
+}
+
+
+def of_plan(plan, ranges, **settings):
+    return evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, **settings)
+
+
+def alone(plan, errors):
+    """The figures of a plan on one plant with errors, by CVODES."""
+    task = replace(plan.task, plant=with_errors(plan.task.plant, errors))
+    return resimulate(task, plan.profile, plan.coefficients)
+
+
+@pytest.fixture
+def plans(tasks, solved):
+    return {name: solved(task, bound=0.5) for name, task in tasks.items()}
+
+
+# -- against single evaluations --
+
+
+@pytest.mark.parametrize("name", RANGES)
+def test_samples_are_what_cvodes_finds_one_by_one(plans, name):
+    plan = plans[name]
+    found = of_plan(plan, RANGES[name], samples=300, seed=4)
+    scale = found.samples.residual.max()
+    for i in (0, 1, 2, 99, 100, 299):  # of three blocks, the last not full
+        single = alone(plan, dict(zip(RANGES[name], found.errors[i].tolist(), strict=True)))
+        # The residual misses 5e-5 of a peak by its samples in time (`RADIANS_A_SAMPLE`); the peak
+        # torque is that at the nodes.
+        assert found.samples.residual[i] == pytest.approx(
+            single.residual, rel=6e-5, abs=1e-6 * scale
+        )
+        assert found.samples.energy[i] == pytest.approx(single.energy, rel=1e-6)
+        assert found.samples.peak_torque[i] == pytest.approx(single.peak_torque, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", RANGES)
+def test_sweeps_change_one_thing_alone(plans, name):
+    plan = plans[name]
+    found = of_plan(plan, RANGES[name], samples=1)
+    assert [sweep.name for sweep in found.sweeps] == list(RANGES[name])
+    for sweep in found.sweeps:
+        assert sweep.errors[[0, 100, -1]] == pytest.approx(
+            [-RANGES[name][sweep.name], 0, RANGES[name][sweep.name]]
+        )
+        single = alone(plan, {sweep.name: float(sweep.errors[-1])})
+        assert sweep.figures.residual[-1] == pytest.approx(single.residual, rel=6e-5, abs=1e-7)
+        assert sweep.figures.energy[-1] == pytest.approx(single.energy, rel=1e-6)
+        assert sweep.figures.residual[100] == found.assumed.residual[0]
+
+
+def test_the_figures_of_docs_physics(tasks, solved):
+    # 'The published optima are not optimal': the arm's plan, omega 10 % lower and higher, 2.9 mm.
+    task = replace(tasks["arm"])
+    found = of_plan(solved(task, bound=0.5), {"omega": 0.1}, samples=1)
+    assert found.sweeps[0].figures.residual[[0, -1]] == pytest.approx([2.9e-3, 2.9e-3], abs=5e-5)
+    assert found.cycloid == pytest.approx(15.0e-3, abs=5e-5)
+
+
+def test_faster_modes_are_resolved(two_links):
+    # A mode of 19 periods in the move, and 1.9 times as fast at the end of the range.
+    plant = replace(two_links, omega1=200.0)
+    task = PointToPoint(plant, 1.0, 0.6)
+    found = evaluate_robustness(task, CycloidPolynomial(0), [], {"omega1": 0.9}, samples=1)
+    single = resimulate(
+        replace(task, plant=replace(plant, omega1=200.0 * 1.9)), CycloidPolynomial(0), []
+    )
+    assert found.sweeps[0].figures.residual[-1] == pytest.approx(single.residual, rel=1e-4)
+    assert found.sweeps[0].figures.energy[-1] == pytest.approx(single.energy, rel=1e-4)
+
+
+# -- the insensitivity range --
+
+
+def of_cycloid(r, task, length):
+    """What a cycloid of this length leaves of an undamped mode of r times the frequency [m].
+
+    W'' + w^2 W = -b theta'' is left with b / w |integral of theta'' exp(j w t)|, where
+    theta'' = span turn / length sin(turn t).
+    """
+    plant, turn, w = task.plant, 2 * math.pi / length, r * task.plant.omega
+    integral = 2 * turn * math.sin(w * length / 2) / (turn**2 - w**2)
+    return abs(plant.phi * plant.beta1 / w * task.span * turn / length * integral)
+
+
+def left(shaper, r, task, profile):
+    """The same of a shaped cycloid: docs/physics.md, 'Input shaping', has the shapers' curves."""
+    share = {
+        "zv": abs(math.cos(math.pi * r / 2)),
+        "zvd": math.cos(math.pi * r / 2) ** 2,
+        "ei": abs(1.05 / 2 * math.cos(math.pi * r) + 0.95 / 2),
+    }[shaper]
+    return share * of_cycloid(r, task, task.duration - profile.length)
+
+
+def ends(excess, step=1e-3):
+    """Where an excess below 0 at r = 1 is first 0 on either side, as errors."""
+    found = []
+    for side in (-step, step):
+        r = 1.0
+        while excess(r + side) <= 0:
+            r += side
+        found.append(brentq(excess, *sorted((r, r + side))) - 1)
+    return found
+
+
+@pytest.mark.parametrize(("shaper", "duration"), [("zv", 0.9), ("zvd", 0.9)])
+def test_the_insensitivity_of_shapers_is_that_of_the_closed_form(shaper, duration):
+    task = PointToPoint(LINEAR, 1.0, duration)
+    profile = shaped_cycloid(task, shaper)
+    found = evaluate_robustness(task, profile, [], {"frequency": 0.6}, samples=1)
+    sweep, plain = found.sweeps[0], of_cycloid(1.0, task, duration)
+    assert found.cycloid == pytest.approx(plain, rel=1e-5)
+    expected = [left(shaper, 1 + error, task, profile) for error in sweep.errors]
+    # The steps do not end where a cycloid begins, whose jerk jumps.
+    assert sweep.figures.residual == pytest.approx(expected, rel=1e-3, abs=1e-4 * max(expected))
+    closed = ends(lambda r: left(shaper, r, task, profile) - 0.05 * plain)
+    assert sweep.insensitivity == pytest.approx(closed, abs=1e-3)  # by errors 0.006 apart
+    assert sweep.width == pytest.approx(closed[1] - closed[0], abs=2e-3)
+    assert sweep.open_ends == (False, False)
+
+
+def test_what_leaves_more_without_an_error_has_no_insensitivity_range():
+    # EI leaves 5 % of what its own cycloid would, which is shorter and leaves more than the plain.
+    task = PointToPoint(LINEAR, 1.0, 1.1)
+    profile = shaped_cycloid(task, "ei")
+    assert left("ei", 1.0, task, profile) > 0.05 * of_cycloid(1.0, task, 1.1)
+    [sweep] = evaluate_robustness(task, profile, [], {"frequency": 0.2}, samples=1).sweeps
+    assert sweep.insensitivity is None
+    assert sweep.width == 0
+
+
+def test_a_range_that_is_not_left_is_open():
+    task = PointToPoint(DualLinkManipulator(), 1.0, 0.9)
+    profile = shaped_cycloid(task, "zv")
+    found = evaluate_robustness(task, profile, [], {"g1": 0.1, "c": 0.3}, samples=1)
+    for sweep, size in zip(found.sweeps, (0.1, 0.3), strict=True):  # of the torque alone
+        assert sweep.insensitivity == (-size, size)
+        assert sweep.open_ends == (True, True)
+
+
+# -- samples --
+
+
+def test_samples_come_from_the_seed_and_fill_the_ranges(plans):
+    ranges = {"frequency": 0.1, "beta1": 0.3}
+    one, same, other = (
+        of_plan(plans["single link"], ranges, samples=500, seed=s) for s in (1, 1, 2)
+    )
+    assert np.array_equal(one.errors, same.errors)
+    assert np.array_equal(one.samples.residual, same.samples.residual)
+    assert not np.array_equal(one.errors, other.errors)
+    # Uniform: of 500, the least and the largest are within 4 % of the ends, but for 2e-9.
+    for column, size in zip(one.errors.T, ranges.values(), strict=True):
+        assert -size <= column.min() < -0.92 * size
+        assert 0.92 * size < column.max() <= size
+    assert one.seed == 1
+    assert one.percentile("residual", 100) == one.samples.residual.max()
+    assert one.percentile("energy", 50) == pytest.approx(np.median(one.samples.energy))
+
+
+def test_answers_cannot_be_changed(plans):
+    found = of_plan(plans["arm"], {"frequency": 0.1}, samples=3)
+    for array in (found.errors, found.samples.energy, found.sweeps[0].errors):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0
+    with pytest.raises(TypeError, match="cannot be changed"):
+        found.ranges["frequency"] = 1.0
+
+
+def test_progress_is_told(plans):
+    told = []
+    of_plan(plans["arm"], {"frequency": 0.1}, samples=250, report=lambda *done: told.append(done))
+    assert told[-1] == (201 + 250, 201 + 250)
+    assert [done for done, _ in told] == sorted({done for done, _ in told})
+
+
+def test_errors_of_another_shape_are_refused(plans):
+    plan = plans["arm"]
+    population = ErrorPopulation(plan.task, plan.profile, plan.coefficients, {"frequency": 0.1})
+    with pytest.raises(ValueError, match=r"shape \(3,\); give \(plants, 1\)"):
+        population([0.0, 0.1, 0.2])
+
+
+def test_a_window_of_too_many_periods_is_refused(plans):
+    task = replace(plans["arm"].task, residual_window=MOST_SAMPLES * 0.02)
+    with pytest.raises(ValueError, match="give a shorter one"):
+        evaluate_robustness(task, CycloidPolynomial(0), [], {"frequency": 0.1})

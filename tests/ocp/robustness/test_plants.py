@@ -1,0 +1,194 @@
+"""Plants with errors: their frequencies and damping, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+from models import (
+    ArmOnFlexibleLink,
+    DualLinkManipulator,
+    JointMotion,
+    Plant,
+    SingleLinkManipulator,
+    parameter,
+)
+from ocp import evaluate_robustness, with_errors
+from ocp.robustness.plants import checked_ranges
+from ocp.simulation.residual import vibrations
+
+PLANTS = [SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()]
+plants = pytest.mark.parametrize("plant", PLANTS, ids=lambda plant: plant.name)
+
+
+@dataclass(frozen=True)
+class Mobile(Plant):
+    """Two modes that are coupled by stiffness and by damping, not in proportion to each other."""
+
+    name: ClassVar[str] = "mobile"
+    modes: ClassVar[int] = 2
+
+    stiff: float = parameter(90.0, "1/s^2", "made up")
+    damped: float = parameter(0.2, "1/s", "made up")
+
+    def modal_accelerations(self, joint, W, dW):
+        first = -self.stiff * W[0] + 20 * W[1] - self.damped * dW[0] + 0.1 * dW[1]
+        second = 20 * W[0] - 60 * W[1] + 0.1 * dW[0] - 0.7 * dW[1]
+        return [first - joint.acceleration, second - 0.5 * joint.acceleration]
+
+    def torque(self, joint, W, dW, ddW):
+        return joint.acceleration + ddW[0]
+
+    def tip_displacements(self, W):
+        return [W[0] + W[1]]
+
+
+def outputs(plant, numbers):
+    """All that a plant's equations give at one motion."""
+    joint, state = JointMotion(*numbers[:3]), np.reshape(numbers[3:], (3, -1))[:, : plant.modes]
+    W, dW, ddW = state.tolist()
+    given = [*plant.modal_accelerations(joint, W, dW), plant.torque(joint, W, dW, ddW)]
+    return [float(value) for value in (*given, *plant.tip_displacements(W))]
+
+
+# -- frequency and damping --
+
+
+@plants
+def test_an_error_of_the_frequency_is_one_of_the_parameter_of_that_meaning(plant):
+    # Eqs (9) and (13), docs/physics.md 'A third plant': omega is the frequency with the joint at
+    # rest, or that over the root of the mass; zeta the damping likewise.
+    errors = {"frequency": 0.13, "damping": -0.4}
+    by_name = {
+        name: 0.13 if "omega" in name else -0.4
+        for name in plant.parameters
+        if "omega" in name or "zeta" in name
+    }
+    one, other = with_errors(plant, errors), with_errors(plant, by_name)
+    for numbers in np.random.default_rng(1).uniform(-2, 2, (5, 9)):
+        assert outputs(one, numbers) == pytest.approx(outputs(other, numbers), rel=1e-12)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+@pytest.mark.parametrize("plant", [*PLANTS, Mobile()], ids=lambda plant: plant.name)
+def test_every_frequency_of_any_plant_is_scaled_and_its_damping_stays(plant, angle):
+    # W'' = -s D W' - s^2 K W has s times the eigenvalues of W'' = -D W' - K W.
+    changed = with_errors(plant, {"frequency": -0.3})
+    for (omega, zeta), now in zip(
+        vibrations(plant, angle), vibrations(changed, angle), strict=True
+    ):
+        assert now == pytest.approx((0.7 * omega, zeta), rel=1e-9)
+
+
+@plants
+def test_the_damping_of_modes_that_are_damped_each_on_its_own_is_scaled(plant):
+    changed = with_errors(plant, {"damping": 0.5})
+    for (omega, zeta), now in zip(vibrations(plant, 0.7), vibrations(changed, 0.7), strict=True):
+        assert now == pytest.approx((omega, 1.5 * zeta), rel=1e-9)
+
+
+def test_the_damping_of_coupled_modes_is_scaled_to_first_order():
+    assumed = vibrations(Mobile(), 0.0)
+    for (omega, zeta), now in zip(
+        assumed, vibrations(with_errors(Mobile(), {"damping": 0.5}), 0.0), strict=True
+    ):
+        # Second-order terms: products of damping ratios, at most 0.05.
+        assert now == pytest.approx((omega, 1.5 * zeta), rel=0.05**2 * 4)
+
+
+def test_errors_may_be_combined_and_nothing_is_changed_without_one():
+    plant = ArmOnFlexibleLink()
+    assert with_errors(plant, {}) == plant
+    assert with_errors(plant, {"alpha3": 0.1}) == ArmOnFlexibleLink(alpha3=5.256e-2 * 1.1)
+    both = with_errors(plant, {"alpha3": 0.1, "frequency": 0.2})
+    one = ArmOnFlexibleLink(alpha3=5.256e-2 * 1.1, omega=7.320 * 1.2)
+    numbers = [0.4, 1.0, -3.0, 0.01, 0.02, 0.3]
+    assert outputs(both, numbers) == pytest.approx(outputs(one, numbers), rel=1e-12)
+
+
+# -- what is refused --
+
+
+@pytest.mark.parametrize(
+    ("ranges", "message"),
+    [
+        ({}, r"no error is named"),
+        ({"omga": 0.1}, r"single-link has no parameter 'omga'; did you mean 'omega'\?"),
+        ({"freq": 0.1}, r"no parameter 'freq'; did you mean 'frequency'\?"),
+        ({"mass": 0.1}, r"it has: frequency, damping, alpha1, alpha2"),
+        ({"frequency": 1.2}, r"120 % makes the frequency negative; give less than 100 %"),
+        ({"frequency": 1.0}, r"100 % makes the frequency 0; give less than 100 %"),
+        ({"omega": 10}, r"1000 % makes the omega negative; give less than 100 %"),
+        ({"damping": 1.5}, r"150 % makes the damping negative; give 100 % or less"),
+        ({"omega": 0.0}, r"range of omega is 0; give a positive number"),
+        ({"omega": -0.1}, r"range of omega is -0.1; give a positive number"),
+        ({"omega": math.nan}, r"range of omega is nan"),
+        ({"omega": "10%"}, r"range of omega is '10%'"),
+    ],
+)
+def test_ranges_that_cannot_be(ranges, message):
+    with pytest.raises(ValueError, match=message):
+        checked_ranges(SingleLinkManipulator(), ranges)
+
+
+def test_no_damping_at_all_is_a_plant():
+    assert checked_ranges(ArmOnFlexibleLink(), {"damping": 1.0}) == {"damping": 1.0}
+
+
+def test_a_parameter_that_is_zero_has_no_share():
+    with pytest.raises(ValueError, match="parameter zeta of single-link is 0"):
+        checked_ranges(SingleLinkManipulator(zeta=0.0), {"zeta": 0.1})
+
+
+def test_a_plant_that_breaks_its_contract_at_the_end_of_a_range_is_refused():
+    # 1 + alpha1 cos theta is the mass of eq (13): negative at theta = 0 for alpha1 = -1.2 * 0.9.
+    with pytest.raises(ValueError, match="with alpha1 20 % higher, plant 'arm-on-flexible-link'"):
+        checked_ranges(ArmOnFlexibleLink(alpha1=-0.9), {"alpha1": 0.2})
+
+
+@pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
+def test_what_is_computed_from_a_parameter_beforehand_is_told(tasks):
+    @dataclass(frozen=True)
+    class Prepared(SingleLinkManipulator):
+        name: ClassVar[str] = "prepared"
+        squared: float = field(default=0.0, init=False)
+
+        def __post_init__(self):
+            super().__post_init__()
+            object.__setattr__(self, "squared", self.omega**2)
+
+        def modal_accelerations(self, joint, W, dW):
+            return [-self.squared * W[0] - self.beta1 * joint.acceleration]
+
+    with pytest.raises(ValueError, match="computes with omega outside its equations"):
+        checked_ranges(Prepared(), {"omega": 0.1})
+    checked_ranges(Prepared(), {"frequency": 0.1})  # scaled by the equations, whatever is in them
+
+
+@pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
+def test_equations_that_take_no_symbols_for_a_parameter_are_told():
+    @dataclass(frozen=True)
+    class Rooted(SingleLinkManipulator):
+        name: ClassVar[str] = "rooted"
+
+        def modal_accelerations(self, joint, W, dW):
+            return [-(math.sqrt(self.omega) ** 4) * W[0] - self.beta1 * joint.acceleration]
+
+    with pytest.raises(ValueError, match=r"rooted.*by Python's math; .*casadi.sqrt"):
+        checked_ranges(Rooted(), {"omega": 0.1})
+
+
+def test_what_is_asked_is_checked_before_anything_is_computed(tasks, solved):
+    task = tasks["arm"]
+    plan = solved(task, bound=0.5)
+    for wrong, message in (
+        ({"samples": 0}, "samples is 0"),
+        ({"samples": 10**9}, "give at most 1000000"),
+        ({"seed": -1}, "seed is -1"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            evaluate_robustness(task, plan.profile, plan.coefficients, {"frequency": 0.1}, **wrong)

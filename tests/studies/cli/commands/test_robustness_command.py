@@ -1,0 +1,208 @@
+"""`quietarm robustness`: what it says, what it writes, what it refuses."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import PointToPoint, evaluate_coefficients, evaluate_robustness, plan_move, shaped_cycloid
+from studies.cli import main
+from studies.figures import draw_robustness, robustness_figure
+
+FILES = {"report.md", "robustness.csv", "sweeps.csv", "samples.csv", "robustness.png"}
+RANGES = {"frequency": 0.1, "damping": 0.5}
+
+
+@pytest.fixture(scope="module")
+def plans():
+    """Two plans of the single link and one of the arm, by the names of their files."""
+    task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
+    arm = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
+    return {
+        "ours": plan_move(task, bound=0.2),
+        "zv": plan_move(task, shaped_cycloid(task, "zv")),
+        "arm": evaluate_coefficients(arm, []),
+    }
+
+
+@pytest.fixture(autouse=True)
+def folder(folder, monkeypatch, plans):
+    monkeypatch.setenv("COLUMNS", "200")
+    for name, plan in plans.items():
+        plan.save(f"{name}.json")
+    return folder
+
+
+@pytest.fixture
+def call(capsys):
+    """Run the command line in this process: status, standard output, standard error."""
+
+    def run(line):
+        with pytest.raises(SystemExit) as ended:
+            main(["robustness", *line.split()])
+        out, err = capsys.readouterr()
+        return ended.value.code, out, err
+
+    return run
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_it_shows_and_writes_the_figures_of_every_plan(call, plans, folder):
+    code, out, err = call(
+        "ours.json zv.json --frequency 10% --damping=0.5 --samples 300 --seed 5 --output out"
+    )
+    assert code == 0
+    assert err == "1404 of 1404 evaluations\n"  # of each plan 2 x 201, and 300
+    assert {path.name for path in (folder / "out").iterdir()} == FILES
+    table, sweeps, samples = (
+        rows(folder / "out" / f"{name}.csv") for name in ("robustness", "sweeps", "samples")
+    )
+    assert [row["plan"] for row in table] == ["ours", "zv"]
+    for row in table:
+        plan = plans[row["plan"]]
+        found = evaluate_robustness(
+            plan.task, plan.profile, plan.coefficients, RANGES, samples=300, seed=5
+        )
+        low, high = found.sweeps[0].insensitivity
+        expected = {
+            "cycloid_residual_mm": 1e3 * found.cycloid,
+            "residual_mm": 1e3 * found.assumed.residual[0],
+            "residual_mm_p95": 1e3 * np.percentile(found.samples.residual, 95),
+            "residual_frequency_lower_mm": 1e3 * found.sweeps[0].figures.residual[0],
+            "residual_damping_higher_mm": 1e3 * found.sweeps[1].figures.residual[-1],
+            "residual_frequency_largest_mm": 1e3 * found.sweeps[0].figures.residual.max(),
+            "frequency_tolerated_from_percent": 100 * low,
+            "frequency_tolerated_to_percent": 100 * high,
+            "energy_J": found.assumed.energy[0],
+            "energy_J_p100": found.samples.energy.max(),
+            "peak_torque_Nm_p50": np.median(found.samples.peak_torque),
+        }
+        assert {name: float(row[name]) for name in expected} == pytest.approx(expected)
+        assert f"{1e3 * found.cycloid:.3g}" in out
+        mine = [entry for entry in samples if entry["plan"] == row["plan"]]
+        assert [float(entry["frequency_error"]) for entry in mine] == found.errors[:, 0].tolist()
+        assert [float(entry["energy_J"]) for entry in mine] == found.samples.energy.tolist()
+        mine = [
+            float(entry["residual_m"])
+            for entry in sweeps
+            if (entry["plan"], entry["of"]) == (row["plan"], "damping")
+        ]
+        assert mine == found.sweeps[1].figures.residual.tolist()
+    assert "seed 5" in out
+    assert "![Residual over errors](robustness.png)" in (folder / "out/report.md").read_text()
+
+
+def test_errors_of_parameters_stand_between_plans_and_options(call):
+    code, out, _ = call("--omega=10% ours.json --samples 10 --beta1 0.05 zv.json --quiet")
+    assert code == 0
+    assert "+-10 % of omega, +-5 % of beta1" in out
+    assert "frequency" not in out.split("- The joint")[0]
+
+
+def test_dashes_stand_for_underscores(call, folder):
+    (folder / "crane.py").write_text(CRANE)
+    from models import load_plant_file
+
+    [kind] = load_plant_file(folder / "crane.py").values()
+    evaluate_coefficients(PointToPoint(kind(), 1.0, 1.0), []).save("crane.json")
+    code, out, _ = call("crane.json --plant-file crane.py --tip-mass 10% --samples 10 --quiet")
+    assert code == 0
+    assert "+-10 % of tip_mass" in out
+
+
+CRANE = """
+from dataclasses import dataclass
+from typing import ClassVar
+
+from models import Plant
+
+
+@dataclass(frozen=True)
+class Crane(Plant):
+    name: ClassVar[str] = "crane-of-masses"
+    modes: ClassVar[int] = 1
+    tip_mass: float = 2.0
+
+    def modal_accelerations(self, joint, W, dW):
+        return [-(30 * W[0]) / self.tip_mass - joint.acceleration]
+
+    def torque(self, joint, W, dW, ddW):
+        return joint.acceleration + self.tip_mass * ddW[0]
+
+    def tip_displacements(self, W):
+        return [W[0]]
+"""
+
+
+def test_without_errors_frequency_and_damping_are_wrong(call):
+    code, out, _ = call("arm.json --samples 10 --quiet")
+    assert code == 0
+    assert "+-20 % of frequency, +-50 % of damping" in out
+
+
+def test_plans_of_different_plants_share_what_both_have(call):
+    code, out, _ = call("ours.json arm.json --omega 10% --samples 10 --quiet")
+    assert code == 0
+    assert "single-link" in out
+    assert "arm-on-flexible-link" in out
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("", "no plan is given"),
+        ("ours.json ours.json", "ours.json is given twice"),
+        (
+            "ours.json --omga 10%",
+            "ours: single-link has no parameter 'omga'; did you mean 'omega'?",
+        ),
+        ("ours.json arm.json --beta3 10%", "ours: single-link has no parameter 'beta3'"),
+        ("arm.json ours.json --beta3 10%", "ours: single-link has no parameter 'beta3'"),
+        ("ours.json --frequency 100%", "makes the frequency 0; give less than 100 %"),
+        ("ours.json --frequency 10", "1000 % makes the frequency negative"),
+        ("ours.json --frequency 1O%", "'1O%' is not a share; give 10% or 0.1"),
+        ("ours.json --omega ten", "--omega: 'ten' is not a share; give 10% or 0.1"),
+        ("ours.json --omega", "--omega has no value; give one, as --omega 10%"),
+        ("ours.json --omega 10% --omega 5%", "--omega is given twice"),
+        ("ours.json -x", "No such option"),
+        ("ours.json --samples 0", "samples is 0; give a whole number from 1 up"),
+        ("none.json", "none.json cannot be read"),
+        ("ours.json --output ours.json", "ours.json is a file; give a folder"),
+    ],
+)
+def test_what_cannot_be_is_told_in_one_line(call, folder, line, message):
+    code, out, err = call(f"{line} --quiet")
+    assert (code, out) == (2, "")
+    assert message in err
+    assert err.count("\n") == 1
+    assert {path.suffix for path in folder.iterdir()} == {".json"}
+
+
+def test_the_picture_has_a_panel_a_parameter_and_a_curve_a_plan(plans):
+    found = {
+        name: evaluate_robustness(
+            plans[name].task, plans[name].profile, plans[name].coefficients, RANGES, samples=1
+        )
+        for name in ("ours", "zv")
+    }
+    figure = robustness_figure(found)
+    assert [ax.get_xlabel() for ax in figure.axes] == [
+        "error of frequency [%]",
+        "error of damping [%]",
+    ]
+    ax = draw_robustness(found, "frequency")
+    drawn = {line.get_label(): line for line in ax.lines}
+    for name, one in found.items():
+        assert drawn[name].get_xdata() == pytest.approx(np.linspace(-10, 10, 201))
+        share = 100 * one.sweeps[0].figures.residual / one.cycloid
+        assert drawn[name].get_ydata() == pytest.approx(share)
+    assert drawn["5 %"].get_ydata() == [5, 5]
+    marked = [line.get_xdata() for line in ax.lines if line.get_label().startswith("_")]
+    ends = [[100 * end for end in one.sweeps[0].insensitivity] for one in found.values()]
+    assert [list(entry) for entry in marked] == ends
