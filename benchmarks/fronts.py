@@ -1,4 +1,4 @@
-"""Fronts by the gradient: against as many cold solves, and against the metaheuristics by the clock.
+"""Fronts by the gradient: against as many cold solves, and against the metaheuristics in wall time.
 
     pip install ".[benchmark]"
     python benchmarks/fronts.py [--points 50] [--repetitions 3] [--figure hypervolume.png]
@@ -11,8 +11,8 @@ The paper's first conditions, six terms, its boxes, one process.
   itself; and, for one limit in ten, with everything built anew, as 50 separate commands would.
 - Hypervolume by time spent: the gradient's fronts of 3, 5, 9, 17, 33 and 65 points, and NSGA-II and
   VEPSO with the paper's settings generation by generation, seeds 0 to 4. One corner for all: the
-  plain cycloid's residual and twice its energy. Printed is what is missing to the hypervolume of
-  all points together, as a share of it. A front counts as the staircase of its points, by which a
+  plain cycloid's residual and twice its energy. Printed is the share that is missing from the
+  hypervolume of all points together. A front counts as the staircase of its points, by which a
   front of few points loses; so the gradient's count a second time with motions between their points
   (coefficients interpolated, evaluated, and no less drivable), as `quietarm compare` fills them.
 """
@@ -172,7 +172,7 @@ def draw(results: dict[str, dict[str, list[NDArray[np.float64]]]], path: Path) -
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Fronts: against cold solves, and by the clock.")
+    parser = argparse.ArgumentParser(description="Fronts: against cold solves, and in wall time.")
     parser.add_argument("--points", type=int, default=50)
     parser.add_argument("--repetitions", type=int, default=3)
     parser.add_argument("--figure", type=Path)

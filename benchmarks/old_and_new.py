@@ -3,8 +3,8 @@
     python benchmarks/old_and_new.py [--old a41b84d] [--repetitions 3] [--only plans fronts ...]
 
 The old version is taken from this repository's history into a temporary folder; nothing needs to be
-installed for it. Each version runs in a process of its own, the two in turn, so that what else the
-machine does meets both alike. Only functions that both have are called: `plan_move`,
+installed for it. Each version runs in a process of its own, the two in turn, so that other load on
+the machine affects both alike. Only functions that both have are called: `plan_move`,
 `epsilon_front`. Times are the processor's. Printed are medians, the ratio old / new, and how much
 higher (+) or lower (-) the new energies are, all by each version's own CVODES figures.
 

@@ -16,8 +16,8 @@ rockit makes |power| exact by a slack at every node (an algebraic variable s wit
 the grid "integrator_roots") and minimises its quadrature, which knows nothing of sign changes
 between the nodes; quietarm resolves these. So at equal steps quietarm's motion is the better one,
 and each side gets the fewest steps of a list with which the true energy of its motion, by CVODES,
-is within 1e-4 of the best known: that of `plan_move` from four starts with 200 steps. Where it is
-so with no number of steps, the most count, and the row "energy / best - 1" tells.
+is within 1e-4 of the best known: that of `plan_move` from four starts with 200 steps. Where no
+number of steps is enough, the largest is used, as the row "energy / best - 1" shows.
 
 rockit runs with `expand`, as in its own examples: without it, it takes several times as long. Its
 IPOPT has the options of quietarm's and the tolerance of quietarm's first, sampled run, 1e-5; a
@@ -28,7 +28,7 @@ are the same on an idle machine, and other work on a shared one disturbs the pro
 Printed are medians over interleaved repetitions, and the median of the ratios within a repetition:
 
 - build and solve: everything from the task to the coefficients, nothing built before. quietarm's
-  time is `plan_move`'s and includes the verification by CVODES, which rockit's has no like of;
+  time is `plan_move`'s and includes the verification by CVODES, which rockit does not have;
 - second call: the same again with all built, `plan_move` against `ocp.solve`;
 - solver alone: as the second call, without the verification.
 """

@@ -12,7 +12,7 @@ then 100 to 1600 steps at six terms. Every repetition begins cold, with nothing 
 - solve: one call of `Problem.solve` with all built, how many iterations IPOPT took in it, and
   the time of one of them;
 - plan: the whole of `plan_move`, cold: build, solve, verification by CVODES, and where that asks
-  for them more steps and another solve. `steps used` tells how far it went;
+  for them more steps and another solve. `steps used` is how many it ended with;
 - / first: plan time over that of the table's first row, the median of the ratios within a
   repetition;
 - energy: the plan's, by CVODES.

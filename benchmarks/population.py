@@ -28,8 +28,8 @@ quietarm's rollout with 1500 steps; solve_ivp is independent of it.
 
 Methods take turns in every round and are called twice in a row: the first call pays for the caches
 that the others left ("cold", its median), the second is what the other columns are of. Printed are
-the least and the median CPU time per candidate (CPU time, for the machine may be shared), and the
-median of the ratios to quietarm within a round. Then, by the clock: two threads, what a second task
+the least and the median CPU time per candidate (CPU time, since the machine may be shared), and the
+median of the ratios to quietarm within a round. Then, in wall time: two threads, what a second task
 costs, what 10,000 candidates add to the memory.
 """
 
@@ -362,7 +362,7 @@ class Method:
     """A row of the tables.
 
     `errors` are of every candidate: of F2 (relative), W at arrival [m], F1 (relative). `target` is
-    what the ratio to quietarm shall be at least, where something is asked for.
+    the least ratio to quietarm that is asked for, where there is one.
     """
 
     title: str
@@ -508,7 +508,7 @@ def error_table(rows: Sequence[Method]) -> Table:
 
 
 def threads_table(rng: np.random.Generator, rounds: int) -> Table:
-    table = Table(title="two threads, by the clock, least")
+    table = Table(title="two threads, wall time, least")
     for name in ("candidates", "one thread", "two threads", "one / two"):
         table.add_column(name, justify="right")
     objectives = [PopulationObjective(TASK, PROFILE, threads=threads) for threads in (1, 2)]
@@ -532,7 +532,7 @@ def tasks_table(population: NDArray[np.float64]) -> Table:
     forget_compiled()
     _compiled.cache_clear()
     first, second = values(TASK), values(SECOND_TASK)
-    table = Table(title=f"objective and {CANDIDATES} candidates, by the clock")
+    table = Table(title=f"objective and {CANDIDATES} candidates, wall time")
     for name in ("first task", "second task", "first / second", "functions built"):
         table.add_column(name, justify="right")
     built = str(_compiled.cache_info().misses)

@@ -200,7 +200,7 @@ def _refuse_checkpoints(settings: Mapping[str, Any], runs: int, where: Workers) 
         return
     if runs > 1:
         raise ValueError(
-            f"a checkpoint is of one search, and there are {runs} runs; leave checkpoint and "
+            f"a checkpoint holds one search, and there are {runs} runs; leave checkpoint and "
             "resume out, or give 1 run"
         )
     if where.scheduler is not None:

@@ -53,7 +53,7 @@ def search(
     bound : float
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     population, generations : int, optional
-        Individuals (particles a swarm) and generations; those of the paper by default. With an
+        Individuals (particles in a swarm) and generations; those of the paper by default. With an
         algorithm of your own its population counts, and generations are required.
     seed : int
         Seed of the random numbers.
@@ -122,7 +122,9 @@ def _refuse_other_kinds(task: object, profile: object) -> None:
     if not isinstance(task, PointToPoint):
         raise ValueError(f"task is {task!r}; give a PointToPoint")
     if not isinstance(profile, JointProfile):
-        raise ValueError(f"profile is {profile!r}; give a JointProfile, as CycloidPolynomial(6)")
+        raise ValueError(
+            f"profile is {profile!r}; give a JointProfile, such as CycloidPolynomial(6)"
+        )
 
 
 def _chosen(

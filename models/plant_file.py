@@ -74,11 +74,13 @@ def file_of_plant(plant: type[Plant]) -> PlantFile | None:
 
 def _read(path: Path) -> bytes:
     if path.suffix != ".py":  # a data file may be valid Python, and is not run by mistake
-        raise ValueError(f"plant file {path} is not called .py; give a file in Python, as crane.py")
+        raise ValueError(
+            f"plant file {path} is not called .py; give a Python file, such as crane.py"
+        )
     try:
         if path.exists() and not path.is_file():
             kind = "a folder" if path.is_dir() else "no ordinary file"
-            raise ValueError(f"plant file {path} is {kind}; give a file in Python, as crane.py")
+            raise ValueError(f"plant file {path} is {kind}; give a Python file, such as crane.py")
         with path.open("rb") as file:
             source = file.read(MOST_BYTES + 1)
     except OSError as error:
@@ -86,7 +88,7 @@ def _read(path: Path) -> bytes:
         raise ValueError(f"plant file {path} cannot be read: {reason}") from None
     if len(source) > MOST_BYTES:
         raise ValueError(
-            f"plant file {path} has over {MOST_BYTES} bytes; give a file in Python, as crane.py"
+            f"plant file {path} has over {MOST_BYTES} bytes; give a Python file, such as crane.py"
         )
     return source
 

@@ -1,4 +1,4 @@
-"""What a person runs: the command line, and the studies behind it.
+"""The command line, and the studies behind it.
 
 Rooms, each of which may import those after it: `cli`, then `study` and `reproduction`, `runs`,
 `reports`, `figures`, `comparison`, `paper`, and last `display`, `methods` and `profiles`, the

@@ -16,11 +16,29 @@ settings.register_profile(
 settings.load_profile("repeatable")
 
 
-def pytest_collection_modifyitems(items):
-    """Keep in one process what shares its fixtures: a file, and all that needs the reproduction."""
-    for item in items:
-        together = "reproduction" if "reproduction" in item.fixturenames else str(item.path)
-        item.add_marker(pytest.mark.xdist_group(together))
+TOGETHER = {
+    "tests/ocp/floor/": "floors",
+    "tests/studies/study/": "the small study",
+    "tests/studies/reproduction/": "the paper recomputed",
+    "tests/studies/cli/commands/test_reproduce_command.py": "the paper recomputed",
+}
+"""Tests of several files that share what takes long, by the beginning of their names."""
+
+
+@pytest.hookimpl(optionalhook=True)  # where xdist is not installed, nobody calls it
+def pytest_xdist_make_scheduler(config, log):
+    """Run in one process what shares its fixtures: a file, or several that are named above.
+
+    xdist's own groups by marks have no effect with pytest 9.2, which xdist 3.8 does not know.
+    """
+    from xdist.scheduler import LoadFileScheduling
+
+    class ByWhatIsShared(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            named = (group for begin, group in TOGETHER.items() if nodeid.startswith(begin))
+            return next(named, super()._split_scope(nodeid))
+
+    return ByWhatIsShared(config, log)
 
 
 @pytest.fixture(scope="session")

@@ -39,7 +39,11 @@ from cosmic_ray.mutating import mutate_code
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # this checkout's packages, also where quietarm is installed
 TESTS = {
-    "models/plant.py": ["models/test_plants.py", "ocp/task/test_point_to_point.py"],
+    "models/plant.py": [
+        "models/test_plants.py",
+        "models/test_broken_plants.py",
+        "ocp/task/test_point_to_point.py",
+    ],
     "models/single_link.py": ["models/test_plants.py"],
     "models/dual_link.py": ["models/test_dual_link.py"],
     "models/arm_on_flexible_link.py": ["models/test_plants.py"],
@@ -60,6 +64,9 @@ TESTS = {
     "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py"],
     "ocp/simulation/resimulation.py": [
         "ocp/simulation/test_resimulation.py",
+        "ocp/simulation/test_third_opinion.py",
+        "ocp/simulation/test_closed_forms.py",
+        "ocp/simulation/test_samples.py",
         "ocp/simulation/test_free_motions.py",
     ],
 }

@@ -1,4 +1,4 @@
-"""An algorithm of the user's own: whether it can search a trade-off."""
+"""Check that a user's own algorithm can search a trade-off."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def own_algorithm(algorithm: object) -> Algorithm:
     if any(kind.__module__.startswith("pymoo.algorithms.soo") for kind in type(algorithm).__mro__):
         raise ValueError(
             f"{name} minimises one objective, and a move has two; give a multi-objective "
-            "algorithm, as those of pymoo.algorithms.moo"
+            "algorithm, such as those of pymoo.algorithms.moo"
         )
     if algorithm.problem is not None or algorithm.is_initialized:
         raise ValueError(f"this {name} was set up or run before; give a new one")

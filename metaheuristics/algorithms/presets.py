@@ -57,5 +57,5 @@ PRESETS: Mapping[str, Preset] = {
         Preset("nsga2", "NSGA-II", population=200, generations=500, build=_nsga2),
     )
 }
-"""By name. Section 3.1: 100 particles a swarm, 200 iterations. Section 3.2: population 200, 500
+"""By name. Section 3.1: 100 particles in a swarm, 200 iterations. Section 3.2: population 200, 500
 generations, crossover 0.8, mutation 0.01 (`metaheuristics.algorithms.nsga2`)."""

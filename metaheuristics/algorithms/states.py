@@ -1,4 +1,4 @@
-"""The state of an algorithm, to go on from, and its parts, checked as they are read.
+"""The state from which an algorithm goes on, and its parts, checked as they are read.
 
 A file may hold anything: every function raises KeyError where an entry is missing, TypeError or
 ValueError where it is not what a state has there.
@@ -22,7 +22,7 @@ POPULATION_ARRAYS = ("X", "F", "G", "H")
 
 @runtime_checkable
 class Resumable(Protocol):
-    """An algorithm whose run can be kept in a file and gone on with, bit for bit."""
+    """An algorithm whose run can be saved to a file and continued, bit for bit."""
 
     @property
     def settings(self) -> dict[str, Any]:

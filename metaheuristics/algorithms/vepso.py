@@ -119,7 +119,7 @@ class VEPSO(Algorithm):
         self.velocity_limit = positive("velocity_limit", velocity_limit)
         self.sampling = FloatRandomSampling() if sampling is None else sampling
         if not isinstance(rule, VelocityRule):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise ValueError(f"rule is {rule!r}; give a VelocityRule, as CONSTRICTION")
+            raise ValueError(f"rule is {rule!r}; give a VelocityRule, such as CONSTRICTION")
         if boundary not in tuple(BOUNDARIES):
             raise ValueError(f"boundary is {boundary!r}; give one of {', '.join(BOUNDARIES)}")
 
@@ -144,7 +144,7 @@ class VEPSO(Algorithm):
         self.best_merit = np.full((swarms, self.particles, 1 + swarms), np.inf)
         self.swarm_best = np.zeros(swarms, dtype=int)
         self.external_archive, self.archive_F = Population.empty(), np.empty((0, swarms))
-        self.random_before = None  # the generator's state, until the candidates are told
+        self.random_before = None  # the generator's state, until objectives are given
 
     def _initialize_infill(self) -> Population:
         self.random_before = self.random_state.bit_generator.state
@@ -179,8 +179,8 @@ class VEPSO(Algorithm):
         X, F = infills.get("X", "F")
         if self.random_before is None or F.shape != (swarms * particles, swarms):
             raise ValueError(
-                f"the candidates told have objectives of shape {F.shape}; ask for candidates, "
-                "evaluate all of them, and tell them once"
+                f"the objectives have shape {F.shape}; evaluate all candidates that ask() gave, "
+                "and pass them to tell() once"
             )
         self.pop, self.velocities, self.random_before = infills, self.moved, None
         violation = _violations(infills, F)

@@ -1,4 +1,4 @@
-"""Files are claims: whether the figures that one states are those of its motions."""
+"""Whether the figures that a file states are those of its motions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a search is: all that its front depends on, and what of it goes into a file."""
+"""What defines a search: all that its front depends on, and how it stands in a file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class SearchSettings:
     bound : float
         Largest absolute coefficient.
     population : int or None
-        Individuals, or particles a swarm; None where an algorithm of the user's own has its own.
+        Individuals, or particles in a swarm; None where an algorithm of the user's own has its own.
     generations : int
         Generations to run.
 

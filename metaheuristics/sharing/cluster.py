@@ -27,7 +27,7 @@ DEATHS = 3
 _CONFIG = {
     "distributed.scheduler.allowed-failures": DEATHS - 1,
     "distributed.admin.low-level-log-length": 100,  # of every topic the scheduler keeps so many
-    # On a busy machine all takes long, which is nobody's fault and needs no words of dask's.
+    # On a busy machine everything takes long: dask's warnings about that are left out.
     "distributed.comm.timeouts.connect": "300s",
     "distributed.nanny.pre-spawn-environ.PYTHONWARNINGS": "ignore::UserWarning",
 }

@@ -79,7 +79,7 @@ def _one_after_another(
                 done.stopped = INTERRUPTED
                 if isinstance(stop, InterruptedPiece):
                     done.parts[piece.key] = stop.part
-            if came:  # a piece that ended well in spite of Ctrl-C does not tell of it
+            if came:  # a piece that ended well in spite of Ctrl-C raises nothing
                 done.stopped = INTERRUPTED
             if done.stopped:
                 break

@@ -23,7 +23,7 @@ from ocp.answers.encoding import typed
 from ocp.base.interrupts import note_interrupts
 
 _INSISTENT = 3
-"""After so many more Ctrl-C answers that are on their way are waited for no longer."""
+"""After this many more Ctrl-C, answers on their way are no longer waited for."""
 
 
 def share(
@@ -83,7 +83,8 @@ class _Inbox:
 class _Sharing:
     """Pieces of work on their way: no more are given out than there are workers.
 
-    So those that are given out are at work, and no worker's death is held against one that waits.
+    So those that are given out are at work, and a worker's death never counts against one that
+    waits.
     """
 
     def __init__(

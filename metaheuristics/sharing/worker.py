@@ -1,4 +1,4 @@
-"""What runs in a worker of dask: a piece of work, which tells of itself as it goes."""
+"""What runs in a worker of dask: a piece of work, which reports its progress."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ocp.answers.encoding import plain
 
 _SAY_SECONDS = 0.2
 _ONE_AT_A_TIME = threading.Lock()
-"""Threads of one worker gain nothing, and what is built for casadi once is not built twice."""
+"""More threads in a worker gain nothing; with one, nothing is built twice for casadi."""
 
 
 def do_piece(topic: str, number: int, piece: Piece, known: Done) -> Any:
@@ -51,7 +51,7 @@ def do_piece(topic: str, number: int, piece: Piece, known: Done) -> Any:
 
 
 class _Teller:
-    """Sends what a piece tells to the client, by the scheduler.
+    """Sends the reports of a piece to the client, by the scheduler.
 
     The client is sent words of JSON, no Python objects: the scheduler keeps the last of them.
     """

@@ -106,7 +106,7 @@ class Calls:
             remedy = ""
             if isinstance(error, RuntimeError | TypeError):  # what casadi raises over its symbols
                 remedy = (
-                    "write it with casadi.cos, casadi.fmax, casadi.if_else and their like: math's "
+                    "write it with casadi.cos, casadi.fmax, casadi.if_else and so on: math's "
                     "functions, if, max and float() take no symbols"
                 )
             raise self.wrong(method, f"fails{_line_of(error)} ({_words(error)})", remedy) from None

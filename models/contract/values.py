@@ -165,7 +165,7 @@ class Equations:
 
     @cached_property
     def _defined(self) -> NDArray[np.bool_]:
-        """Which angles the equations are made for: where they are finite for some motion."""
+        """Which angles the equations hold for: where they are finite for some motion."""
         finite = np.isfinite(self._values).all(axis=1).reshape(_ANGLES, _KINDS)
         return np.any(finite, axis=1, keepdims=True)[:, 0]
 

@@ -18,7 +18,7 @@ from ocp.base.files import read_whole, write_whole
 
 Document = dict[str, Any]
 Upgrades = Mapping[int, Callable[[Document], Document]]
-"""By version: what makes a document of that version one of today's."""
+"""Functions that bring a document of an older version up to date, by version."""
 NO_UPGRADES: Upgrades = MappingProxyType({})
 T = TypeVar("T")
 

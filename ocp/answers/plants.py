@@ -1,4 +1,4 @@
-"""In documents, the file that a plant of one's own was loaded from."""
+"""What documents say of the file that a user's plant was loaded from."""
 
 from __future__ import annotations
 

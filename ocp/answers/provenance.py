@@ -21,10 +21,10 @@ Setting = str | bool | int | float | None
 S = TypeVar("S")
 
 MOST_BOUND = 1e6
-"""Beyond it the figures of a motion are noise in double precision, and soon overflow."""
+"""With larger coefficients the figures of a motion are rounding noise, and soon overflow."""
 AGREEMENT, REST = 1e-3, 1e-6
-"""Share of an energy or a residual, and residual [m] beside it, by which two integrators may differ
-where a figure is called verified."""
+"""Largest difference between the two integrators for a figure to be called verified: as a share of
+the energy or residual, or [m] for a residual."""
 MOST_STARTS, MOST_POINTS = 10_000, 10_000
 
 

@@ -18,14 +18,14 @@ class Saved:
     """
 
     kind: ClassVar[str]
-    """What it is, in a word; its format is called quietarm- and this."""
+    """What it is, in a word: its format is named quietarm-<kind>."""
     version: ClassVar[int]
     """Version of its format; files of later ones are refused."""
     upgrades: ClassVar[Upgrades] = NO_UPGRADES
-    """What makes today's document of one of an older version; by version."""
+    """Functions that bring a document of an older version up to date, by version."""
 
     def _check_entries(self, *others: str) -> None:
-        """Make the entries what a file would give back, so that what is made can be loaded.
+        """Convert the entries to what a file would give back, so that any value made can be loaded.
 
         NumPy's numbers become Python's, lists become tuples.
 

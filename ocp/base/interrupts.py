@@ -1,4 +1,4 @@
-"""Ctrl-C: never lost, also not inside casadi, and delayed where it would break something."""
+"""Ctrl-C: never lost, even inside casadi, and delayed where it would break something."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _signals = [signal.SIGINT]
 
 @contextmanager
 def as_ctrl_c() -> Iterator[None]:
-    """Let the end of a batch job and a closed terminal stop the block as Ctrl-C does.
+    """Let SIGTERM and SIGHUP stop the block as Ctrl-C does.
 
-    For a program that is a process of its own: SIGTERM and SIGHUP then raise KeyboardInterrupt,
-    unless somebody handles or ignores them already.
+    For a program that is a process of its own. Both raise KeyboardInterrupt in the block, unless
+    they are handled or ignored already.
     """
     wanted = [getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP")]
     taken = [one for one in wanted if one and signal.getsignal(one) is signal.SIG_DFL]
@@ -84,7 +84,7 @@ def note_interrupts() -> Iterator[list[int]]:
 
 @contextmanager
 def hear_interrupts() -> Iterator[list[int]]:
-    """List the interrupts during the block, also those that the work inside handles itself.
+    """List the interrupts during the block, including those that the work inside handles itself.
 
     An interrupt still acts as it would without this block. Work that keeps what it found may return
     an answer all the same; the list then tells the caller that the user wants to stop.

@@ -1,4 +1,4 @@
-"""Texts of others, as names of files and entries of documents: none moves a terminal's cursor."""
+"""Make texts from outside, such as names of files, safe to print on a terminal."""
 
 from __future__ import annotations
 

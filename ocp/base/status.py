@@ -57,8 +57,8 @@ _TEXTS = {
     "wider limits, a longer duration or more terms.",
     SolveStatus.ITERATION_LIMIT: "IPOPT ran out of iterations; try another seed, more starts or a "
     "bound on the coefficients.",
-    SolveStatus.NUMERICAL_TROUBLE: "IPOPT lost its way; try another seed, fewer terms or a bound "
-    "on the coefficients.",
+    SolveStatus.NUMERICAL_TROUBLE: "IPOPT failed numerically; try another seed, fewer terms or a "
+    "bound on the coefficients.",
     SolveStatus.NOT_OPTIMISED: "The motion was given, not optimised.",
 }
 

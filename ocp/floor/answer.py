@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import ClassVar
 
 from ocp.answers.documents import Upgrades
+from ocp.answers.motion_answer import MotionAnswer
 from ocp.answers.older import floor_of_version_1
 from ocp.answers.provenance import Provenance, Verification, number_of_starts
-from ocp.answers.saved import Saved
 from ocp.base.checks import positive, whole
 from ocp.base.ranges import CountFromOne
 from ocp.base.status import SolveStatus
@@ -22,8 +22,9 @@ from ocp.simulation.resimulation import resimulated
 from ocp.task.point_to_point import PointToPoint
 
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
-"""Ratios of successive falls of the energy: where the error is proportional to the intervals, as
-at a jump of the speed or the torque within one, and the largest that is taken for a series."""
+"""Ratios of successive falls of the energy. The first is that of an error proportional to the
+intervals' length, as where speed or torque jumps within one; ratios above the second are not taken
+for a converging series."""
 
 
 @dataclass(frozen=True)
@@ -65,11 +66,11 @@ class FloorSettings:
 
 
 @dataclass(frozen=True)
-class Floor(Saved):
+class Floor(MotionAnswer):
     """The least energy of a move over all joint motions, at rest on arrival.
 
-    The energy is that of one motion that does the move, so that the true floor is no higher; how
-    much lower it may be, `left` estimates. Neither counts a better motion far from all starts.
+    The energy is that of a motion that does the move, so the true floor is no higher; `left`
+    estimates how much lower it may be. A better motion far from all starts would be missed by both.
 
     Attributes
     ----------
@@ -113,28 +114,13 @@ class Floor(Saved):
             raise ValueError("it has fewer than two levels, or no start")
 
     @property
-    def energy(self) -> float:
-        """F2: driving energy [J], by the independent integrator."""
-        return self.motion.energy
-
-    @property
-    def residual(self) -> float:
-        """F1: largest absolute tip displacement after arrival [m], that of rest."""
-        return self.motion.residual
-
-    @property
-    def complete(self) -> bool:
-        """Whether the search ran to its end; else it is that of the grids until Ctrl-C."""
-        return self.provenance.stopped is None
-
-    @property
     def smooth(self) -> bool:
         """Whether the acceleration is continuous."""
         return self.provenance.settings.smooth
 
     @property
     def change(self) -> float:
-        """Fall of the energy from the last grid but one to the last [J]; the other way, below 0."""
+        """Fall of the energy from the last grid but one to the last [J]; below 0 where it rose."""
         return self.levels[-2].energy - self.levels[-1].energy
 
     @property
@@ -146,7 +132,7 @@ class Floor(Saved):
     def ratio(self) -> float | None:
         """The last fall of the energy over the one before; None where two falls are not known.
 
-        A half is an error in proportion to the intervals, a quarter to their square.
+        1/2 means an error proportional to the intervals' length, 1/4 to its square.
         """
         if len(self.levels) < 3:
             return None
@@ -157,14 +143,15 @@ class Floor(Saved):
     def left(self) -> float:
         """Estimate of how far the energy would still fall with ever finer grids [J].
 
-        The last fall continued as a geometric series, and what the solver's own quadrature misses.
-        The ratio of the series is that of the last two falls, but at least 1/2: grids that begin
-        coarse gain faster at first than they go on to. An estimate, no bound; it leaves out that
-        a jolt takes up to 4e-5 of the move on every grid, about 1e-4 of the energy.
+        It continues the last fall as a geometric series, and adds what the solver's own quadrature
+        misses. The ratio of the series is that of the last two falls, but at least 1/2, since
+        coarse grids gain more at first than later ones do. It is an estimate, not a bound, and
+        leaves out that a jolt takes up to 4e-5 of the move on every grid, which costs about 1e-4 of
+        the energy.
 
         Where a coarser grid needs less than the last, the falls are no series: the energy went to
-        another minimum, and a better one may be missed. Then the estimate is the fall down to the
-        lowest grid, or the rise since, whichever is more: the order of what is unknown, no more.
+        another minimum, and a better one may be missed. Then the estimate is the larger of the fall
+        down to the lowest energy and the rise since, and says no more than the order of magnitude.
         """
         energies = [level.energy for level in self.levels]
         lowest = energies.index(min(energies))
@@ -181,6 +168,6 @@ class Floor(Saved):
 
     @cached_property
     def trajectory(self) -> Trajectory:
-        """The move and the residual window by CVODES; times stand twice where the torque jumps."""
+        """The move and the residual window by CVODES; where the torque jumps, two at a time."""
         joint = PiecewiseMotion.of_free_motion(self.task, self.free)
         return resimulated(self.task, joint).trajectory

@@ -163,7 +163,7 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
         elif i == 1:
             with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
                 plan = plan_move(task, profile, starts=1)
-                if not plan.complete:  # it has kept what there was, and not told of Ctrl-C
+                if not plan.complete:  # it kept the best of its starts and raised nothing
                     raise KeyboardInterrupt
                 coefficients = np.array(plan.coefficients)
         yield profile.path(coefficients, *task.move)

@@ -57,7 +57,7 @@ class Front(Saved):
     failed : int
         Candidates whose figures were not finite, or absurdly large; they never enter a front.
     infeasible : int
-        Candidates that broke a limit of the task; nor do they.
+        Candidates that broke a limit of the task; not in the front either.
     failures : tuple of FailedPoint
         Points of a sweep that could not be found, with the reason.
     gaps : tuple of (float, float)
@@ -145,7 +145,7 @@ class Front(Saved):
         return {"residual_m": self.residuals, "energy_J": self.energies, **named}
 
     def save_csv(self, path: str | Path) -> None:
-        """Write the points as a table: a row a point, stillest first, with every digit.
+        """Write the points as a table: one row for each, stillest first, with every digit.
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class Front(Saved):
         task : PointToPoint
             The move.
         coefficients : array_like, shape (motions, profile.size)
-            The profile's coefficients, a motion a row.
+            The profile's coefficients, one row for each motion.
         method : str
             What found them.
         profile : JointProfile, optional

@@ -22,16 +22,16 @@ from ocp.program.solution import Solution
 from ocp.task.point_to_point import PointToPoint
 
 _DOUBT = 1e-4
-"""Random starts are added where the two sweeps differ by more than this share of the energy.
+"""Random starts are added where the sweeps differ by more than this share of the energy.
 Smaller differences are within the error of the fixed steps: the better of the two is taken."""
 _SCOUTS = 12
-"""About how many steps along the front are taken at most to find the spacing of its points."""
+"""Rough limit on the steps along the front that find the spacing of its points."""
 _JUST_BELOW = 1 - 1e-4
 """The residual limit is this share of the residual wanted: the verified one may be a little
 above."""
 _STRIDE = 4
-"""Points from one to the next at which the sweep back compares, as long as both sweeps agree, and
-at which random starts join where they do not; what is found better is carried on to the others."""
+"""Stride of the sweep back while both sweeps agree, and of the points that get random starts where
+they do not; a better motion is carried on to the points between."""
 
 _Points = tuple[list[FrontPoint | FailedPoint], bool]
 """The points, and whether all were done."""
@@ -198,8 +198,8 @@ class _Stretch:
     def _back(self, below: Guess) -> set[int]:
         """Sweep back from the still end; the points at which it ended elsewhere.
 
-        Where it comes to the same motion as the sweep before it takes long strides, since both
-        would go on alike; where it finds a better one it goes back to what it left out.
+        Where it finds the same motion as the sweep before, it skips points, since both would go on
+        alike; where it finds a better one it goes back to the points that it skipped.
         """
         count, doubtful = len(self.limits), set[int]()
         i, last = count - 1, count

@@ -23,7 +23,7 @@ _ROUNDING = 1e-9
 
 
 class Evaluated(NamedTuple):
-    """What became of motions: the points of their front, and how many are none of it and why."""
+    """What became of motions: the points of their front, how many are not in it, and why."""
 
     points: tuple[FrontPoint, ...]
     failed: int
@@ -31,7 +31,7 @@ class Evaluated(NamedTuple):
 
 
 def table_of(coefficients: ArrayLike) -> NDArray[np.float64]:
-    """Coefficients, a motion a row.
+    """Coefficients, one row for each motion.
 
     Parameters
     ----------
@@ -56,7 +56,8 @@ def table_of(coefficients: ArrayLike) -> NDArray[np.float64]:
         ) from None
     if table.ndim != 2 or len(table) == 0:
         raise ValueError(
-            f"coefficients have shape {table.shape}; give (motions, coefficients), a motion a row"
+            f"coefficients have shape {table.shape}; give (motions, coefficients), one row for "
+            "each motion"
         )
     return table
 
@@ -69,7 +70,7 @@ def refuse_beyond_box(profile: JointProfile, table: NDArray[np.float64], bound: 
     profile : JointProfile
         How the joint moves.
     table : ndarray, shape (motions, profile.size)
-        Coefficients, a motion a row.
+        Coefficients, one row for each motion.
     bound : float or None
         The bound, as `JointProfile.box` takes it; None refuses nothing.
 
@@ -107,7 +108,7 @@ def evaluated(
     profile : JointProfile
         How the joint moves.
     table : ndarray, shape (motions, profile.size)
-        Coefficients, a motion a row.
+        Coefficients, one row for each motion.
     bound : float, optional
         What they must keep, as for `refuse_beyond_box`.
 

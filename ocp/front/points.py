@@ -17,7 +17,7 @@ from ocp.base.readonly import ReadOnlyDict
 class FrontPoint:
     """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J].
 
-    Any numbers will do, NumPy's as well; which points a front may have `Front` says.
+    Any numbers will do, NumPy's as well. `Front` checks which points it may have.
 
     Raises
     ------
@@ -46,7 +46,7 @@ class FrontPoint:
 
 @dataclass(frozen=True)
 class FailedPoint:
-    """A point that a sweep asked for and did not get.
+    """A point that a sweep looked for and did not find.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""A task's program solved again and again: what all fronts by the gradient share."""
+"""One task's program, solved many times: what all fronts by the gradient share."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def better(one: Solution, other: Solution) -> bool:
 
 @dataclass
 class Sweep:
-    """A task's program, asked again and again with other residual limits or weights.
+    """A task's program, solved many times with other residual limits or weights.
 
     Attributes
     ----------

@@ -155,7 +155,7 @@ class _Sums:
         self.gaps.sort()
 
     def by_weights(self, weights: Sequence[tuple[float, float]], report: Report) -> None:
-        """Given weights, from the most for the energy to the most for the residual."""
+        """Given weights, sorted from most weight on the energy to most on the residual."""
         if self.ends.are_one:
             return
         beside: Guess = self.ends.cheapest
@@ -171,7 +171,7 @@ class _Sums:
             report(i, len(weights))
 
     def checked(self, interrupted: bool) -> tuple[list[FrontPoint | FailedPoint], bool]:
-        """Every point by the independent integrator, and what failed; whether these are all."""
+        """Every point by the independent integrator, and the failures; whether all were done."""
         asked = [(one, {RESIDUAL_LIMIT: one.residual}) for one in (self.ends.cheapest, *self.found)]
         points, whole = all_checked(self.sweep, asked, interrupted=interrupted)
         return [self.ends.still_point, *points, *self.failures], whole

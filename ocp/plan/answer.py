@@ -1,4 +1,4 @@
-"""Plan: the answer a person keeps."""
+"""Plan: the coefficients of a motion, its figures and where they come from."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ocp.answers.documents import Upgrades
+from ocp.answers.motion_answer import MotionAnswer
 from ocp.answers.older import plan_of_version_1
 from ocp.answers.provenance import Provenance, Setting, SolveSettings, Verification
-from ocp.answers.saved import Saved
 from ocp.base.checks import positive
 from ocp.base.files import write_whole
 from ocp.base.status import SolveStatus
@@ -35,7 +35,7 @@ _SAMPLES = 1500
 
 
 @dataclass(frozen=True)
-class Plan(Saved):
+class Plan(MotionAnswer):
     """One motion of one task: its coefficients and what it costs.
 
     Attributes
@@ -71,21 +71,6 @@ class Plan(Saved):
     def __post_init__(self) -> None:
         self._check_entries("task", "profile", "coefficients")
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
-
-    @property
-    def residual(self) -> float:
-        """F1: largest absolute tip displacement after arrival [m]."""
-        return self.motion.residual
-
-    @property
-    def energy(self) -> float:
-        """F2: driving energy [J]."""
-        return self.motion.energy
-
-    @property
-    def complete(self) -> bool:
-        """Whether the solver ran to its end; else the plan is the best of some of its starts."""
-        return self.provenance.stopped is None
 
     @property
     def path(self) -> JointPath:

@@ -1,4 +1,4 @@
-"""When no start is solved: start from motions of least peaks, or say what would be feasible."""
+"""Where no start succeeds: start from motions of least peaks, or say what would be feasible."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ocp.task.quantities import QUANTITIES
 UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
 """Unit of every quantity that may be limited."""
 _ROOM = 1.001
-"""A found least value is quoted with this room, so that asking for it is feasible."""
+"""A least value is quoted with this margin, so that a user who asks for it gets a plan."""
 
 
 class Attempt(Protocol):

@@ -26,9 +26,9 @@ from ocp.simulation.objective import Motion
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
-PLAN_STEPS, LIMITED_STEPS, MOST_LEAST_STEPS, STEPS_A_TERM = 48, 80, 80, 8
-"""Steps that a profile needs: more with more terms, since the power changes sign more often, and
-more with limits, since these hold only at the nodes."""
+PLAN_STEPS, FINER_STEPS, STEPS_A_TERM = 48, 80, 8
+"""Steps that resolve a profile: more with more terms, since the power changes sign more often, but
+within the first two; with limits the second, since limits hold only at the nodes."""
 _HIDDEN = 5e-3
 """A sampled minimum can lie above the resolved one beside it by this share of the energy."""
 
@@ -114,7 +114,7 @@ def plan_move(
 
 
 def _best_until_now(problem: Problem, solved: Sequence[Solution]) -> tuple[Solution, Motion, int]:
-    """What `verified` gives for the best of the starts until Ctrl-C, without taking long."""
+    """What `verified` gives for the best of the starts until Ctrl-C, in a short time."""
     if not solved:
         raise KeyboardInterrupt
     with note_interrupts():
@@ -146,8 +146,8 @@ def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettin
     ValueError
         When the move takes too many periods of the plant's fastest mode.
     """
-    least = max(LIMITED_STEPS if task.limits else PLAN_STEPS, STEPS_A_TERM * (profile.size - 2))
-    least = min(least, MOST_LEAST_STEPS)
+    fewest = FINER_STEPS if task.limits else PLAN_STEPS
+    least = min(max(fewest, STEPS_A_TERM * (profile.size - 2)), FINER_STEPS)
     steps = settings.steps or default_steps(task, least=least)
     if steps > MOST_SOLVER_STEPS and settings.steps is None:
         raise ValueError(

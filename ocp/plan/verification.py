@@ -25,15 +25,15 @@ _AT_REST = 0.3
 """A residual at rest is corrected until it is below this share of that."""
 _ROUNDS = 12
 _BELOW = 1 + 2e-8
-"""How far below a limit that is passed the solver is sent: by its own tolerance, else the next peak
-passes the limit by as little again."""
+"""A limit that is passed is tightened by this share beyond the excess: the solver's own tolerance,
+else the next peak passes the limit by as little again."""
 OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
 
 
 @dataclass(frozen=True)
 class Care:
-    """How far to go for a solution that both integrators agree on.
+    """How much effort to spend on a solution that both integrators agree on.
 
     Attributes
     ----------
@@ -51,10 +51,10 @@ class Care:
 
 
 OF_A_PLAN = Care()
-"""The cheapest motion for the solver is then that for the independent integrator to 1e-6, in all
-but one of 56 plans tried (6e-6)."""
+"""The solver's cheapest motion is then the independent integrator's within 1e-6, in all but one of
+56 plans tried (6e-6)."""
 HURRIED = Care(agreement=np.inf, enough_steps=0, most_steps=0)
-"""Mend the arrival and passed limits with the steps that there are: for after Ctrl-C."""
+"""Correct the arrival and passed limits without adding steps: for after Ctrl-C."""
 
 
 def verified(
@@ -66,9 +66,9 @@ def verified(
 ) -> tuple[Solution, Motion, int]:
     """Verify; correct the arrival, double the steps while energies disagree, tighten passed limits.
 
-    The few steps of the solver miss the state on arrival by a little, and it holds limits at its
-    nodes and the residual at its samples. The solver is told what the independent integrator found,
-    and goes on from where it stopped.
+    The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
+    the residual limit at its samples. The differences that the independent integrator finds are
+    passed to the solver, which goes on from where it stopped.
 
     Parameters
     ----------

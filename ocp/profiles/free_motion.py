@@ -65,7 +65,7 @@ class FreeMotion:
         if not len(self.acceleration) == len(self.jerk) == len(self.times) - 1 > 0:
             raise ValueError(
                 f"{len(self.times)} times do not fit {len(self.acceleration)} accelerations and "
-                f"{len(self.jerk)} jerks; give one of each an interval"
+                f"{len(self.jerk)} jerks; give one of each for every interval"
             )
         if self.times[0] != 0 or np.any(np.diff(self.times) <= 0):
             raise ValueError("the times do not increase from 0")

@@ -31,7 +31,7 @@ class JointProfile(ABC):
     """The name by which files know the family."""
 
     default_bound: ClassVar[float | None] = None
-    """The bound that a search takes where none is given; None where it must be given."""
+    """Bound of a search where the user gives none; None where one must be given."""
 
     _known: ClassVar[dict[str, type[JointProfile]]] = {}
 
@@ -120,7 +120,7 @@ class JointProfile(ABC):
         target: Expression,
         duration: Expression,
     ) -> Sequence[Expression]:
-        """What the coefficients enter: `outer` makes the joint's motion of these three values.
+        """The values that the coefficients enter; `outer` makes the joint's motion of these three.
 
         A profile whose coefficients enter linearly somewhere on the way to the joint says so by
         these two methods; the gradient is then several times cheaper. By default it is the motion
@@ -226,7 +226,7 @@ class JointProfile(ABC):
 
 
 def _rounded_up(value: float, digits: int = 4) -> float:
-    """The least number of so many digits that is not below a positive value."""
+    """A positive value rounded up to this many digits."""
     unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
     return math.ceil(value / unit) * unit
 

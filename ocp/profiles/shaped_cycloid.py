@@ -1,4 +1,4 @@
-"""The cycloid through an input shaper: what a practitioner drives a flexible arm with."""
+"""The cycloid through an input shaper, the usual remedy in practice."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.shapers import SHAPERS, Impulses, convolved
 
 LEAST_SHARE = 0.05
-"""Share of the duration that the cycloid itself must have: a shorter one is a jolt between the
-steps of the integrators."""
+"""Least share of the duration that is left for the cycloid: a shorter one would be a jolt between
+the integrators' steps."""
 MOST_IMPULSES = 243
 """Five modes of three impulses; the motion has a cycloid for every impulse."""
 

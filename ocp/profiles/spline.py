@@ -1,4 +1,4 @@
-"""The cycloid whose input is a B-spline: what a practitioner would choose."""
+"""The cycloid whose input is a B-spline, a common choice in practice."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class CycloidSpline(Cycloid):
 
     @property
     def knots(self) -> list[float]:
-        """Where the pieces meet, as fractions of the duration; the ends as often as they count."""
+        """Where the pieces meet, as fractions of the duration; the ends with their multiplicity."""
         pieces = self.terms + 2 - DEGREE
         return [0.0] * DEGREE + [i / pieces for i in range(pieces + 1)] + [1.0] * DEGREE
 

@@ -14,15 +14,15 @@ from models import Expression
 from ocp.profiles.cycloid import Cycloid, with_bump
 
 REACH = 1.25
-"""Units are placed at first in even cells of T between plus and minus this: the outermost do most
-of their work at the ends of the move, with their middle beyond them."""
+"""At first the units lie in even cells of T between plus and minus this: the outermost have their
+middle beyond the ends of the move, where they act most."""
 _LIGHT = 0.1
-"""Random starts have weights within this share of their bound: with heavy ones the joint swings to
-and fro, and IPOPT runs out of iterations on its way back."""
+"""Random starts have weights within this share of their bound: with large ones the joint swings
+back and forth, and IPOPT runs out of iterations."""
 
 
 class Range(NamedTuple):
-    """Values of one kind of parameter, one a unit, each of shape (units,).
+    """Values of one kind of parameter, one for each unit, each of shape (units,).
 
     Attributes
     ----------
@@ -47,9 +47,9 @@ class CycloidOfUnits(Cycloid):
     The coefficients are v_0 to v_n, then x_1 to x_n, then y_1 to y_n: 1 + 3 n of them. A bound is
     for the weights v, x and y have `ranges` of their own; all are numbers of order one.
 
-    Units can take each other's place, or all but cancel each other with weights that grow for ever.
-    So weights are always bounded, by `default_bound` where nothing else is asked for, and starts
-    are near the plain cycloid, with the units side by side.
+    Units can swap places, or almost cancel each other with ever larger weights. So weights are
+    always bounded, by `default_bound` where no bound is given, and starts are near the plain
+    cycloid, with the units side by side.
     """
 
     default_bound: ClassVar[float | None] = 0.5
@@ -96,7 +96,7 @@ class CycloidOfUnits(Cycloid):
         )
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Light weights, and the units nearly side by side."""
+        """Small weights, and the units nearly in their even cells."""
         lower, upper = self.box(bound)
         weights = _LIGHT * upper[: 1 + self.terms]
         around = np.concatenate([weights, *(kind.spread for kind in self.ranges)])

@@ -160,7 +160,7 @@ class Condensed:
         self.figures = ca.Function("figures", [a, move, scale], [after, march.outputs, energy])
 
     def basis(self, move: Sequence[float], axes: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What `inner` is made of where it is linear in the coefficients: constant and slopes.
+        """`inner` where it is linear in the coefficients: its constant and its slopes.
 
         Parameters
         ----------

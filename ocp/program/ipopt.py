@@ -32,10 +32,10 @@ OPTIONS: dict[str, str | int | float] = {
     "expect_infeasible_problem": "yes",
 }
 SAMPLED = {**OPTIONS, "tol": 1e-5}
-"""From coefficients in a box. The tolerance is much finer than the error of the samples."""
+"""Options from coefficients in a box. The tolerance is much finer than the sampling error."""
 UNBOXED = {**SAMPLED, "mu_strategy": "monotone", "mu_init": 1e-3}
-"""Without a box the adaptive barrier loses its way with ten terms or more; with a box it takes a
-fifth fewer iterations."""
+"""Without a box the adaptive barrier does not converge with ten terms or more; with a box it takes
+a fifth fewer iterations."""
 PEAK = OPTIONS
 """The least peak, from coefficients alone."""
 _BARRIER = 2e-9
@@ -63,8 +63,8 @@ RESOLVED = {
     "acceptable_obj_change_tol": 1e-9,
     "acceptable_iter": 3,
 }  # fmt: skip
-"""From the minimum beside it, with its multipliers. Where zeros of the power meet, second
-derivatives do not help any more: the iterations end when the energy has hardly changed three times.
+"""From a minimum close by, with its multipliers. Where zeros of the power meet, second derivatives
+no longer help: the iterations end when the energy has hardly changed three times.
 """
 
 

@@ -186,9 +186,9 @@ def linear_steps(modes: int, by_modes: ca.Sparsity, steps: int) -> ca.Function:
 class EnergyPieces:
     """F2 by `resolved_energy`, scaled by duration and power, and its derivatives by the power.
 
-    It leaves out what neighbouring steps tell beyond the quadratic: that makes the energy a little
-    more exact, but bends it sharply wherever a zero of the power leaves a step or meets another,
-    and the solver gets stuck there.
+    It leaves out the terms beyond the quadratic that neighbouring steps would give: they make the
+    energy a little more exact, but bend it sharply wherever a zero of the power leaves a step or
+    meets another, and the solver gets stuck there.
 
     Attributes
     ----------

@@ -73,7 +73,7 @@ class Problem:
         *,
         finish: bool = True,
     ) -> Solution:
-        """Run the solver from coefficients, or on from a solution.
+        """Run the solver from coefficients, or from an earlier solution.
 
         Parameters
         ----------
@@ -114,7 +114,7 @@ class Problem:
 
     @keep_interrupts()
     def corrected(self, found: Solution, arrival: NDArray[np.float64]) -> Solution:
-        """Solve on from a solution of least energy, with what is known of its true arrival.
+        """Go on from a solution of least energy, corrected by its true state on arrival.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class Problem:
 
     @keep_interrupts()
     def refined(self, found: Solution) -> Solution:
-        """Solve on from a solution of least energy that was found with other steps."""
+        """Go on from a solution of least energy that was found with another number of steps."""
         run = self._run(LEAST_ENERGY)
         if found.form == run.resolved and not self.program.task.limits:
             # limits hold at the nodes, whose multipliers are others then

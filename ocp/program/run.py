@@ -129,8 +129,9 @@ class Run:
     def finished(self, found: Solution) -> Solution:
         """Go on from a sampled minimum to that of the resolved energy.
 
-        What is found must keep the constraints and be better, else the given solution stands; one
-        found with other steps, whose energy cannot be compared, stands only if this run fails.
+        The result must keep the constraints and be better; else the given solution is kept. One
+        found with another number of steps, whose energy cannot be compared, is kept only if this
+        run fails.
         """
         start = self.start(found.coefficients, self.resolved)
         power = len(found.point.unknowns) - len(start.unknowns)  # two for each sample
@@ -147,7 +148,7 @@ class Run:
     def beside(self, found: Solution) -> Solution:
         """Go on from a solution of the resolved program to the minimum beside it.
 
-        Where that is not reached, but every constraint kept, the status stays as it was.
+        Where that is not reached but every constraint is kept, the status does not change.
         """
         stop = self.stop(self.resolved, found.point, _REACH)
         after = self.solution(self.resolved, stop)

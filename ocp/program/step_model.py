@@ -14,7 +14,7 @@ from ocp.simulation.collocation import NODES, NodeState, step
 from ocp.task.quantities import QUANTITIES
 
 JOINT = 3
-"""How many numbers describe the joint to the plant at one time: angle, speed, acceleration."""
+"""Numbers that describe the joint to the plant at one time: angle, speed, acceleration."""
 
 
 @dataclass(frozen=True)

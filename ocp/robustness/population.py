@@ -32,7 +32,7 @@ grows with the square of the steps."""
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """What a motion leaves and costs; an entry a plant, arrays are read-only.
+    """What a motion leaves and costs: one entry for each plant, arrays are read-only.
 
     Attributes
     ----------
@@ -188,5 +188,5 @@ def _compiled(plant: Plant, steps: int, names: tuple[str, ...]) -> ca.Function:
 
 
 def _rows(columns: list[Expression]) -> Expression:
-    """Columns side by side, a row a plant; some may not depend on the errors."""
+    """Columns side by side, one row for each plant; some may not depend on the errors."""
     return ca.horzcat(*(ca.DM.zeros(_BLOCK, 1) + column for column in columns))

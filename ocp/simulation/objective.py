@@ -123,7 +123,7 @@ def energy_derivatives() -> ca.Function:
 
 @lru_cache(maxsize=32)
 def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
-    """What the neighbouring steps tell of the power on a step, for `resolved_energy`.
+    """What the neighbouring steps say about the power on a step, for `resolved_energy`.
 
     The quartic through five nodes in a row, the step's own three in the middle, is the quadratic
     through these plus (x - node 1)(x - node 2)(x - node 3) (cubic + quartic (x - 1/2)).

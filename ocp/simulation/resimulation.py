@@ -40,9 +40,9 @@ from ocp.simulation.residual import fastest_mode, residual_samples
 from ocp.task.point_to_point import PointToPoint
 
 _STEPS = 500
-"""Steps of the quadrature, or a multiple: its nodes are a thousandth of the move apart at most."""
+"""Least number of steps of the quadrature: its nodes are at most a thousandth of the move apart."""
 _STEPS_A_RADIAN = 10
-"""Steps a radian of the plant's fastest mode, where these are more."""
+"""Steps for each radian of the plant's fastest mode, where this gives more."""
 _LEAST_STEPS_OF_A_PIECE = 2
 """So that every piece has the seven samples that `extremes` needs."""
 

@@ -173,7 +173,7 @@ def _jerk(
     move: Sequence[Expression],
     steps: int,
 ) -> Expression:
-    """The jerk that is told of nodes at these fractions of the duration."""
+    """The jerk that counts for the nodes at these fractions of the duration."""
     start, target, duration = move
     at = end_to_end(times, steps)
     return profile.motion(coefficients, at, start, target, duration, jerk=True).jerk

@@ -57,7 +57,9 @@ class PointToPoint:
 
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
-            raise ValueError(f"plant is {self.plant!r}; give a Plant, as SingleLinkManipulator()")
+            raise ValueError(
+                f"plant is {self.plant!r}; give a Plant, such as SingleLinkManipulator()"
+            )
         self.plant.validate()
         for name in ("start", "target"):
             angle = finite(name, getattr(self, name), "rad")

@@ -72,7 +72,7 @@ def plan_files(
 
 
 def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequence[str]]) -> None:
-    """Refuse an option that was typed and has no effect; ValueError says what it is for.
+    """Refuse an option that would have no effect; ValueError says what it is for.
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ def _is_folder(text: str) -> Path:
     else:
         check_writable(folder)  # it will be made; the folder around it must be there
         place = folder.parent
-    try:  # permissions do not tell of all places, such as /proc, that nothing can be made there
+    try:  # even with permission it may fail, as in /proc
         tempfile.TemporaryDirectory(dir=place, prefix=".quietarm-").cleanup()
     except OSError as error:
         reason = (error.strerror or str(error)).lower()

@@ -12,10 +12,10 @@ from typing import Any, TextIO
 
 
 class Stream:
-    """A stream that takes what nobody can read any more; everything else is that of the stream.
+    """A stream to which writing never fails, even where nobody can read; else as the stream itself.
 
-    Progress, tables and the names of files are words about the work: where they cannot be written,
-    the work goes on, and its files are written.
+    Progress, tables and names of files only describe the work: where they cannot be written, the
+    work goes on, and its files are written.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Stream:
 
 @contextmanager
 def patient_streams() -> Iterator[Stream]:
-    """Let the block write to both streams whatever becomes of them; give that of the output."""
+    """Let the block write to both streams even where they fail; yields the output's."""
     _open_what_is_closed()
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
@@ -87,7 +87,7 @@ def patient_streams() -> Iterator[Stream]:
 
 
 def _open_what_is_closed() -> None:
-    """Give a place to a stream that the shell closed, lest a file that is opened later take it."""
+    """Open a stream that the shell closed; else a file that is opened later takes its number."""
     for number in (0, 1, 2):
         try:
             os.fstat(number)

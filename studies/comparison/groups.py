@@ -1,4 +1,4 @@
-"""Which fronts may be compared, and which of them are runs of one method."""
+"""Which fronts may be compared, and which are runs of the same method."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ from studies.display.words import print_lines
 Display = TypeVar("Display")
 
 SILENT_SECONDS = 2.0
-"""How long work may go on without a word; then the pauses grow to `_LONGEST_PAUSE`."""
+"""Seconds of work without output before the first line; pauses then grow to `_LONGEST_PAUSE`."""
 _LONGEST_PAUSE = 60.0
 PLAIN_SECONDS = 2.0
 """Seconds between plain lines, where the pieces are too many for one line each."""
@@ -84,7 +84,7 @@ def shown(
 
 
 def pauses() -> Iterator[float]:
-    """How long to be silent between words [s]: longer and longer, up to a minute."""
+    """Pauses between lines of output [s]: longer and longer, up to a minute."""
     pause = SILENT_SECONDS
     while True:
         yield pause
@@ -93,7 +93,7 @@ def pauses() -> Iterator[float]:
 
 @contextmanager
 def _ticking(console: Console, words: Callable[[], str]) -> Iterator[None]:
-    """Print the words and the time from time to time, whatever the work does meanwhile."""
+    """Print the words and the elapsed time every so often while the work goes on."""
     began, over = time.perf_counter(), threading.Event()
 
     def tick() -> None:
@@ -113,7 +113,7 @@ def _ticking(console: Console, words: Callable[[], str]) -> Iterator[None]:
 
 @contextmanager
 def working(what: str, console: Console, *, quiet: bool = False) -> Iterator[None]:
-    """Show that work goes on which does not tell how far it is.
+    """Show that work goes on that has no measure of progress.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The end of every command: what was found is saved, then shown, then said to be written."""
+"""The end of every command: save what was found, show it, then name the files written."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class _Saved:
     failures: list[Exception] = field(default_factory=list)
 
     def save(self, files: Iterable[File]) -> list[str]:
-        """Save files, each whatever becomes of the others; the names of those that are there."""
+        """Save files, each even if another fails; returns the names of those written."""
         names: list[str] = []
         for path, write in files:
             if path is not None:
@@ -65,7 +65,7 @@ def finish(
 ) -> None:
     """Save every file that was asked for, show what was found, and say what was written.
 
-    In this order, so that nothing is lost where the words find no reader. Ctrl-C waits until the
+    In this order, so that nothing is lost where standard output is closed. Ctrl-C waits until the
     files are there. Words go to standard error where standard output is one of the files.
 
     Parameters
@@ -105,13 +105,13 @@ def finish(
 
 
 def interruption(after: str | None = None) -> QuietarmError:
-    """The error to raise after Ctrl-C, and after how much of the work it came."""
+    """The error to raise after Ctrl-C, which says how much of the work was done."""
     when = f" after {after}" if after else ""
     return QuietarmError(f"interrupted{when}; what was found until then is kept")
 
 
 def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
-    """What writes a picture, and loads what draws only then."""
+    """A function that writes a picture, and imports the drawing library only then."""
 
     def write(path: Path) -> None:
         from studies.display.pictures import save_figure

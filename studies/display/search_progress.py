@@ -20,7 +20,7 @@ _WIDE = 120
 
 
 class SearchDisplay:
-    """Is told of every generation, and of every search that ends; shows nothing."""
+    """Called with every generation, and with every search that ends; shows nothing."""
 
     def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
         """Show where a search is; the seed tells one of several."""
@@ -74,7 +74,7 @@ class _Bars(SearchDisplay):
 
 
 class _Lines(SearchDisplay):
-    """A line every few seconds for each search, and one for its last generation."""
+    """A line for each search every few seconds, and one for its last generation."""
 
     def __init__(self, console: Console) -> None:
         self._console = console

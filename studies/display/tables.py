@@ -1,4 +1,4 @@
-"""Tables that read the same on screen, in Markdown and in CSV."""
+"""Tables for the screen, Markdown and CSV."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from studies.display.words import print_lines
 Cell = str | int | float | None
 _WIDEST = 10_000
 _LEAST_VALUE = 30
-"""Columns beside the names below which values would fall to pieces."""
+"""Least width of the column of values; below it they would be broken up."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Table:
 
 
 def print_rows(console: Console, rows: Sequence[tuple[str, str]]) -> None:
-    """Print names and their values beside each other, or below where the console is too narrow.
+    """Print names and their values in two columns, or one below the other on a narrow console.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
 STAIRS = "steps-post"
-"""Of a front: between two points the stiller one is the best there is."""
+"""Line style of a front: between two points the stiller one is the best known motion."""
 TITLE: dict[str, Any] = {"loc": "left", "fontsize": 10}
 """How the title of a panel is set."""
 _LOGARITHMIC_FROM = 5.0
@@ -34,7 +34,7 @@ def axes_or_new(ax: Axes | None) -> Axes:
 
 
 def side_by_side(panels: int, title: str, width: float = 4.8) -> tuple[Figure, list[Axes]]:
-    """A figure with a title and this many panels beside each other."""
+    """A figure with a title and this many panels side by side."""
     figure = new_figure(width * panels, 4.4)
     if title:
         figure.suptitle(title, fontsize=11)

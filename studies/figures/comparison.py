@@ -34,7 +34,7 @@ _ASIDE = 0.9
 _NEARLY_STILL = 5.0
 """The nearly still end reaches at least to this multiple of the least residual of all."""
 _TALLEST = 1.6
-"""Panels end at this multiple of the energy of the best front's stillest motion."""
+"""Upper end of the panels, as a multiple of the energy of the best front's stillest motion."""
 
 BANDS = (
     "Several seeds: the line is what half of them reach\n"
@@ -146,7 +146,7 @@ def draw_still(
     """Draw energy against residual at the nearly still end, residual logarithmic.
 
     Parameters, and what is returned, are those of `draw_whole`. The end reaches to the largest of
-    the comparison's levels, or further where nothing is so still.
+    the comparison's levels, or further where no front reaches these.
     """
     ax, stillest = axes_or_new(ax), float(comparison.best_front[0, 0])
     right = min(max(*comparison.levels, _NEARLY_STILL * stillest), _right(comparison))
@@ -161,8 +161,9 @@ def draw_gaps(
 ) -> Axes:
     """Draw how far points are above the best of all filled fronts, residual logarithmic.
 
-    Points rather than staircases: between its points a coarse front would look bad by its steps.
-    Parameters, and what is returned, are those of `draw_whole`; the paper's points are not drawn.
+    Points rather than staircases: the steps of a coarse front would make it look bad between its
+    points. Parameters, and what is returned, are those of `draw_whole`; the paper's points are not
+    drawn.
     """
     ax, shown = axes_or_new(ax), looks(comparison)
     for place, group in enumerate(comparison.groups):
@@ -191,7 +192,7 @@ PANELS: dict[str, DrawPanel] = {
 
 
 def _below(comparison: Comparison, place: int) -> int:
-    """How many groups are drawn over this one, which is wider to be seen below them."""
+    """How many groups are drawn over this one; it is drawn wider, to be seen below them."""
     return len(comparison.groups) - place - 1
 
 

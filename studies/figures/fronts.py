@@ -115,15 +115,13 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
 
     Parameters
     ----------
-    fronts : sequence of Front
-        Of one method and task, one for every seed.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
+    fronts, ax
+        As for `draw_hypervolume`.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes; a seed that never comes so still is a cross.
+        The axes; a seed that never reaches that residual is a cross.
     """
     ax = axes_or_new(ax)
     spread = energies_at(fronts)

@@ -12,7 +12,7 @@ COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY, WINE, INDIGO)
 """Okabe and Ito's without yellow, which is too pale, and black, which is for marks; and two dark
 ones of Tol's, https://personal.sron.nl/~pault/."""
 GREY = "0.62"
-"""For what stands in the background, as the plain cycloid."""
+"""For what stays in the background, such as the plain cycloid."""
 _DASHES: tuple[Dash, ...] = ("-", "--", (0, (1, 1)), (0, (4, 1, 1, 1)), (0, (7, 2)))
 _MARKS = "os^Dv<>PX"
 

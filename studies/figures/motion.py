@@ -17,14 +17,14 @@ from studies.figures.axes import TITLE, axes_or_new, legend_of, new_figure
 from studies.figures.looks import BLUE, GREY, RED, Dash, look
 
 _SHOWN, _ABOVE = 0.99, 1.15
-"""A panel with jolts ends at this multiple of what is not exceeded 99 % of the time."""
+"""A panel with jolts ends at this multiple of the 99 % quantile."""
 _IN_SIGHT = 0.4
 """A limit is drawn where a motion comes to this share of it; else it would flatten the motion."""
 
 
 _ANGLE, _JERK = "angle", "jerk"
 _IN_MILLIMETRES = {"m": ("mm", 1e3)}
-"""The units that are drawn in others, and what turns the ones into the others."""
+"""Units that pictures replace by others, with the factor."""
 QUANTITIES_DRAWN = (_ANGLE, "speed", "acceleration", _JERK, "deflection", "torque")
 """What can be drawn: the joint's angle, and the quantities that a task may limit."""
 PAPER_PANELS = (_ANGLE, "speed", "deflection", "torque")
@@ -230,7 +230,7 @@ def _draw_limits(ax: Axes, quantity: str, scale: float, lines: Sequence[Line]) -
 
 
 def _leave_out_jolts(ax: Axes, quantity: str, lines: Sequence[Line]) -> list[str]:
-    """Cut off a floor's jolts, in which it is for a moment a thousand times the rest; in words."""
+    """Cut off a floor's jolts, a thousand times the rest for a moment, and say so in words."""
     peaks, usual = [0.0], [0.0]
     for line in lines:
         sizes = np.abs(_values(quantity, line.plan.trajectory)).max(axis=1)

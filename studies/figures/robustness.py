@@ -1,4 +1,4 @@
-"""Residuals over errors of the plant as a picture, a curve a plan."""
+"""Residuals over errors of the plant as a picture, one curve for each plan."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
 
 
 def robustness_figure(plans: Mapping[str, Robustness], title: str = "") -> Figure:
-    """The picture of `quietarm robustness`: `draw_robustness`, a panel a parameter."""
+    """The picture of `quietarm robustness`: `draw_robustness`, one panel for each parameter."""
     names = next(iter(plans.values())).ranges
     figure, axes = side_by_side(len(names), title, width=max(4.8, 7.2 / len(names)))
     for name, ax in zip(names, axes, strict=True):

@@ -87,12 +87,8 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
 
     Parameters
     ----------
-    before : Front
-        The front that was given.
-    polish : Polish
-        What became of it.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
+    before, polish, ax
+        As for `draw_polish`.
 
     Returns
     -------
@@ -117,7 +113,7 @@ def sweep_figure(front: Front) -> Figure:
 
 
 def polish_figure(before: Front, polish: Polish) -> Figure:
-    """The picture of `quietarm polish`: `draw_polish` and `draw_savings` beside each other."""
+    """The picture of `quietarm polish`: `draw_polish` and `draw_savings` side by side."""
     name = method_of(polish.front.method).label
     figure, axes = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_polish(before, polish, axes[0])

@@ -77,6 +77,6 @@ def _left(floor: Floor) -> str:
     elif floor.ratio is not None:
         falls = f"; the last grid gained {floor.ratio:.2f} of what the one before gained"
     return (
-        f"about {floor.left:.2g} J ({floor.left / floor.energy:.2%}) to be gained by finer grids"
+        f"about {floor.left:.2g} J ({floor.left / floor.energy:.2%}) that finer grids would save"
         f"{falls}"
     )

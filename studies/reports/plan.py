@@ -99,7 +99,7 @@ def _large(task: PointToPoint, motion: Motion) -> str:
 
 
 def _choice(plan: Plan) -> tuple[str, str]:
-    """What tells the motion from others of its task, and its name."""
+    """What makes the motion differ from others of its task, and its name."""
     if isinstance(plan.profile, ShapedCycloid):
         impulses = len(plan.profile.impulses.times)
         shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"

@@ -19,7 +19,7 @@ _PRINTED_TERMS = (2, 4, 6)
 LEGEND = (
     "Floor: the least energy over all joint motions that start and end at rest, joint and "
     "structure, without limits; it starts and stops with jolts. Left: an estimate of what finer "
-    "grids would still take off it. Starts that agree: how many of the solver's starts end within "
+    "grids would still lower it. Starts that agree: how many of the solver's starts end within "
     "0.5 % of the best. The paper's energies are the printed ones, with the paper's residual; "
     "VEPSO and NSGA-II are judged at that residual, the gradient and the floor at rest."
 )

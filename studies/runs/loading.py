@@ -1,4 +1,4 @@
-"""What is read from files: a claim until its plant has borne it out."""
+"""What is read from files; its figures are checked against the plant first."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ocp import Front
 
 
 def load_front(path: Path) -> Front:
-    """The front of a file, of which motions were evaluated again: a file is a claim.
+    """The front of a file, after some of its motions were evaluated again.
 
     Parameters
     ----------

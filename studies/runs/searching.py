@@ -76,7 +76,7 @@ def plan_by_search(
         front = search(task, method.name, profile=profile, bound=bound, seed=seed, report=report)
     if not front.complete:
         raise QuietarmError(
-            "interrupted; a plan is of a whole search, and nothing was written; `quietarm front` "
+            "interrupted; a plan needs a whole search, and nothing was written; `quietarm front` "
             "keeps what a search has found until Ctrl-C"
         )
     try:

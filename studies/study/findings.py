@@ -32,7 +32,7 @@ def group_of(comparison: Comparison, method: Method) -> Group | None:
 def gap(
     comparison: Comparison, method: Method, level: int = STILL_LEVEL, name: str = "gaps_between"
 ) -> float:
-    """Median share by which a method is above the best at a level; NaN where it is not there."""
+    """Median share by which a method is above the best at a level; NaN without a point there."""
     group = group_of(comparison, method)
     return np.nan if group is None else group.spread(name, level).median
 
@@ -167,8 +167,8 @@ def _floor(found: CaseStudy) -> str:
         )
     return (
         f"At rest on arrival, the best motion of {terms} coefficients takes {best:.4g} J, "
-        f"{best / found.floor.energy:.3g} times the floor of any joint motion, "
-        f"{found.floor.energy:.4g} J."
+        f"{best / found.floor.energy:.3g} times the floor of {found.floor.energy:.4g} J that any "
+        "joint motion needs."
     )
 
 

@@ -1,4 +1,4 @@
-"""The tasks of a study beside each other: energy above the best, in a table and a picture."""
+"""The tasks of a study side by side: energy above the best, in a table and a picture."""
 
 from __future__ import annotations
 

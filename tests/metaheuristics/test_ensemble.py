@@ -228,7 +228,7 @@ def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
 
 @pytest.mark.parametrize("name", ["checkpoint", "resume"])
 def test_runs_cannot_share_a_checkpoint(tmp_path, name):
-    with pytest.raises(ValueError, match="a checkpoint is of one search, and there are 2 runs"):
+    with pytest.raises(ValueError, match="a checkpoint holds one search, and there are 2 runs"):
         search_many(TASK, "vepso", 2, **SMALL, **{name: tmp_path / "state"})
     assert list(tmp_path.iterdir()) == []
     search_many(TASK, "vepso", 1, **SMALL, checkpoint=tmp_path / "state")

@@ -280,7 +280,7 @@ def test_what_is_no_algorithm_is_named(algorithm):
     ("task", "profile", "words"),
     [
         (None, None, "task is None; give a PointToPoint"),
-        (HALF, 6, r"profile is 6; give a JointProfile, as CycloidPolynomial\(6\)"),
+        (HALF, 6, r"profile is 6; give a JointProfile, such as CycloidPolynomial\(6\)"),
     ],
 )
 def test_what_is_no_task_or_profile_is_named(task, profile, words):

@@ -25,8 +25,6 @@ from ocp import (
 PAPERS_RESIDUAL = {"vepso": 1.58e-4 * 2.28, "nsga2": 6.6e-4 * 0.508}
 VEPSO_ROWS = [(pi / 6, 0.8, 0.0515), (pi / 2, 1.0, 0.296), (pi / 2, 1.1, 0.223)]
 ARM_ROWS = [(-pi / 2, pi / 4, 1.0, 0.143), (-pi / 2, pi / 2, 1.2, 0.200)]  # and HALF, 0.149
-
-
 TENTH = {"population": 80, "generations": 120}
 
 

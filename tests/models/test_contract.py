@@ -5,32 +5,14 @@ The words that a person may rely on are the name of the method and what it shoul
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import casadi as ca
 import pytest
+from sound_plant import Sound
 
 from models import Plant, SingleLinkManipulator, known_plants, parameter
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
-
-
-@dataclass(frozen=True)
-class _Sound(Plant):
-    """A plant that keeps the contract."""
-
-    name: ClassVar[str] = "sound-probe"
-    modes: ClassVar[int] = 1
-    omega: float = parameter(10.0, "rad/s", "a round number")
-
-    def modal_accelerations(self, joint, W, dW):
-        return [-(self.omega**2) * W[0] - joint.acceleration]
-
-    def torque(self, joint, W, dW, ddW):
-        return joint.acceleration + ddW[0]
-
-    def tip_displacements(self, W):
-        return [W[0]]
 
 
 def _accelerations(plant, joint, W, dW):
@@ -38,8 +20,8 @@ def _accelerations(plant, joint, W, dW):
 
 
 def _told(**changes):
-    """What is said of a plant with some members of `_Sound` replaced."""
-    plant = type("Broken", (_Sound,), {"name": "broken", **changes})()
+    """What is said of a plant with some members of `Sound` replaced."""
+    plant = type("Broken", (Sound,), {"name": "broken", **changes})()
     with pytest.raises(ValueError, match="broken") as told:
         plant.validate()
     assert "\n" not in str(told.value)
@@ -47,7 +29,7 @@ def _told(**changes):
 
 
 def test_the_plant_that_is_broken_here_is_sound():
-    _Sound().validate()
+    Sound().validate()
 
 
 NO_SYMBOLS = {
@@ -165,7 +147,7 @@ def test_equations_that_are_finite_nowhere_are_told():
 
 def test_angles_that_the_equations_are_not_made_for_are_left_out():
     # A slider and crank at its dead point: finite at every other angle.
-    type("Crank", (_Sound,), {
+    type("Crank", (Sound,), {
         "name": "crank",
         "modal_accelerations": lambda p, j, W, dW: [-W[0] - j.acceleration / ca.sin(j.angle)],
     })().validate()  # fmt: skip
@@ -187,7 +169,7 @@ def test_rest_at_some_angles_alone_is_refused(gravity):
 
 
 def test_rest_that_rounding_alone_breaks_is_rest():
-    type("Rounded", (_Sound,), {
+    type("Rounded", (Sound,), {
         "name": "rounded",
         "modal_accelerations": lambda p, j, W, dW: [
             -W[0] - j.acceleration - (1 - ca.cos(j.angle) ** 2 - ca.sin(j.angle) ** 2)
@@ -215,7 +197,7 @@ def test_an_unstable_mode_is_refused(acceleration, growth):
 @pytest.mark.parametrize("modes", [1, 2, 3])
 def test_modes_that_do_not_decay_are_accepted(modes):
     # Undamped and, in the last mode, free: roots on the imaginary axis and twice at zero.
-    type("Undamped", (_Sound,), {
+    type("Undamped", (Sound,), {
         "name": "undamped",
         "modes": modes,
         "modal_accelerations": lambda p, j, W, dW: [
@@ -233,7 +215,7 @@ def test_a_parameter_that_makes_a_mode_unstable_is_refused():
 
 
 def _equations():
-    return {name: getattr(_Sound, name) for name in METHODS}
+    return {name: getattr(Sound, name) for name in METHODS}
 
 
 def test_missing_modes_are_told():
@@ -291,12 +273,12 @@ def test_a_small_deflection_that_is_no_length_is_told(value):
 def test_a_plant_of_ones_own_does_not_take_the_place_of_quietarms(name):
     before = known_plants()[name]
     with pytest.raises(ValueError, match=rf"'{name}' is that of quietarm's own .*class Mine"):
-        type("Mine", (_Sound,), {"name": name})
+        type("Mine", (Sound,), {"name": name})
     assert known_plants()[name] is before
 
 
 def test_a_class_may_be_written_again():
     # As in a notebook whose cell is run twice.
-    type("Mine", (_Sound,), {"name": "mine-again"})
-    second = type("Mine", (_Sound,), {"name": "mine-again"})
+    type("Mine", (Sound,), {"name": "mine-again"})
+    second = type("Mine", (Sound,), {"name": "mine-again"})
     assert known_plants()["mine-again"] is second

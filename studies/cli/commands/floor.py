@@ -46,8 +46,9 @@ def floor(
 ) -> None:
     """Find the least energy of a move over all joint motions, at rest on arrival.
 
-    No profile: the joint's acceleration is free. What a plan needs beyond this floor is the price
-    of its profile; without an acceleration limit the floor begins and ends with a jolt.
+    The joint follows no profile: its acceleration is free. The energy of a plan above this floor is
+    the price of its profile. Without an acceleration limit the floor's motion begins and ends with
+    a jolt.
 
     \b
     Examples:

@@ -32,7 +32,7 @@ _ONLY_FOR = {
     **dict.fromkeys(("population", "generations", "runs"), METAHEURISTICS),
     **dict.fromkeys(("workers", "scheduler", "checkpoint", "resume"), METAHEURISTICS),
 }  # fmt: skip
-"""For every option that is not for all methods, the methods that it is for."""
+"""For every option that not all methods have: the methods that have it."""
 
 
 @click.command()
@@ -61,7 +61,7 @@ _ONLY_FOR = {
 )  # fmt: skip
 @click.option(
     "--population", type=int,
-    help="Metaheuristic: individuals, or particles a swarm; the paper's by default.",
+    help="Metaheuristic: individuals, or particles in a swarm; the paper's by default.",
 )  # fmt: skip
 @click.option("--generations", type=int, help="Metaheuristic: generations; the paper's by default.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed; of several, the first.")

@@ -26,7 +26,7 @@ from studies.reports.plan import print_plan
 
 IPOPT = "ipopt"
 OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "polish")
-"""Options with which there must be coefficients to choose."""
+"""Options that need a profile with coefficients."""
 SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 
 

@@ -33,9 +33,9 @@ def polish(
 ) -> None:
     """Improve the points of a front that was written by `quietarm front`.
 
-    From each the gradient looks for a cheaper motion of no larger residual. How much a
-    metaheuristic's front gains tells how far it was from the best there is. Ctrl-C ends the work
-    early and keeps what was improved.
+    From each point the gradient looks for a cheaper motion of no larger residual. What a
+    metaheuristic's front gains shows how far it was from the optimum. Ctrl-C ends the work early
+    and keeps what was improved.
 
     \b
     Examples:

@@ -33,7 +33,7 @@ def _not_required(command: click.Command) -> click.Command:
 @click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
 @workers_options
 @click.option(
-    "--population", type=int, help="Individuals, or particles a swarm; the paper's by default."
+    "--population", type=int, help="Individuals, or particles in a swarm; the paper's by default."
 )
 @click.option("--generations", type=int, help="Generations; the paper's by default.")
 @click.option(

@@ -1,23 +1,19 @@
-"""The floor: against closed forms, other answers, and what it says of itself."""
+"""The floor: against other answers, what it says of itself, errors."""
 
-import json
 import math
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import replace
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 import pytest
+from floor_moves import ARM, SHORT
 
-from models import ArmOnFlexibleLink, Plant, SingleLinkManipulator, parameter
+from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import (
-    FileFormatError,
-    Floor,
     InfeasibleTaskError,
     PointToPoint,
     SolverFailedError,
@@ -28,84 +24,8 @@ from ocp.floor.answer import Level
 from ocp.floor.program import FloorProgram
 
 ROOT = Path(__file__).parents[3]
-ARM = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
-SHORT = {"starts": 1}
-
-
-@pytest.fixture(scope="module")
-def floor_of():
-    """`energy_floor` that solves nothing twice."""
-    return cache(lambda task, **settings: energy_floor(task, **settings))
-
-
-@pytest.fixture
-def rigid(_plants_of_this_test_are_forgotten):
-    """A rigid joint beside a mode that nothing excites: tau = inertia theta'' + c theta'."""
-
-    @dataclass(frozen=True)
-    class Rigid(Plant):
-        name: ClassVar[str] = "rigid"
-        modes: ClassVar[int] = 1
-
-        inertia: float = parameter(0.02, "kg m^2", "test")
-        c: float = parameter(0.03, "N m s", "test")
-
-        def modal_accelerations(self, joint, W, dW):
-            return [-100.0 * W[0]]
-
-        def torque(self, joint, W, dW, ddW):
-            return self.inertia * joint.acceleration + self.c * joint.speed
-
-        def tip_displacements(self, W):
-            return [W[0]]
-
-    return Rigid
-
-
-# -- closed forms --
-
-
-def _friction_floor(inertia, c, span, duration):
-    """Least integral of |tau theta'| for tau = I theta'' + c theta', no limits.
-
-    While the power is positive the energy is the gain of I v^2/2 plus the integral of c v^2, which
-    for a given way is least at a constant speed v. While the torque is zero the joint coasts, its
-    speed falling as exp(-c t/I), for nothing. So: a jolt to v, v held until t1, coasting down to
-    x v, and a jolt to rest. With A = E/v^2 and D = span/v,
-
-        A = I (1 + x^2)/2 + c t1,   D = t1 + (I/c) (1 - x),   x = exp(-c (T - t1)/I),
-
-    and E = A (span/D)^2 is stationary where c (1 + x^2) D = 2 A (1 - x), that is
-    c t1 (x^2 + 2 x - 1) = 0: the joint coasts until its speed is sqrt(2) - 1 of what it was.
-    """
-    x = math.sqrt(2) - 1
-    t1 = duration + inertia / c * math.log(x)
-    assert t1 > 0  # else it coasts from the start
-    A = inertia * (1 + x * x) / 2 + c * t1
-    return A * (span / (t1 + inertia / c * (1 - x))) ** 2
-
-
-@pytest.mark.parametrize("smooth", [False, True])
-def test_a_rigid_joint_with_friction_has_its_closed_form(rigid, smooth):
-    plant = rigid()
-    expected = _friction_floor(plant.inertia, plant.c, 1.5, 0.8)
-    floor = energy_floor(PointToPoint(plant, 1.5, 0.8), smooth=smooth, **SHORT)
-    assert floor.energy == pytest.approx(expected, rel=2e-3)
-    assert floor.energy > expected * (1 - 1e-4)  # no motion is cheaper
-    # A jolt takes up to 4e-5 of the move at any level.
-    assert abs(floor.energy - expected) < 2 * floor.left + 1e-4 * expected
-
-
-def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form(rigid):
-    # Without friction every motion costs I v^2 with v its top speed (up, and braked down again);
-    # the least top speed is the trapezium's: span = v T - v^2/A.
-    limit, span, duration = 15.0, 1.5, 0.8
-    v = (limit * duration - math.sqrt((limit * duration) ** 2 - 4 * limit * span)) / 2
-    task = PointToPoint(rigid(c=0.0), span, duration, acceleration_limit=limit)
-    floor = energy_floor(task, **SHORT)
-    assert floor.energy == pytest.approx(task.plant.inertia * v**2, rel=1e-3)
-    assert floor.motion.peak_speed == pytest.approx(v, rel=2e-3)
-    assert floor.motion.peak_acceleration <= limit * (1 + 1e-9)
+GUARD = 240
+"""Seconds after which a process that does not end has hung, on any machine."""
 
 
 # -- other answers --
@@ -297,47 +217,6 @@ def test_the_same_seed_gives_the_same_floor(floor_of):
     assert one.provenance.settings.seed == 5
 
 
-# -- files --
-
-
-def test_a_saved_floor_is_equal(floor_of, tmp_path):
-    floor = floor_of(replace(ARM, acceleration_limit=200.0), **SHORT)
-    floor.save(tmp_path / "floor.json")
-    again = Floor.load(tmp_path / "floor.json")
-    assert again == floor
-    assert again.left == floor.left
-    assert again.trajectory.torque == pytest.approx(floor.trajectory.torque, rel=1e-9, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    "damage",
-    [
-        lambda d: d.pop("motion"),
-        lambda d: d["free"].pop("jerk"),
-        lambda d: d["free"]["times"].pop(),
-        lambda d: d["free"].update(times="0, 1"),
-        lambda d: d["free"]["times"].__setitem__(1, "0.1"),
-        lambda d: d.update(levels=d["levels"][:1]),
-        lambda d: d["levels"][0].update(energy="0.1"),
-        lambda d: d.update(starts=[]),
-        lambda d: d["task"].update(duration=0.9),
-        lambda d: d.update(status="fine"),
-        lambda d: d["provenance"]["settings"].pop("smooth"),
-        lambda d: d["provenance"]["settings"].pop("tolerance"),
-        lambda d: d.update(format="quietarm-plan"),
-        lambda d: d.update(version=99),
-    ],
-)
-def test_a_damaged_file_is_refused(floor_of, tmp_path, damage):
-    path = tmp_path / "floor.json"
-    floor_of(ARM, **SHORT).save(path)
-    document = json.loads(path.read_text())
-    damage(document)
-    path.write_text(json.dumps(document))
-    with pytest.raises(FileFormatError, match=r"floor\.json"):
-        Floor.load(path)
-
-
 # -- errors --
 
 
@@ -374,19 +253,20 @@ def test_settings_out_of_range_are_refused(settings, named):
         energy_floor(ARM, **settings)
 
 
-def test_ctrl_c_ends_it_at_once():
+def test_ctrl_c_ends_it_on_the_first_grid():
+    # The first grid has a thousand starts: it is not done when the signal comes, nor anywhere near.
     code = (
         "import math; from ocp import *; from models import *\n"
         "task = PointToPoint(SingleLinkManipulator(), math.pi / 2, 1.0)\n"
         "print('begun', flush=True)\n"
-        "energy_floor(task, starts=50, tolerance=1e-9)\n"
+        "energy_floor(task, starts=1000)\n"
     )
     process = subprocess.Popen(
         [sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     assert process.stdout.readline()
-    time.sleep(1.5)
+    time.sleep(0.5)
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=20)
+    _, errors = process.communicate(timeout=GUARD)
     assert process.returncode != 0
     assert b"KeyboardInterrupt" in errors

@@ -76,7 +76,7 @@ def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
     ("rows", "words"),
     [
         ([0.1, 0.2], r"shape \(2,\); give \(motions, coefficients\)"),
-        ([], "give .motions, coefficients., a motion a row"),
+        ([], "give .motions, coefficients., one row for each motion"),
         ([[0.1, "x"]], "give a row of numbers for each motion"),
         ([[0.1], [0.1, 0.2]], "give a row of numbers for each motion"),
         ([[0.1, math.nan]], "coefficient 2 is nan; give a finite number"),

@@ -1,19 +1,17 @@
 """The front by epsilon-constraint: its ends, its spacing, and that no point could be cheaper."""
 
 import math
-import signal
-import time
 
 import numpy as np
 import pytest
+from front_moves import CASES
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
+from models import ArmOnFlexibleLink
 from ocp import (
     CycloidPolynomial,
     Front,
     InfeasibleTaskError,
     PointToPoint,
-    SolverFailedError,
     epsilon_front,
     plan_move,
     reference_corner,
@@ -21,9 +19,6 @@ from ocp import (
     weighted_front,
 )
 from ocp.answers.provenance import SolveSettings
-from ocp.base.status import SolveStatus
-from ocp.front import checking, weighted
-from ocp.front.ends import find_ends
 from ocp.front.epsilon import _Stretch
 from ocp.front.sweep import Sweep
 from ocp.plan.solver import first_steps
@@ -31,10 +26,6 @@ from ocp.plan.verification import STILL
 from ocp.program.transcription import NonlinearProgram
 
 POINTS = 12
-CASES = {
-    "arm": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
-    "single link": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
-}
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -109,43 +100,6 @@ def test_its_iterations_are_all_iterations_of_the_solver(monkeypatch):
     assert front.iterations == sum(counted)
 
 
-def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
-    task, bound = CASES["arm"]
-
-    def failing(*_, **__):
-        raise SolverFailedError("why")
-
-    monkeypatch.setattr(checking, "verified", failing)  # the still end is checked on its own
-    for method in (epsilon_front, weighted_front):
-        front = method(task, CycloidPolynomial(3), bound=bound, points=2)
-        assert (len(front.points), len(front.failures)) == (1, 1)
-        assert front.failures[0].asked["residual_limit"] > front.points[0].residual
-        front.save(tmp_path / "front.json")
-        assert Front.load(tmp_path / "front.json") == front
-
-
-def test_ctrl_c_while_points_are_checked_keeps_what_there_is_time_for(monkeypatch):
-    task, bound = CASES["arm"]
-    checked, began = checking.checked, []
-
-    def slow(sweep, found, asked):
-        if not began:
-            began.append(asked)
-            signal.raise_signal(signal.SIGINT)
-        time.sleep(0.25)
-        return checked(sweep, found, asked)
-
-    def first(sweep):
-        ends = find_ends(sweep)
-        monkeypatch.setattr(checking, "checked", slow)
-        return ends
-
-    monkeypatch.setattr(weighted, "find_ends", first)
-    front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=10)
-    assert not front.complete
-    assert 2 < len(front.points) < 8
-
-
 def test_limits_of_the_task_are_kept_along_the_front():
     plant = ArmOnFlexibleLink()
     free = epsilon_front(PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=4)
@@ -193,43 +147,6 @@ def test_a_move_of_too_many_periods_is_refused():
     task = PointToPoint(ArmOnFlexibleLink(), 1.0, 1000.0)
     with pytest.raises(ValueError, match=r"duration is 1000 s, .* radians .* give a shorter"):
         epsilon_front(task, points=3)
-
-
-def test_a_solve_that_fails_does_not_end_the_sweep(monkeypatch):
-    task, bound = CASES["arm"]
-    profile, whole = CycloidPolynomial(3), Sweep.solve
-    solved = []
-
-    def failing(self, guess, residual_limit=np.inf, **rest):
-        found = whole(self, guess, residual_limit, **rest)
-        if 4e-3 < residual_limit < 6e-3:
-            object.__setattr__(found, "status", SolveStatus.NUMERICAL_TROUBLE)
-        solved.append(residual_limit)
-        return found
-
-    monkeypatch.setattr(Sweep, "solve", failing)
-    front = epsilon_front(task, profile, bound=bound, points=8)
-    assert front.failed == len(front.failures) > 0
-    assert len(front.points) + front.failed == 8
-    for failure in front.failures:
-        assert 4e-3 < failure.asked["residual_limit"] < 6e-3
-        assert failure.reason == SolveStatus.NUMERICAL_TROUBLE.text
-    assert min(solved) < 4e-3 < 6e-3 < max(solved)
-
-
-def test_ctrl_c_keeps_what_was_found(monkeypatch):
-    task, bound = CASES["arm"]
-    calls = []
-
-    def interrupt(done, total):
-        calls.append((done, total))
-        if done == 4:
-            raise KeyboardInterrupt
-
-    front = epsilon_front(task, CycloidPolynomial(3), bound=bound, points=8, report=interrupt)
-    assert not front.complete
-    assert 3 <= len(front.points) < 8
-    assert calls[-1] == (4, 8)
 
 
 def test_what_one_sweep_misses_the_other_mends(monkeypatch):

@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import cache
 
 import casadi as ca
 import numpy as np
@@ -207,20 +208,25 @@ def test_a_spline_follows_a_polynomial_better_with_more_control_points():
 # -- answers --
 
 
+@pytest.fixture(scope="module")
+def planned(tasks):
+    """A plan of a plant's task with a family, from one start; solved once."""
+    return cache(lambda name, family: plan_move(tasks[name], family(), starts=1))
+
+
 @pytest.mark.parametrize("name", PLANTS)
-def test_the_gradient_plans_with_it_on_every_plant(family, name, tasks, tmp_path):
-    task, profile = tasks[name], family()
-    plan = plan_move(task, profile, starts=1)
+def test_the_gradient_plans_with_it_on_every_plant(planned, solved, family, name, tasks, tmp_path):
+    task, plan = tasks[name], planned(name, family)
     assert plan.residual < 1e-7 * evaluate_coefficients(task, []).residual + 1e-8
-    assert plan.motion == resimulate(task, profile, plan.coefficients)
-    assert plan.energy < 1.001 * plan_move(task, CycloidPolynomial(4)).energy
+    assert plan.motion == resimulate(task, family(), plan.coefficients)
+    assert plan.energy < 1.001 * solved(task, 4).energy
     plan.save(tmp_path / "plan.json")
     assert Plan.load(tmp_path / "plan.json") == plan
 
 
-def test_limits_hold(family, tasks):
+def test_limits_hold(planned, family, tasks):
     arm = tasks["arm"]
-    free = plan_move(arm, family(), starts=1)
+    free = planned("arm", family)
     limit = 0.9 * free.motion.peak_acceleration
     task = PointToPoint(arm.plant, arm.target, arm.duration, acceleration_limit=limit)
     plan = plan_move(task, family(), starts=1)

@@ -3,107 +3,28 @@
 `symbolic_rollout` knows neither groups nor recursions of derivatives; its are casadi's own.
 """
 
-from dataclasses import replace
 from functools import cache
 
 import casadi as ca
 import numpy as np
 import pytest
+from both_motions import COEFFICIENTS, MOVE, QUANTITIES, TERMS, Both, full, of_bends
 from numpy.polynomial import Polynomial
 
 from ocp import CycloidPolynomial, PointToPoint, rollout
-from ocp.program.condensed import Condensed, Inputs
-from ocp.program.pieces import EnergyPieces
+from ocp.program.condensed import Condensed
 from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
-from ocp.simulation.rollout import symbolic_rollout
-from ocp.task.quantities import QUANTITIES as TABLE
 
-TERMS = 3
-MOVE = np.array([-0.4, 1.1, 0.7])
-COEFFICIENTS = np.array([0.1, -0.2, 0.15])
-QUANTITIES = {
-    "none": (),
-    "one": ("torque",),
-    "two": ("deflection", "speed"),
-    "all": tuple(TABLE),
-}
 CASES = [
     *((plant, "all", 4) for plant in ("single link", "arm", "two links")),
     *(("two links", quantities, 4) for quantities in ("none", "one", "two")),
     *((plant, "two", 1) for plant in ("single link", "two links")),
     ("arm", "one", 30),
 ]
+
+
 FEW_STEPS = [case for case in CASES if case[-1] <= 4]
 """Those whose second derivatives casadi takes of the plain rollout in a moment."""
-
-
-def _plain(plant, profile, steps, quantities, second):
-    """Arrival, outputs at the nodes in time, and their derivatives, from the plain rollout."""
-    a, move, modes = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3), plant.modes
-    scale = ca.SX.sym("scale", 2 * modes + 1 + len(quantities))
-    plain = symbolic_rollout(plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps, jerk=True)
-    tips = [plant.tip_displacements(node.W) for node in plain.states]
-    at_nodes = {
-        "power": [plain.power],
-        "torque": [plain.torque],
-        "speed": [[joint.speed for joint in plain.joints]],
-        "acceleration": [[joint.acceleration for joint in plain.joints]],
-        "jerk": [[joint.jerk for joint in plain.joints]],
-        "deflection": [[tip[i] for tip in tips] for i in range(plant.tips)],
-    }
-    rows = [
-        ca.vec(ca.vertcat(*row)).T / scale[2 * modes + i]
-        for i, name in enumerate(("power", *quantities))
-        for row in at_nodes[name]
-    ]
-    arrival, outputs = plain.arrival.T / scale[: 2 * modes], ca.vertcat(*rows)
-    inputs, everything = [a, move, scale], ca.vertcat(arrival, ca.vec(outputs))
-    multipliers = ca.SX.sym("lam", everything.numel())
-    values = ca.Function("plain", inputs, [arrival, outputs, ca.jacobian(everything, a)])
-    if not second:
-        return values, None
-    curvature = ca.hessian(ca.dot(multipliers, everything), a)[0]
-    return values, ca.Function("plain_second", [*inputs, multipliers], [curvature])
-
-
-class _Both:
-    """The condensed motion and the plain rollout of the same case, with scales."""
-
-    def __init__(self, plant, profile, quantities, steps, second, axes=None):
-        self.motion = motion = Condensed(plant, profile, steps, quantities)
-        self.plain = _plain(plant, profile, steps, quantities, second)
-        scale = np.random.default_rng(steps).uniform(0.5, 2.0, motion.scales)
-        self.inputs = (np.resize(COEFFICIENTS, profile.size), MOVE, scale)
-        self.basis = motion.basis(MOVE, np.eye(profile.size) if axes is None else axes)
-        self.symbols = Inputs(
-            *(ca.MX.sym("x", x.size) for x in self.inputs), ca.MX.sym("b", motion.basis_size)
-        )
-        march, first = self.linearised = motion.linearised(self.symbols)
-        self._march = self._function(march.arrival, march.outputs)
-        self._first = self._function(first.arrival, first.outputs)
-
-    def _function(self, *expressions):
-        return ca.Function("of_inputs", [*self.symbols], [*expressions])
-
-    def evaluated(self, *expressions):
-        """Numbers of expressions in the symbols, where the case stands."""
-        return _full(self._function(*expressions)(*self.inputs, self.basis))
-
-    def simulated(self, a):
-        """Arrival (states, 1) and outputs (rows, nodes)."""
-        return _full(self._march(a, *self.inputs[1:], self.basis))
-
-    def firsts(self, a):
-        """Derivatives by the coefficients: of the arrival and of the outputs, node by node."""
-        return _full(self._first(a, *self.inputs[1:], self.basis))
-
-    def curvature(self, of_arrival, of_outputs):
-        given = ca.MX(ca.DM(of_arrival)), ca.MX(ca.DM(of_outputs))
-        return self.evaluated(self.motion.curvature(self.symbols, self.linearised, *given))[0]
-
-
-def _full(values):
-    return [value.full() for value in (values if isinstance(values, list | tuple) else [values])]
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +32,7 @@ def both(plants):
     @cache
     def of(name, quantities, steps):
         profile = CycloidPolynomial(TERMS)
-        return _Both(plants[name], profile, QUANTITIES[quantities], steps, second=steps <= 4)
+        return Both(plants[name], profile, QUANTITIES[quantities], steps, second=steps <= 4)
 
     return of
 
@@ -130,14 +51,14 @@ def case(request, both):
 
 def test_the_motion_is_that_of_the_plain_rollout(case):
     arrival, outputs = case.simulated(case.inputs[0])
-    expected_arrival, expected, _ = _full(case.plain[0](*case.inputs))
+    expected_arrival, expected, _ = full(case.plain[0](*case.inputs))
     assert arrival == pytest.approx(expected_arrival, rel=1e-10, abs=1e-13)
     assert outputs == pytest.approx(expected, rel=1e-10, abs=1e-12)
 
 
 def test_the_figures_hold_every_state_the_same_outputs_and_the_energy(case):
     arrival, outputs = case.simulated(case.inputs[0])
-    states, same, energy = _full(case.motion.figures(*case.inputs))
+    states, same, energy = full(case.motion.figures(*case.inputs))
     assert states[:, -1:] == pytest.approx(arrival, rel=1e-12, abs=1e-14)
     assert same == pytest.approx(outputs, rel=1e-12, abs=1e-13)
     assert states.shape == (case.motion.states, case.motion.steps)
@@ -151,7 +72,7 @@ def test_the_energy_is_that_of_each_steps_quadratic(tasks, name, steps):
     motion = Condensed(task.plant, profile, steps, ())
     scale = np.ones(motion.scales)
     scale[motion.states] = 0.3  # the power's
-    _, outputs, energy = _full(motion.figures(COEFFICIENTS, task.move, scale))
+    _, outputs, energy = full(motion.figures(COEFFICIENTS, task.move, scale))
     by_step = outputs[0].reshape(steps, NODES)
     # |p| of a quadratic: its primitive between its zeros in the step.
     expected = 0.0
@@ -225,8 +146,8 @@ def test_first_derivatives_are_the_limit_of_differences(case):
 def test_along_other_axes_the_same_motion_is_a_function_of_other_unknowns(plants, name):
     # The coefficients are the axes times the unknowns; derivatives follow by the chain rule.
     axes = np.random.default_rng(7).uniform(-1.0, 1.0, (TERMS, TERMS))
-    case = _Both(plants[name], CycloidPolynomial(TERMS), ("torque",), 4, second=False, axes=axes)
-    usual = _Both(plants[name], CycloidPolynomial(TERMS), ("torque",), 4, second=False)
+    case = Both(plants[name], CycloidPolynomial(TERMS), ("torque",), 4, second=False, axes=axes)
+    usual = Both(plants[name], CycloidPolynomial(TERMS), ("torque",), 4, second=False)
     a = np.linalg.solve(axes, COEFFICIENTS)
     for found, expected in zip(case.simulated(a), usual.simulated(COEFFICIENTS), strict=True):
         assert found == pytest.approx(expected, rel=1e-10, abs=1e-12)
@@ -285,79 +206,13 @@ def test_second_derivatives_are_the_limit_of_differences(case):
         assert found[i] == pytest.approx(expected, abs=1e-7 * np.abs(found).max())
 
 
-def _of_bends(case, bends):
-    """Second derivatives by the coefficients from those by the power at the nodes."""
-    of_power = case.motion.of_group(case.linearised[1].outputs, "power")
-    return case.evaluated(case.motion.of_bends(of_power, ca.MX(ca.DM(bends))))[0]
-
-
 @pytest.mark.parametrize(("name", "quantities", "steps"), [CASES[0], CASES[2], CASES[-1]])
 def test_bends_count_along_the_powers_derivatives(both, name, quantities, steps):
     case, random = both(name, quantities, steps), np.random.default_rng(5)
     blocks = [random.normal(size=(NODES, NODES)) for _ in range(steps)]
     blocks = [block + block.T for block in blocks]
-    found = _of_bends(case, np.hstack(blocks))
+    found = of_bends(case, np.hstack(blocks))
     of_power = case.firsts(case.inputs[0])[1][:, :: case.motion.rows]  # the first row at a node
     columns = np.split(of_power, steps, axis=1)
     expected = sum(x @ block @ x.T for x, block in zip(columns, blocks, strict=True))
     assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
-
-
-# -- the energy --
-
-
-@pytest.mark.parametrize("steps", [1, 2, 4, 30])
-def test_the_energys_gradient_by_the_power_is_the_limit_of_differences(steps):
-    lengths = ca.DM([float(mesh(k, steps)[1]) for k in range(steps)]).T
-    energy, h, random = EnergyPieces(lengths), 1e-7, np.random.default_rng(6)
-    power = random.normal(size=(1, NODES * steps))
-    gradient = energy.first(power)[0].full().ravel()
-    for away in random.normal(size=(3, *power.shape)):
-        there, back = (float(energy.value(power + s * h * away)) for s in (1, -1))
-        assert away.ravel() @ gradient == pytest.approx((there - back) / (2 * h), abs=1e-6)
-
-
-def _weights(case, gradient):
-    """Multipliers of arrival and outputs: the energy's derivatives by the power, else none."""
-    motion = case.motion
-    others = np.zeros((motion.rows - 1, motion.nodes))
-    return np.zeros((motion.states, 1)), np.vstack([gradient.T, others])
-
-
-def test_the_energys_second_derivatives_where_the_power_keeps_its_sign(plants):
-    # Eq (8) without inertia: tau = c theta', so that the power is c theta'^2.
-    plant = replace(plants["single link"], alpha1=0.0, alpha2=0.0)
-    case = _Both(plant, CycloidPolynomial(TERMS), ("torque",), 30, second=False)
-    motion, (a, move, scale), h = case.motion, case.inputs, 1e-5
-    power = case.simulated(a)[1][:1]
-    assert power.min() > 0
-    gradient, bends = _full(motion.energy.first(power))
-    found = case.curvature(*_weights(case, gradient)) + _of_bends(case, bends)
-
-    def energy(coefficients):
-        return float(motion.figures(coefficients, move, scale)[2])
-
-    for i, j in np.ndindex(found.shape):
-        u, v = h * np.eye(TERMS)[[i, j]]
-        crossed = energy(a + u + v) - energy(a + u - v) - energy(a - u + v) + energy(a - u - v)
-        expected = crossed / (4 * h * h)
-        assert found[i, j] == pytest.approx(expected, abs=1e-4 * np.abs(found).max())
-
-
-@pytest.mark.parametrize("steps", [1, 4, 30])
-@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-def test_the_energys_second_derivatives_where_zeros_move(plants, name, steps):
-    case = _Both(plants[name], CycloidPolynomial(TERMS), (), steps, second=False)
-    motion, a, h = case.motion, case.inputs[0], 1e-6
-    power = case.simulated(a)[1]
-    assert power.min() < 0 < power.max()
-    gradient, bends = _full(motion.energy.first(power))
-    found = case.curvature(*_weights(case, gradient)) + _of_bends(case, bends)
-
-    def slope(coefficients):
-        there = case.simulated(coefficients)[1]
-        return case.firsts(coefficients)[1] @ motion.energy.first(there)[0].full().ravel()
-
-    for i, unit in enumerate(np.eye(TERMS)):
-        expected = (slope(a + h * unit) - slope(a - h * unit)) / (2 * h)
-        assert found[i] == pytest.approx(expected, abs=1e-6 * np.abs(found).max())

@@ -3,11 +3,13 @@
 import csv
 import math
 from dataclasses import replace
+from functools import partial
 
 import pytest
 
+import studies.study.pieces
 from models import DualLinkManipulator
-from ocp import Front, Plan, PointToPoint
+from ocp import Front, Plan, PointToPoint, energy_floor
 
 MOVE = "dual-link --target pi/2 --duration 0.9"
 TASK = PointToPoint(DualLinkManipulator(), math.pi / 2, 0.9)
@@ -67,12 +69,16 @@ def test_front_by_search_polished_and_compared(done, tmp_path, method):
 
 def test_floor(done, tmp_path):
     # Limited in acceleration, the floor is found on coarser grids, above that of docs/physics.md.
-    out = done(f"floor {MOVE} --acceleration-limit 60 --starts 1 --output floor.json")
+    out = done(
+        f"floor {MOVE} --acceleration-limit 60 --starts 1 --tolerance 0.02 --output floor.json"
+    )
     assert "at the worst of 2 tips" in out
     assert (tmp_path / "floor.json").exists()
 
 
-def test_study(done, tmp_path):
+def test_study(done, tmp_path, monkeypatch):
+    quick = partial(energy_floor, starts=1, tolerance=0.1)  # a floor is found in a test above
+    monkeypatch.setattr(studies.study.pieces, "energy_floor", quick)
     done(
         f"study {MOVE} --acceleration-limit 60 --bound 0.5 --terms 5 --points 3 --runs 1 {SMALL} "
         "--output s.html --fronts fronts --quiet"

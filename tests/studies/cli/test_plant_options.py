@@ -14,11 +14,10 @@ SHORT = "--population 20 --generations 3 --bound 0.2 --quiet"
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch, crane_file):
+def folder(folder, monkeypatch, crane_file):
     """A folder of the test's own with the crane's file in it, and standing in it."""
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
-    return tmp_path
+    return folder
 
 
 def forget():

@@ -3,18 +3,10 @@
 import json
 
 import pytest
+from lines import MOVE
 
 from models import SingleLinkManipulator
 from ocp import Plan
-
-MOVE = "single-link --target 30deg --duration 0.8"
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    """A folder of the test's own, and standing in it."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 @pytest.mark.parametrize("columns", ["1", "20", "45", "80", "0", "-5", "many"])

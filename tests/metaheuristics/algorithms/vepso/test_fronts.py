@@ -9,7 +9,7 @@ from pymoo.problems import get_problem
 from metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
 from metaheuristics.algorithms.vepso import VEPSO
 
-# The paper's effort is 100 particles a swarm and 200 iterations; 80 are run where they are enough.
+# The paper takes 100 particles in a swarm and 200 iterations; 80 are run where they are enough.
 # IGD is the mean distance of the true front to the archive, HV the archive's hypervolume over the
 # true front's at (1.1, 1.1). Measured is the worst of seeds 0 to 19 after 200 iterations, of seeds
 # 0 to 7 after 80. 40,000 uniformly random candidates get an IGD of 0.06 to 0.09 for 3 variables,

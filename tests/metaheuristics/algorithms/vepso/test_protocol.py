@@ -166,13 +166,22 @@ def test_tell_refuses_what_was_not_asked_for():
     problem = Targets()
     algorithm = VEPSO(5).setup(problem, seed=1)
     candidates = algorithm.ask()
-    with pytest.raises(ValueError, match="evaluate all of them, and tell them once"):
+    with pytest.raises(
+        ValueError,
+        match=r"evaluate all candidates that ask\(\) gave, and pass them to tell\(\) once",
+    ):
         algorithm.tell(infills=candidates)
     Evaluator().eval(problem, candidates)
-    with pytest.raises(ValueError, match="evaluate all of them, and tell them once"):
+    with pytest.raises(
+        ValueError,
+        match=r"evaluate all candidates that ask\(\) gave, and pass them to tell\(\) once",
+    ):
         algorithm.tell(infills=candidates[:-1])
     algorithm.tell(infills=candidates)
-    with pytest.raises(ValueError, match="evaluate all of them, and tell them once"):
+    with pytest.raises(
+        ValueError,
+        match=r"evaluate all candidates that ask\(\) gave, and pass them to tell\(\) once",
+    ):
         algorithm.tell(infills=candidates)
 
 

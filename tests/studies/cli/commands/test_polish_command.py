@@ -38,11 +38,9 @@ def rough():
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch, rough):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
+def folder(folder, rough):
     rough.save("f.json")
-    return tmp_path
+    return folder
 
 
 def rows(out):

@@ -4,8 +4,8 @@ import subprocess
 import sys
 
 import pytest
+from lines import MOVE
 
-MOVE = "single-link --target 30deg --duration 0.8"
 HEAVY = {"matplotlib", "moocore", "pymoo", "scipy"}
 # At the end, whatever that is: the modules that are loaded.
 NOTED = """

@@ -16,13 +16,6 @@ MOVE = "arm-on-flexible-link --target 90deg --duration 0.8 --terms 3"
 TASK, PROFILE = PointToPoint(ArmOnFlexibleLink(), np.pi / 2, 0.8), CycloidPolynomial(3)
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
-    return tmp_path
-
-
 @pytest.fixture
 def answer(let_sweep):
     """Let the methods answer this front."""

@@ -1,9 +1,7 @@
-"""`quietarm front`, and `quietarm plan` by a metaheuristic: whole runs of a small size."""
+"""`quietarm front` by a metaheuristic: whole runs of a small size."""
 
 import math
 import os
-import re
-import signal
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +12,7 @@ from metaheuristics import search
 from metaheuristics.ensemble import LostSeedsError
 from metaheuristics.sharing.pieces import Done, LostPieceError
 from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, Front, Plan, PointToPoint
+from ocp import CycloidPolynomial, Front, PointToPoint
 from studies.display.search_progress import SearchDisplay
 
 MOVE = "single-link --target 30deg --duration 0.8 --bound 0.2 --terms 2"
@@ -26,41 +24,6 @@ def directly(seed=0, **settings):
     """What `SMALL` is to find."""
     given = {"bound": 0.2, "population": 8, "generations": 4, **settings}
     return search(TASK, "vepso", profile=CycloidPolynomial(2), seed=seed, **given)
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
-    return tmp_path
-
-
-@pytest.fixture
-def refused(call, folder):
-    """Run a line that must fail in one line with status 2 and leave the folder as it was."""
-
-    def run_refused(line):
-        before = {path: path.read_bytes() for path in folder.iterdir()}
-        code, out, err = call(line)
-        assert (code, out, err.count("\n")) == (2, "", 1)
-        assert {path: path.read_bytes() for path in folder.iterdir()} == before
-        return err
-
-    return run_refused
-
-
-@pytest.fixture
-def interrupted_at(monkeypatch):
-    """Send Ctrl-C when this generation of this seed is shown."""
-
-    def interrupt(generation, of=None):
-        def hear(self, progress, seed=None):
-            if (progress.generation, seed) == (generation, of):
-                signal.raise_signal(signal.SIGINT)
-
-        monkeypatch.setattr(SearchDisplay, "__call__", hear)
-
-    return interrupt
 
 
 # One seed
@@ -281,53 +244,6 @@ def test_a_checkpoint_that_is_lost_on_the_way_is_told_at_the_end(call, folder, m
 def test_what_would_be_lost_or_ignored_is_refused(refused, line, words):
     Path("a").write_text("")
     assert words in refused(line)
-
-
-# quietarm plan
-
-
-@pytest.fixture
-def quick(monkeypatch):
-    """A search in place of the paper's."""
-
-    def small(task, method, **settings):
-        return search(task, method, population=20, generations=30, **settings)
-
-    monkeypatch.setattr(studies.runs.searching, "search", small)
-
-
-def test_a_plan_by_search_is_the_cheapest_point_within_the_limit(call, quick):
-    line = f"plan {MOVE} --method vepso --quiet"
-    code, out, err = call(f"{line} --residual-limit 2mm --output plan.json")
-    assert (code, err) == (0, "")
-    point = directly(population=20, generations=30).cheapest(2e-3)
-    assert Plan.load("plan.json").coefficients == point.coefficients
-    assert "residual limit 0 stands for" not in out
-
-
-def test_a_plan_by_search_says_what_a_limit_of_zero_stands_for(call, quick):
-    _, out, err = call(f"plan {MOVE} --method vepso --output plan.json")
-    assert "residual limit 0 stands for 1 mm here: no search arrives exactly at rest" in out
-    assert err.startswith("generation 30/30, ")
-    _, out, _ = call(f"plan {MOVE} --method vepso --polish --output polished.json")
-    assert "stands for" not in out
-    assert Plan.load("polished.json").residual < 1e-8 < Plan.load("plan.json").residual <= 1e-3
-
-
-def test_an_interrupted_search_makes_no_plan_and_says_what_keeps_it(call, quick, interrupted_at):
-    interrupted_at(3)
-    code, out, err = call(f"plan {MOVE} --method vepso --quiet --output plan.json")
-    assert (code, out, Path("plan.json").exists()) == (1, "", False)
-    assert "nothing was written; `quietarm front` keeps what a search has found" in err
-
-
-def test_a_broken_limit_is_shown_with_what_is_reached(call):
-    line = "evaluate single-link --target 30deg --duration 0.8 --coefficients=0"
-    _, out, _ = call(f"{line} --torque-limit 0.01 --deflection-limit 1 --output plan.json")
-    peak = Plan.load("plan.json").motion.peak_torque
-    assert peak > 0.01
-    shown = re.search(r"limits +(.*\S)", out).group(1)
-    assert shown == f"torque 0.01 N m (broken: {peak:.4g} N m), deflection 1 m"
 
 
 TABLED = "single-link --target 30deg --duration 0.8 --terms 2 --bound 0.2"

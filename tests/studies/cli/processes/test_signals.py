@@ -9,11 +9,11 @@ import sys
 from importlib import import_module
 
 import pytest
+from lines import MOVE
 
 import studies.reports.comparison
 from ocp import Front
 
-MOVE = "single-link --target 30deg --duration 0.8"
 SEARCH = "--bound 0.2 --population 20 --generations 20"
 STUDY = f"study {MOVE} {SEARCH} --terms 2 --points 3"
 STOPS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
@@ -22,11 +22,10 @@ GUARD = 240
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
+def folder(folder, monkeypatch):
     """A folder of the test's own, and standing in it; lines are not wrapped."""
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "1000")
-    return tmp_path
+    return folder
 
 
 def read_until(process, begin):

@@ -28,12 +28,11 @@ def plans():
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch, plans):
-    monkeypatch.chdir(tmp_path)
+def folder(folder, monkeypatch, plans):
     monkeypatch.setenv("COLUMNS", "200")
     for name, plan in plans.items():
         plan.save(f"{name}.json")
-    return tmp_path
+    return folder
 
 
 @pytest.fixture

@@ -1,0 +1,13 @@
+"""Moves whose fronts several tests find."""
+
+import math
+
+from models import ArmOnFlexibleLink, SingleLinkManipulator
+from ocp import (
+    PointToPoint,
+)
+
+CASES = {
+    "arm": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
+    "single link": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
+}

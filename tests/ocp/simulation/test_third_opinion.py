@@ -1,0 +1,115 @@
+"""The independent integrator against a third opinion: equations typed afresh, SciPy's DOP853."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.integrate import simpson, solve_ivp
+from third_opinion import ARM, SINGLE_LINK, ThirdOpinion, two_links
+
+from ocp import (
+    CycloidPolynomial,
+    PointToPoint,
+    resimulate,
+    sample_trajectory,
+)
+from ocp.simulation.cvodes import rest_of
+
+pi = math.pi
+_RANDOM = np.random.default_rng(20)
+CASES = [
+    # Tables 1, 4 and 6; the middle ones are made up to brake and to overshoot.
+    ("single link", SINGLE_LINK["cycloid"], 0.0, pi / 6, 0.8),
+    ("single link", SINGLE_LINK["6"], 0.0, pi / 6, 0.8),
+    ("single link", [0.1, 0.2, -0.2, 0.15], 0.3, -1.2, 1.0),
+    ("arm", ARM["6 as printed"], 0.0, pi / 2, 0.8),
+    ("arm", [0.5, -0.5, 0.4], -pi / 2, pi / 4, 1.0),
+    ("two links", [0.05, -0.1, 0.0, 0.2], 0.0, pi / 2, 0.9),
+    *(
+        (name, _RANDOM.uniform(-0.5, 0.5, terms).tolist(), 0.0, pi / 2, duration)
+        for name in ("single link", "arm", "two links")
+        for terms, duration in ((6, 0.8), (12, 1.1))
+    ),
+]
+
+
+@cache
+def third_opinion(case):
+    """What SciPy finds of one of the `CASES`, solved once for all tests."""
+    return ThirdOpinion(*CASES[case])
+
+
+@pytest.fixture(params=range(len(CASES)))
+def case(request, plants):
+    """A task, coefficients of the polynomial, and the third opinion of them."""
+    name, a, start, target, duration = CASES[request.param]
+    task = PointToPoint(plants[name], target, duration, start=start)
+    return task, a, third_opinion(request.param)
+
+
+def test_scipy_agrees(case):
+    task, a, other = case
+    motion = resimulate(task, CycloidPolynomial(len(a)), a)
+    assert motion.energy == pytest.approx(other.energy, rel=1e-9)
+    # The samples after arrival miss 1.2e-6 of a peak at most.
+    assert motion.residual == pytest.approx(other.residual, rel=3e-6)
+
+
+def test_scipy_agrees_on_the_diagnostics(case):
+    task, a, other = case
+    motion = resimulate(task, CycloidPolynomial(len(a)), a)
+    times = np.linspace(0.0, task.duration, 4001)
+    joint, states = np.array([*map(other.joint, times)]), other.during.sol(times)
+    torque = [
+        other.equations(*q, x[: other.modes], x[other.modes :])[1]
+        for q, x in zip(joint, states.T, strict=True)
+    ]
+    peaks = {
+        "torque": np.abs(torque).max(),
+        "speed": np.abs(joint[:, 1]).max(),
+        "acceleration": np.abs(joint[:, 2]).max(),
+        "deflection": other.phi * np.abs(states[: other.modes]).max(),
+    }
+    for quantity, peak in peaks.items():
+        # Of a thousand samples: a peak of these motions that falls between two is 2e-4 higher.
+        assert motion.peak(quantity) == pytest.approx(peak, rel=3e-4), quantity
+    overshoot = max(0.0, ((joint[:, 0] - task.target) * np.sign(task.span)).max())
+    assert motion.overshoot == pytest.approx(overshoot, abs=1e-5)
+    power = np.array(torque) * joint[:, 1]
+    assert motion.net_work == pytest.approx(simpson(power, x=times), rel=1e-8)
+
+
+def test_scipy_agrees_at_every_sample(case):
+    (task, a, other), duration = case, case[0].duration
+    moving, resting = np.linspace(0, duration, 50), np.linspace(duration + 0.01, duration + 1, 50)
+    times = np.concatenate([moving, resting])
+    found = sample_trajectory(task, CycloidPolynomial(len(a)), a, times)
+    states = np.hstack([other.during.sol(moving), other.after.sol(resting)])
+    joint = np.array([*map(other.joint, moving), *([(task.target, 0.0, 0.0)] * 50)])
+    torque = [
+        other.equations(*q, x[: other.modes], x[other.modes :])[1]
+        for q, x in zip(joint, states.T, strict=True)
+    ]
+    assert found.joint == pytest.approx(joint, rel=1e-9, abs=1e-9)
+    assert found.modes == pytest.approx(states[: other.modes].T, abs=1e-9)
+    assert found.tips == pytest.approx(other.phi * states[: other.modes].T, abs=3e-9)
+    assert found.torque == pytest.approx(np.array(torque), abs=1e-8)
+    assert found.power == pytest.approx(np.array(torque) * joint[:, 1], abs=1e-7)
+
+
+def test_the_rest_by_matrices_is_that_by_one_run(tasks):
+    task, arrival = tasks["two links"], [2e-3, -1e-3, 0.03, 0.1]
+    rest = rest_of(task, arrival)
+    assert rest.time[[0, -1]] == pytest.approx([0.9, 1.9], abs=1e-15)
+    assert np.ptp(np.diff(rest.time)) < 1e-14
+    assert np.diff(rest.time).max() * 12.68 * 0.993 <= 0.003  # radians of the faster link
+    run = solve_ivp(
+        lambda t, x: [*x[2:], *two_links(pi / 2, 0, 0, x[:2], x[2:])[0]],
+        (0.9, 1.9), arrival, "DOP853", rest.time, rtol=1e-13, atol=1e-15,
+    )  # fmt: skip
+    torque = [two_links(pi / 2, 0, 0, x[:2], x[2:])[1] for x in run.y.T]
+    assert rest.modes == pytest.approx(run.y[:2].T, abs=1e-11)
+    assert rest.tips == pytest.approx(2.7244 * run.y[:2].T, abs=1e-11)
+    assert rest.torque == pytest.approx(torque, abs=1e-9)
+    assert rest.joint[[0, -1]].tolist() == [[pi / 2, 0.0, 0.0]] * 2

@@ -1,0 +1,75 @@
+"""`quietarm reproduce`, with the one reproduction of these tests in place of another."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import studies.cli.commands.evaluate
+import studies.cli.commands.floor
+import studies.cli.commands.plan
+import studies.reproduction.recompute
+import studies.runs.loading
+import studies.runs.polishing
+import studies.runs.searching
+import studies.study.work
+from studies.paper.printed import ROWS
+from studies.reproduction.recompute import pieces_of_paper
+from studies.reproduction.report import reproduction_files
+
+
+@pytest.fixture
+def reproduced(reproduction, monkeypatch):
+    """Let the command find the paper recomputed already."""
+
+    def at_once(begin, *rest):
+        begin("the only solve")
+        return reproduction
+
+    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", at_once)
+
+
+def test_reproduce_prints_every_printed_and_recomputed_energy(call, reproduced, reproduction):
+    code, out, err = call("reproduce")
+    assert (code, err) == (0, f"[1/{len(pieces_of_paper(seeds=1))}] the only solve\n")
+    for number in (2, 3, 5, 6):
+        assert f"Table {number}: " in out
+    for row in ROWS:
+        assert f" {row.energy:.4g} " in out
+    for result in reproduction.rows:
+        assert f" {result.in_box.energy:.4g} " in out
+        assert f" {result.free.energy:.4g} " in out
+    for claim in ("Two terms suffice", "More terms", "above six", "beats refs [23] and [24]"):
+        assert claim in out
+
+
+def test_reproduce_writes_nothing_unless_asked_to(call, reproduced, folder):
+    code, out, _ = call("reproduce --quiet")
+    assert (code, list(folder.iterdir())) == (0, [])
+    assert "wrote" not in out
+
+
+def test_reproduce_quiet_shows_no_progress(call, reproduced):
+    assert call("reproduce --quiet")[2] == ""
+
+
+def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(call, reproduced, folder):
+    (folder / "results").mkdir()
+    (folder / "results" / "notes.txt").write_text("mine")
+    code, out, _ = call("reproduce --output results")
+    assert code == 0
+    written = re.findall(r"^wrote (.*)$", out, re.MULTILINE)
+    assert {Path(name).suffix for name in written} == {".md", ".csv", ".png"}
+    assert {Path(name) for name in written} | {Path("results/notes.txt")} == {
+        path.relative_to(folder) for path in (folder / "results").iterdir()
+    }
+    assert (folder / "results" / "notes.txt").read_text() == "mine"
+
+
+def test_reproduce_makes_the_folder(call, reproduced, folder, monkeypatch):
+    every = reproduction_files
+    report = "studies.reproduction.report.reproduction_files"
+    monkeypatch.setattr(report, lambda *given: [f for f in every(*given) if f[0].suffix == ".md"])
+    code, _, _ = call("reproduce --output results")
+    assert code == 0
+    assert (folder / "results" / "report.md").is_file()

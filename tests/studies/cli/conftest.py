@@ -1,0 +1,71 @@
+"""What the tests of the command line share: a folder of their own, refusals, Ctrl-C."""
+
+import signal
+
+import pytest
+
+import studies.cli.commands.evaluate
+import studies.cli.commands.plan
+import studies.reproduction.recompute
+import studies.runs.searching
+from studies.display.search_progress import SearchDisplay
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """A folder of the test's own, and standing in it."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    return tmp_path
+
+
+def contents(folder):
+    """All files of a folder with what they hold, and the folders in it."""
+    return {path: path.is_file() and path.read_bytes() for path in folder.rglob("*")}
+
+
+@pytest.fixture
+def refused(call, folder):
+    """Run a line that must fail in one line, and leave the folder as it was; that line."""
+
+    def run_refused(line, status=2):
+        before = contents(folder)
+        code, out, err = call(line)
+        assert out == ""
+        assert "Traceback" not in err
+        assert err.startswith("quietarm: ")
+        assert err.count("\n") == 1
+        assert err.endswith("\n")
+        assert code == status
+        assert contents(folder) == before
+        return err
+
+    return run_refused
+
+
+@pytest.fixture
+def no_solve(monkeypatch):
+    """Make a solve fail the test: what is wrong must be found before it."""
+
+    def solve(*arguments, **settings):
+        pytest.fail("a solve was begun")
+
+    monkeypatch.setattr(studies.cli.commands.plan, "plan_move", solve)
+    monkeypatch.setattr(studies.cli.commands.evaluate, "evaluate_coefficients", solve)
+    for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
+        monkeypatch.setattr(studies.runs.searching, name, solve)
+    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", solve)
+
+
+@pytest.fixture
+def interrupted_at(monkeypatch):
+    """Send Ctrl-C when this generation of this seed is shown."""
+
+    def interrupt(generation, of=None):
+        def hear(self, progress, seed=None):
+            if (progress.generation, seed) == (generation, of):
+                signal.raise_signal(signal.SIGINT)
+
+        monkeypatch.setattr(SearchDisplay, "__call__", hear)
+
+    return interrupt

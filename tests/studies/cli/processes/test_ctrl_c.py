@@ -1,0 +1,138 @@
+"""Ctrl-C in a plan and in a reproduction."""
+
+import csv
+import re
+import shlex
+import signal
+import subprocess
+import sys
+
+import pytest
+from lines import EVERY_FILE, MOVE
+
+from ocp import Plan
+from studies.reproduction.recompute import pieces_of_paper
+
+INTERRUPTED = "quietarm: interrupted; nothing was written"
+GUARD = 120
+"""Seconds after which a process that does not end has hung, on any machine."""
+
+
+# The command, which says when it begins to solve, so that the signal comes then and not before.
+# Built, it waits for the signal in place of IPOPT: no start is solved, however late the signal is.
+ANNOUNCED = """
+import time
+import studies.cli
+import studies.cli.commands.plan
+import studies.display.progress
+from ocp.program.transcription import NonlinearProgram
+
+NonlinearProgram.solve = lambda *given, **settings: time.sleep(120)
+studies.display.progress.SILENT_SECONDS = 1e6
+solve = studies.cli.commands.plan.plan_move
+
+def announced(*arguments, **settings):
+    print("begun", flush=True)
+    return solve(*arguments, **settings)
+
+studies.cli.commands.plan.plan_move = announced
+studies.cli.main()
+"""
+
+
+def interrupt(process, delay):
+    """Send Ctrl-C after a while; what the process says then. Killed when it does not end."""
+    try:
+        try:
+            process.wait(delay)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGINT)
+        else:
+            pytest.fail("the solves were over before the interrupt")
+        return process.communicate(timeout=GUARD)
+    finally:
+        process.kill()
+        process.communicate()  # closes its pipes
+
+
+# The same, which says so when the third start begins.
+AT_THE_THIRD = """
+import studies.cli
+from ocp.program.problem import Problem
+
+solve, begun = Problem.solve, []
+
+def announced(*given, **settings):
+    begun.append(0)
+    if len(begun) == 3:
+        print("begun", flush=True)
+    return solve(*given, **settings)
+
+Problem.solve = announced
+studies.cli.main()
+"""
+
+
+@pytest.fixture
+def solving():
+    """Begin a plan of 400 starts, until it says so."""
+
+    def begin(code):
+        words = shlex.split(f"plan {MOVE} --starts 400 {EVERY_FILE}")
+        process = subprocess.Popen(
+            [sys.executable, "-c", code, *words],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        assert process.stdout.readline() == "begun\n"
+        return process
+
+    return begin
+
+
+# casadi is building the program.
+@pytest.mark.parametrize("delay", [0.002, 0.03])
+def test_ctrl_c_before_a_start_is_solved_writes_nothing(folder, solving, delay):
+    process = solving(ANNOUNCED)
+    out, err = interrupt(process, delay)
+    assert (process.returncode, out) == (1, "")
+    assert err.lstrip("\n") == f"{INTERRUPTED}\n"  # click first ends the terminal's line of ^C
+    assert list(folder.iterdir()) == []
+
+
+# IPOPT is at work. casadi has a habit of losing an interrupt: then all 400 starts are done.
+def test_ctrl_c_keeps_the_best_of_the_starts_that_were_solved(solving):
+    process = solving(AT_THE_THIRD)
+    out, err = interrupt(process, 0.01)
+    assert process.returncode == 1
+    done = re.search(r"interrupted after (\d+) of 400 starts; what was found until then is", err)
+    assert 1 <= int(done[1]) < 400
+    plan = Plan.load("plan.json")
+    assert not plan.complete
+    assert plan.residual < 1e-8  # at rest: it was verified and mended
+    assert f"Interrupted after {done[1]} of 400 starts: the best of these." in " ".join(out.split())
+
+
+def test_ctrl_c_ends_a_reproduction_and_keeps_what_was_solved(folder):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "studies", "reproduce", "--output", "results"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not process.stderr.readline().startswith("[3/"):  # the third solve has begun
+        assert process.poll() is None
+    out, err = interrupt(process, 0.05)
+    assert process.returncode == 1
+    (said,) = [line for line in err.splitlines() if not re.match(r"\[\d+/\d+\] ", line)]
+    done, total = map(int, re.fullmatch(
+        r"quietarm: interrupted: (\d+) of (\d+) pieces of work are done", said
+    ).groups())  # fmt: skip
+    assert 2 <= done < total == len(pieces_of_paper(seeds=1))
+    written = (folder / "results" / "unfinished.csv").read_text()
+    assert out == f"{written}wrote results/unfinished.csv\n"
+    heading, *rows = csv.reader(written.splitlines())
+    assert heading == ["piece", "energy_J", "residual_mm"]
+    assert len(rows) == done
+    assert all(float(energy) > 0 for _, energy, _ in rows)

@@ -1,0 +1,152 @@
+"""The paper's claims: their verdicts, and what would turn them round."""
+
+import dataclasses
+import re
+
+import pytest
+
+from studies.paper.printed import (
+    ARM_HALF,
+    ARM_WHOLE,
+    ROWS,
+    SINGLE_LINK_SIXTH,
+)
+from studies.reproduction.claims import claims
+
+
+def costing(plan, **figures):
+    """The same plan with other figures."""
+    return dataclasses.replace(plan, motion=dataclasses.replace(plan.motion, **figures))
+
+
+# Claims
+
+TWO, MORE, ABOVE_SIX, BEATS, TUNED = range(5)
+
+
+def with_more_terms(reproduction, changes):
+    return dataclasses.replace(reproduction, more_terms={**reproduction.more_terms, **changes})
+
+
+def with_rows(reproduction, change):
+    return dataclasses.replace(reproduction, rows=tuple(map(change, reproduction.rows)))
+
+
+def test_the_papers_claims_in_its_order_with_their_verdicts(reproduction):
+    verdicts = claims(reproduction)
+    assert [claim.text.split()[:2] for claim in verdicts] == [
+        ["Two", "terms"],
+        ["More", "terms"],
+        ["The", "energy"],
+        ["The", "proposed"],
+        ["The", "tuned"],
+    ]
+    # docs/physics.md, 'The published optima are not optimal', and N = 6 is not the end.
+    supported, refuted = "supported", "refuted"
+    assert [claim.verdict for claim in verdicts] == [
+        supported, supported, refuted, supported, refuted
+    ]  # fmt: skip
+    assert [claim.holds for claim in verdicts] == [c.verdict == supported for c in verdicts]
+
+
+def test_two_terms_suffice_only_while_their_residual_is_cancelled(reproduction):
+    key = (ARM_HALF, 2, True)
+    ringing = costing(reproduction.more_terms[key], residual=3e-4)
+    verdict = claims(with_more_terms(reproduction, {key: ringing}))[TWO]
+    assert verdict.verdict == "refuted"
+    assert any("3.0e-01 mm with the gradient's two" in line for line in verdict.evidence)
+
+
+def test_more_terms_lower_the_energy_only_while_the_gradients_do(reproduction):
+    key = (SINGLE_LINK_SIXTH, 4, True)
+    dear = costing(reproduction.more_terms[key], energy=0.0712)
+    verdict = claims(with_more_terms(reproduction, {key: dear}))[MORE]
+    assert verdict.verdict == "refuted"
+    assert any("0.0712" in line for line in verdict.evidence)
+
+
+def test_more_terms_lower_the_energy_only_while_the_printed_do(reproduction):
+    def dearer(result):
+        if (result.row.condition, result.row.terms) != (SINGLE_LINK_SIXTH, 6):
+            return result
+        return dataclasses.replace(result, printed=costing(result.printed, energy=0.0533))
+
+    verdict = claims(with_rows(reproduction, dearer))[MORE]
+    assert verdict.verdict == "refuted"
+    assert any("0.0533" in line for line in verdict.evidence)
+
+
+def test_more_terms_are_judged_by_the_mended_coefficients(reproduction):
+    def dearer(result):
+        mended = result.mended and costing(result.mended, energy=0.1777)
+        return dataclasses.replace(result, mended=mended)
+
+    verdict = claims(with_rows(reproduction, dearer))[MORE]
+    assert verdict.verdict == "refuted"
+    assert any("0.1777" in line for line in verdict.evidence)
+
+
+def level_above_six(reproduction, gains):
+    """N = 8 and 10 at the energy of N = 6, less a gain for some of them."""
+    return with_more_terms(
+        reproduction,
+        {
+            key: costing(
+                plan,
+                energy=(1 - gains.get(key, 0.0))
+                * reproduction.more_terms[key[0], 6, key[2]].energy,
+            )
+            for key, plan in reproduction.more_terms.items()
+            if key[1] > 6
+        },
+    )
+
+
+def test_no_gain_above_six_is_supported_when_there_is_none(reproduction):
+    verdict = claims(level_above_six(reproduction, {}))[ABOVE_SIX]
+    assert verdict.verdict == "supported"
+    assert all("0.0% less at N = 8, 0.0% less at N = 10" in line for line in verdict.evidence)
+
+
+@pytest.mark.parametrize("condition", [SINGLE_LINK_SIXTH, ARM_HALF], ids=lambda value: value.label)
+@pytest.mark.parametrize("terms", [8, 10])
+@pytest.mark.parametrize("boxed", [True, False])
+def test_one_gain_above_six_refutes_that_there_is_none(reproduction, condition, terms, boxed):
+    doctored = level_above_six(reproduction, {(condition, terms, boxed): 0.05})
+    verdict = claims(doctored)[ABOVE_SIX]
+    assert verdict.verdict == "refuted"
+    assert any(f"5.0% less at N = {terms}" in line for line in verdict.evidence)
+
+
+def test_the_method_beats_the_earlier_studies_only_while_each_row_does(reproduction):
+    def beaten(row):
+        if (row.table, row.condition) != (6, ARM_WHOLE):
+            return row
+        return dataclasses.replace(row, earlier_energy=0.111)
+
+    doctored = with_rows(
+        reproduction, lambda result: dataclasses.replace(result, row=beaten(result.row))
+    )
+    verdict = claims(doctored)[BEATS]
+    assert verdict.verdict == "refuted"
+    assert any("0.111 J of ref. [24]" in line for line in verdict.evidence)
+
+
+def test_the_evidence_of_beating_names_every_row_of_tables_3_and_6(reproduction):
+    evidence = claims(reproduction)[BEATS].evidence
+    assert [re.findall(r"of ref\. \[(\d+)\]", line) for line in evidence] == [["23"]] * 3 + [
+        ["24"]
+    ] * 3
+    for line, row in zip(evidence, [r for r in ROWS if r.earlier_energy], strict=True):
+        assert f"printed {row.energy:.3g} J against {row.earlier_energy:.3g} J" in line
+
+
+def test_the_tuned_coefficients_would_be_optimal_if_the_gradient_found_no_less(reproduction):
+    def no_better(result):
+        return dataclasses.replace(
+            result, in_box=costing(result.in_box, energy=result.row.energy / 1.005)
+        )
+
+    verdict = claims(with_rows(reproduction, no_better))[TUNED]
+    assert verdict.verdict == "supported"
+    assert all(" 0.5% " in line for line in verdict.evidence)

@@ -1,0 +1,177 @@
+"""The reproduction's report: its files, pictures and screen."""
+
+import csv
+import io
+import re
+
+import pytest
+from rich.console import Console
+
+from studies.figures import BLUE, GREEN, RED
+from studies.figures.looks import ORANGE
+from studies.paper.printed import (
+    ARM_HALF,
+    SINGLE_LINK_SIXTH,
+)
+from studies.reproduction.claims import claims
+from studies.reproduction.report import (
+    against_earlier,
+    print_reproduction,
+    redrawn,
+    reproduction_files,
+    tables,
+)
+
+# The report
+
+
+@pytest.fixture(scope="module")
+def report(reproduction, tmp_path_factory):
+    """The folder that `write` filled, and what it says it wrote."""
+    folder = tmp_path_factory.mktemp("results")
+    files = reproduction_files(folder, reproduction, claims(reproduction))
+    for path, write in files:
+        write(path)
+    return folder, [path for path, _ in files]
+
+
+def test_the_report_says_what_it_wrote_and_writes_nothing_else(report):
+    folder, written = report
+    assert sorted(written) == sorted(folder.iterdir())
+    assert sorted(path.name for path in written) == [
+        "figure_2.png", "figure_3.png", "figure_5.png", "figure_6.png",
+        "floor.csv", "floor.png", "report.md",
+        "table_2.csv", "table_3.csv", "table_5.csv", "table_6.csv",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("number", [2, 3, 5, 6])
+def test_csv_holds_the_figures_in_full(reproduction, report, number):
+    rows = list(csv.DictReader(io.StringIO((report[0] / f"table_{number}.csv").read_text())))
+    results = [result for result in reproduction.rows if result.row.table == number]
+    plain = [row for row in rows if "mended" not in row["terms"]]
+    for row, result in zip(plain, results, strict=True):
+        assert (row["move"], row["terms"]) == (result.row.condition.label, str(result.row.terms))
+        assert as_number(row["earlier_study_J"]) == result.row.earlier_energy
+        assert as_number(row["printed_J"]) == result.row.energy
+        earlier, read_here = result.earlier, row["earlier_study_as_read_here_J"]
+        assert as_number(read_here) == (earlier and earlier.energy)
+        printed = result.printed
+        assert as_number(row["printed_coefficients_J"]) == (printed and printed.energy)
+        for name, plan in (("in", result.in_box), ("no", result.free)):
+            assert float(row[f"gradient_{name}_box_J"]) == plan.energy
+            assert float(row[f"gradient_{name}_box_residual_mm"]) == plan.residual * 1e3
+            assert float(row[f"gradient_{name}_box_s"]) == plan.provenance.seconds
+    mended = [result.mended for result in results if result.mended]
+    assert [
+        (float(row["printed_coefficients_J"]), float(row["printed_coefficients_residual_mm"]))
+        for row in rows
+        if "a_5 mended" in row["terms"]
+    ] == [(plan.energy, plan.residual * 1e3) for plan in mended]
+    assert len(rows) == len(plain) + len(mended)
+
+
+def as_number(cell):
+    """A figure of a CSV file; None where there is none."""
+    return float(cell) if cell else None
+
+
+def test_markdown_holds_the_printed_and_the_recomputed_figures(reproduction, report):
+    text = (report[0] / "report.md").read_text()
+    for number in (2, 3, 5, 6):
+        (section,) = re.findall(rf"\*\*Table {number}: .*?\n\n(?=\*\*Table|##)", text, re.DOTALL)
+        cells = {cell.strip() for line in section.splitlines() for cell in line.split("|")}
+        for result in reproduction.rows:
+            if result.row.table != number:
+                continue
+            energies = [result.row.energy, result.row.earlier_energy]
+            plans = [result.printed, result.mended, result.in_box, result.free]
+            energies += [plan.energy for plan in plans if plan]
+            assert {f"{energy:.4g}" for energy in energies if energy} <= cells
+            assert result.row.condition.label in cells
+
+
+def test_markdown_holds_the_claims_with_verdict_and_evidence(reproduction, report):
+    text = (report[0] / "report.md").read_text()
+    for claim in claims(reproduction):
+        heading = f"### {claim.text} **{claim.verdict.capitalize()}.**"
+        assert "\n".join([heading, "", *(f"- {line}" for line in claim.evidence)]) in text
+
+
+def test_markdown_shows_pictures_that_are_there(report):
+    folder, _ = report
+    pictures = re.findall(r"!\[.*?\]\((.*?)\)", (folder / "report.md").read_text())
+    assert pictures == ["floor.png", *(f"figure_{number}.png" for number in (2, 3, 5, 6))]
+    for name in pictures:
+        assert (folder / name).read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+
+
+@pytest.mark.parametrize(
+    ("condition", "last"),
+    [(SINGLE_LINK_SIXTH, "paper, N = 6"), (ARM_HALF, "paper, N = 6, a_5 mended")],
+    ids=["Fig. 2", "Fig. 5"],
+)
+def test_figures_2_and_5_draw_cycloid_printed_coefficients_and_gradient(
+    reproduction, condition, last
+):
+    figure = redrawn(reproduction, condition, "A title")
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == [
+        "cycloid", "paper, N = 2", "paper, N = 4", last, "gradient, N = 6, same box"
+    ]  # fmt: skip
+    drawn = {line.get_label(): line for line in figure.axes[0].get_lines()}
+    # The paper, 3.1: 'green, red, and blue lines denote the results for N = 2, 4, and 6', 'the
+    # black line indicates the results obtained from the cycloidal motion'.
+    colours = ["black", GREEN, RED, BLUE]
+    assert [drawn[label].get_color() for label in labels[:4]] == colours
+
+
+@pytest.mark.parametrize(
+    ("condition", "labels"),
+    [
+        (SINGLE_LINK_SIXTH, ["network, ref. [23] as read here, by gradient", "paper, N = 6"]),
+        (
+            ARM_HALF,
+            ["Gaussians, ref. [24] as read here, by gradient", "paper, N = 6, a_5 mended"],
+        ),
+    ],
+    ids=["Fig. 3", "Fig. 6"],
+)
+def test_figures_3_and_6_draw_the_earlier_study_as_read_here(reproduction, condition, labels):
+    figure = against_earlier(reproduction, condition, "A title")
+    drawn = {line.get_label(): line.get_color() for line in figure.axes[0].get_lines()}
+    # The paper, 3.1 and 3.2: 'in blue and orange lines', the earlier study in orange.
+    assert [drawn[label] for label in labels] == [ORANGE, BLUE]
+
+
+@pytest.mark.parametrize("table", [3, 6])
+def test_the_earlier_studies_profiles_have_16_parameters_and_arrive_at_rest(reproduction, table):
+    rows = [result for result in reproduction.rows if result.row.table == table]
+    for result in rows:
+        assert result.earlier is not None
+        assert result.earlier.profile.size == 16  # section 3.2 of the paper
+        assert result.earlier.residual < 1e-8
+        # Not worse than what that study printed, found by a metaheuristic: Tables 3 and 6.
+        assert result.earlier.energy < result.row.earlier_energy
+    others = [r for r in reproduction.rows if r.row.table not in (3, 6)]
+    assert all(result.earlier is None for result in others)
+
+
+def test_the_mended_coefficients_stand_in_a_column_of_their_own(reproduction):
+    five = next(table for table in tables(reproduction) if table.title.startswith("Table 5"))
+    assert [row[1] for row in five.rows] == ["2", "4", "6", "6, a_5 mended"]
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_the_screen_shows_every_figure_whole(reproduction, width):
+    console = Console(file=io.StringIO(), width=width)
+    print_reproduction(console, reproduction, claims(reproduction))
+    text = console.file.getvalue()
+    assert max(map(len, text.splitlines())) <= width
+    assert "…" not in text
+    for result in reproduction.rows:
+        for plan in (result.printed, result.mended, result.in_box, result.free):
+            if plan:
+                assert re.search(rf"\s{plan.energy:.4g}\s".replace(".", r"\."), text)
+    assert text.count("supported  ") == 3
+    assert text.count("refuted  ") == 2

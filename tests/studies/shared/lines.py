@@ -1,0 +1,19 @@
+"""Lines that several tests of the command line use, and the installed command."""
+
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+QUIETARM = str(Path(sys.executable).parent / "quietarm")
+MOVE = "single-link --target 30deg --duration 0.8"
+PLAN = f"plan {MOVE}"
+TWO_TERMS = "--coefficients=0.003347,-0.1697"  # the paper's Table 1
+EVERY_FILE = "--output plan.json --csv move.csv --figure move.png"
+
+
+def run(line, **settings):
+    """Run the installed command as a process of its own."""
+    return subprocess.run(
+        [QUIETARM, *shlex.split(line)], capture_output=True, text=True, timeout=120, **settings
+    )

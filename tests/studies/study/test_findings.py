@@ -1,0 +1,81 @@
+"""What the headline study says in words."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from small_study import FLOOR, QUICK
+
+from studies.comparison.measures import compare_fronts
+from studies.study.findings import case_findings, findings, percent, percents
+from studies.study.page import method_lines
+from studies.study.pieces import StudySettings
+
+# What it says
+
+
+def test_shares_in_words():
+    assert percent(0.1234) == "12 %"
+    assert percent(0.0012) == "0.12 %"
+    assert percent(1.199) == "120 %"
+    assert percent(1e-6) == "less than 0.01 %"
+    assert percents([0.001, 0.02]) == "0.1 to 2 %"
+    assert percents([0.02, 0.02]) == "2 %"
+
+
+def test_findings_are_those_of_the_fronts(small):
+    found = small.cases[0]
+    words = " ".join(case_findings(found))
+    fronts = {run.front.method: run.front for run in found.comparison.runs}
+    best = found.comparison.best[1]
+    assert f"within 1 mm is {best:.4g} J" in words
+    # at least as good as what every front holds
+    assert best <= min(front.cheapest(1e-3).energy for front in fronts.values()
+                       if front.stillest().residual <= 1e-3)  # fmt: skip
+    # docs/physics.md: the printed coefficients for N = 2 take 0.06297 J with 0.256 mm
+    (claim,) = re.findall(r"N = 2, takes 0.06297 J at 0.256 mm: (\S+) % more", words)
+    at_paper = min(front.cheapest(2.56e-4).energy for front in fronts.values()
+                   if front.stillest().residual <= 2.56e-4)  # fmt: skip
+    assert float(claim) == pytest.approx(100 * (0.06297 / at_paper - 1), abs=0.6)
+    ratio = fronts["epsilon"].stillest().energy / FLOOR.energy
+    assert f"{ratio:.3g} times the floor" in words
+
+
+def test_the_summary_speaks_of_every_method(small):
+    words = " ".join(findings(small))
+    for part in ("The front that dominates most: epsilon constraint in ", "NSGA-II takes",
+                 "VEPSO takes", "Polished by the gradient", "times the floor",
+                 "Median time of a front: epsilon constraint"):  # fmt: skip
+        assert part in words
+
+
+def test_where_no_motion_is_still_the_findings_say_how_still_the_stillest_is(small):
+    found = small.cases[0]
+    fronts = [replace(run.front, points=run.front.points[-1:]) for run in found.comparison.runs]
+    (last,) = fronts[0].points
+    assert last.residual > 5e-3  # the largest of the residuals that energies are compared at
+    words = " ".join(case_findings(replace(found, comparison=compare_fronts(fronts[:4]))))
+    assert "No method arrives within 1 mm: the stillest motion leaves " in words
+    assert re.search(r"The stillest motion of NSGA-II leaves \d\S* mm\.", words)
+    assert "not reached" not in words
+    assert "No motion of 2 coefficients was found that arrives at rest" in words
+
+
+@pytest.mark.parametrize(
+    ("settings", "nsga2", "vepso"),
+    [
+        # sections 3.1 and 3.2 of the paper
+        (StudySettings(), "200 and 500 generations, as in the paper",
+         "100 and 200 generations, as in the paper"),
+        (QUICK, "24 and 8 generations, where the paper has 200 and 500",
+         "24 and 8 generations, where the paper has 100 and 200"),
+        (StudySettings(generations=200), "200 and 200 generations, where the paper has 200 and 500",
+         "100 and 200 generations, as in the paper"),
+    ],
+)  # fmt: skip
+def test_the_page_says_with_which_settings_the_searches_ran(settings, nsga2, vepso):
+    words = method_lines(settings)
+    seeds = f"from {settings.runs} seeds"
+    for label, part in (("NSGA-II", nsga2), ("VEPSO", vepso)):
+        wanted = f"{label}: the paper's search, {seeds}, with a population of {part}."
+        assert wanted in words

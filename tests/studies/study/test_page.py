@@ -1,0 +1,133 @@
+"""The page of the headline study."""
+
+import html.parser
+import re
+import shutil
+import subprocess
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+from matplotlib.figure import Figure
+from small_study import CASES, QUICK
+
+from studies.study.files import page_file
+from studies.study.overview import draw_study_gaps
+from studies.study.page import study_page
+from studies.study.work import Study
+
+
+@pytest.fixture(scope="module")
+def text(small):
+    return study_page(small)
+
+
+@pytest.fixture(scope="module")
+def root(text):
+    return ElementTree.fromstring(text)  # well-formed, or this raises
+
+
+def test_the_overview_is_drawn_on_the_axes_that_are_given_or_on_new_ones(small):
+    given = Figure().subplots()
+    assert draw_study_gaps(small, given) is given
+    assert [label.get_text() for label in given.get_yticklabels()] == [
+        "single-link\n0 to 30 deg in 0.8 s", "arm-on-flexible-link\n0 to 90 deg in 0.8 s"
+    ]  # fmt: skip
+    assert draw_study_gaps(small).figure is not given.figure
+
+
+# The page
+
+
+def test_the_page_loads_and_runs_nothing(text, root):
+    assert not re.search(r"<(script|link|iframe|object|embed|video|audio)\b", text)
+    assert not re.search(r"@import|url\(|\son\w+=", text)
+    for element in root.iter():
+        for name in ("src", "href", "srcset", "action"):
+            value = element.get(name, "#")
+            assert value.startswith(("#", "data:image/svg+xml;base64,")), value[:60]
+    assert "http:" not in text
+    assert "https:" not in text
+
+
+def test_every_picture_has_words_and_every_link_its_place(root):
+    images = list(root.iter("img"))
+    assert len(images) == 1 + 3 * len(CASES)
+    assert all(len(image.get("alt", "")) > 20 for image in images)
+    marks = [element.get("id") for element in root.iter() if element.get("id")]
+    assert len(marks) == len(set(marks))
+    links = [link.get("href").removeprefix("#") for link in root.iter("a")]
+    assert links == marks == ["task-1", "task-2"]
+
+
+def test_findings_stand_before_pictures_and_tables(root):
+    order = [element.get("class") or element.tag for element in root.find("body")]
+    assert order[:3] == ["h1", "findings", "overview"]
+    for section in [s for s in root.iter("section") if s.get("id")]:
+        parts = [element.get("class") or element.tag for element in section]
+        assert parts[:3] == ["h2", "findings", "pictures"]
+
+
+def test_html_of_every_tag_is_closed(text):
+    """As a browser's parser sees it, not only as XML."""
+    void, open_tags = {"meta", "img", "br"}, []
+
+    class Reader(html.parser.HTMLParser):
+        def handle_starttag(self, tag, attributes):
+            open_tags.append(tag)
+
+        def handle_startendtag(self, tag, attributes):
+            assert tag in void
+
+        def handle_endtag(self, tag):
+            assert open_tags.pop() == tag
+
+    Reader().feed(text)
+    assert open_tags == []
+
+
+def test_one_task_needs_no_overview(small):
+    (case, _) = small.cases
+    alone = ElementTree.fromstring(study_page(Study(QUICK, (case,), 1.0)))
+    assert [element.tag for element in alone.find("body")][:2] == ["h1", "section"]
+
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
+@pytest.mark.parametrize("width", [1280, 390])
+def test_the_page_fits_a_desktop_and_a_phone(text, tmp_path, width):
+    measure = (
+        "<script>addEventListener('load', () => { const d = document.documentElement;"
+        "document.body.dataset.seen = [innerWidth, d.scrollWidth,"
+        "[...document.images].every(i => i.naturalWidth > 0)].join(' '); });</script></body>"
+    )
+    # in a frame, since a headless window is no narrower than 500 pixels
+    (tmp_path / "page.html").write_text(text.replace("</body>", measure))
+    frame = (
+        f"<iframe src='page.html' width='{width}' height='900' onload='document.title = "
+        "this.contentDocument.body.dataset.seen'></iframe>"
+    )
+    (tmp_path / "frame.html").write_text(f"<!DOCTYPE html><title>none</title>{frame}")
+    ran = subprocess.run(
+        [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--dump-dom",
+         "--allow-file-access-from-files", "--virtual-time-budget=5000",
+         f"--user-data-dir={tmp_path / 'profile'}", (tmp_path / "frame.html").as_uri()],
+        capture_output=True, text=True, timeout=90, check=True,
+    )  # fmt: skip
+    (seen,) = re.findall(r"<title>(.*?)</title>", ran.stdout)
+    inner, scroll, loaded = seen.split()
+    assert int(inner) == width
+    assert int(scroll) <= width
+    assert loaded == "true"
+
+
+def test_a_page_that_cannot_be_drawn_is_not_half_written(small, tmp_path, monkeypatch):
+    def fail(*given):
+        raise RuntimeError("drawing failed")
+
+    monkeypatch.setattr("studies.study.files.study_page", fail)
+    path, write = page_file(small, tmp_path / "study.html")
+    with pytest.raises(RuntimeError, match="drawing failed"):
+        write(path)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,112 @@
+"""`quietarm study`: what it writes, shows and refuses."""
+
+import pytest
+from small_study import QUICK
+
+import studies.study.work as study_module
+from ocp import Front
+from studies.paper.printed import CONDITIONS
+from studies.study.files import _file_name, front_files
+from studies.study.findings import case_findings, findings
+from studies.study.work import Study
+
+# The command
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder of the test's own, and standing in it; lines are not wrapped."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "1000")
+    return tmp_path
+
+
+MOVE = "study single-link --target 30deg --duration 0.8"
+
+
+def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
+    asked = {}
+
+    def at_once(cases, settings, begin):
+        asked.update(cases=cases, settings=settings)
+        return Study(settings, small.cases[:1], 1.0)
+
+    monkeypatch.setattr(study_module, "run_study", at_once)
+    code, out, err = call(
+        f"{MOVE} --bound 0.3 --terms 2 --points 6 --runs 2 --population 24 --generations 8 "
+        "--fronts fronts --quiet"
+    )
+    assert (code, err) == (0, "")
+    assert asked["settings"] == QUICK
+    assert [case.bound for case in asked["cases"]] == [0.3]
+    for line in case_findings(small.cases[0]):
+        assert f"- {line}" in out
+    assert out.splitlines()[-2:] == ["wrote study.html", "wrote 8 fronts to fronts"]
+    assert (folder / "study.html").read_text().startswith("<!DOCTYPE html>")
+    runs = small.cases[0].comparison.runs
+    saved = [Front.load(path) for path in (folder / "fronts").iterdir()]
+    assert len(saved) == len(runs) == 8
+    assert all(run.front in saved for run in runs)
+
+
+def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small, tmp_path):
+    names = [path.name for path, _ in front_files(small, tmp_path)]
+    assert len(names) == len(set(names)) == 16
+    assert "arm-on-flexible-link-0-to-90-deg-in-0.8-s-nsga2-polished-seed0.json" in names
+    assert _file_name("-90 to 45 deg") == "minus-90-to-45-deg"
+
+
+def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkeypatch):
+    asked = {}
+
+    def at_once(cases, settings, begin):
+        asked.update(cases=cases)
+        return small
+
+    monkeypatch.setattr(study_module, "run_study", at_once)
+    code, out, _ = call("study --quiet --output all.html")
+    assert code == 0
+    assert asked["cases"] == CONDITIONS
+    assert f"- {findings(small)[0]}" in out
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("study --target 1", "--target is for a task of your own: give its plant as well"),
+        ("study --torque-limit 1", "--torque-limit is for a task of your own"),
+        ("study --bound 0.2", "--bound is for a task of your own"),
+        ("study single-link --duration 1", "give --target with the plant"),
+        ("study single-link --target 1", "give --duration with the plant"),
+        (f"{MOVE} --bound 0", "bound on the coefficients is 0"),
+        (f"{MOVE} --points 1", "points is 1; give a whole number from 2 up"),
+        (f"{MOVE} --runs 0", "runs is 0"),
+        (f"{MOVE} --population 1", "population is 1; give a whole number from 2 up"),
+        (f"{MOVE} --terms 0", "terms is 0"),
+        (f"{MOVE} --output nowhere/a.html", "folder nowhere does not exist"),
+        ("study singel-link --target 1 --duration 1", "did you mean 'single-link'?"),
+    ],
+)
+def test_bad_input_is_refused_in_a_line_before_any_work(call, folder, monkeypatch, line, words):
+    monkeypatch.setattr(study_module, "run_study", lambda *given: pytest.fail("work was begun"))
+    code, out, err = call(line)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert words in err
+    assert list(folder.iterdir()) == []
+
+
+def test_a_folder_for_the_fronts_that_cannot_be_made_is_refused_first(call, folder, no_place):
+    code, out, err = call(f"{MOVE} --fronts fronts")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "fronts cannot be written: no such file or directory; choose another place" in err
+    assert list(folder.iterdir()) == []
+
+
+def test_an_interrupt_leaves_no_file(call, folder, monkeypatch):
+    def interrupted(*given):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(study_module, "run_study", interrupted)
+    code, _, err = call(f"{MOVE} --quiet")
+    assert (code, err.strip()) == (1, "quietarm: interrupted; nothing was written")
+    assert list(folder.iterdir()) == []

@@ -1,0 +1,196 @@
+"""The headline study: every method runs, what fails is left out, Ctrl-C keeps what was found."""
+
+import signal
+from dataclasses import replace
+
+import pytest
+from small_study import CASES, METHODS, QUICK
+
+import metaheuristics.ensemble as ensemble
+import studies.study.pieces as study_pieces
+import studies.study.work as study_module
+from ocp import InfeasibleTaskError, PointToPoint, SolverFailedError
+from studies.comparison.measures import compare_fronts
+from studies.paper.case import Case
+from studies.paper.printed import CONDITIONS
+from studies.study.findings import case_findings
+from studies.study.page import study_page
+from studies.study.pieces import StudySettings
+from studies.study.work import Study, amount_of_work, run_study
+
+# What is run
+
+
+def test_every_method_runs_on_every_task(small, announced):
+    assert [found.case.task for found in small.cases] == [case.task for case in CASES]
+    for found in small.cases:
+        assert [run.front.method for run in found.comparison.runs] == METHODS
+        assert found.failures == ()
+        assert {run.front.settings["bound"] for run in found.comparison.runs} == {found.case.bound}
+    assert len(announced) == amount_of_work(CASES, QUICK) == 18
+    assert announced[0] == "single-link, 0 to 30 deg in 0.8 s: epsilon"
+
+
+def test_polish_never_makes_worse_what_it_starts_from(small):
+    for found in small.cases:
+        for method in ("nsga2", "vepso"):
+            first = next(r for r in found.comparison.runs if r.front.method == method)
+            polished = found.comparison.group(
+                {"nsga2": "NSGA-II polished", "vepso": "VEPSO polished"}[method]
+            )
+            gained = polished.runs[0].hypervolume_found - first.hypervolume_found
+            assert gained > -1e-5  # the two integrators differ by that much
+            assert len(found.polishes[method].gains) == len(first.front.points)
+
+
+def test_the_papers_six_conditions_are_the_default():
+    assert len(CONDITIONS) == 6
+    assert {case.bound for case in CONDITIONS} == {0.2, 0.5}  # eqs (12) and (17)
+
+
+def test_a_plant_of_ones_own_needs_a_bound(two_links):
+    task = PointToPoint(two_links, 1.5, 0.9)
+    with pytest.raises(ValueError, match="give a bound on the coefficients"):
+        Case(task)
+    assert Case(task, 0.3).bound == 0.3
+    with pytest.raises(ValueError, match="bound on the coefficients is -1"):
+        Case(task, -1)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"points": 1}, {"runs": 0}, {"terms": 0}, {"workers": 0}, {"population": 1},
+     {"generations": 0}],
+)  # fmt: skip
+def test_settings_out_of_range_are_refused(wrong):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        StudySettings(**wrong)
+
+
+def searches_that_find(monkeypatch, answer):
+    """Let every search of a study answer so, by its method and seed."""
+    monkeypatch.setattr(ensemble, "search", lambda task, method, seed, **_: answer(method)[seed])
+
+
+@pytest.fixture
+def known(small, monkeypatch, let_sweep):
+    """The fronts of the small study's first task, which every method then finds at once."""
+    fronts = [run.front for run in small.cases[0].comparison.runs]
+    for front in fronts[:2]:
+        let_sweep(front.method, lambda *given, found=front, **_: found)
+    searches_that_find(monkeypatch, lambda method: [f for f in fronts if f.method == method])
+    return fronts
+
+
+def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch, let_sweep, known):
+    def fail(*arguments, **settings):
+        raise SolverFailedError("it would not")
+
+    let_sweep("weighted", fail)
+    monkeypatch.setattr(study_pieces, "energy_floor", fail)
+    (found,) = run_study(CASES[:1], QUICK).cases
+    assert "weighted" not in {run.front.method for run in found.comparison.runs}
+    assert found.failures == ("weighted: it would not", "floor: it would not")
+    assert found.floor is None
+    assert set(found.failures) <= set(case_findings(found))
+
+
+def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(let_sweep, known):
+    def infeasible(*arguments, **settings):
+        raise InfeasibleTaskError("found no motion")
+
+    let_sweep("epsilon", infeasible)
+    let_sweep("weighted", lambda *given, **_: pytest.fail("asked"))
+    (case,) = run_study(CASES[:1], QUICK).cases
+    assert case.failures == (
+        "epsilon: found no motion",
+        "weighted: not tried, as epsilon found no motion within the limits",
+    )
+
+
+def test_without_a_front_to_start_from_there_is_no_polish(monkeypatch, known):
+    def fail(method):
+        raise SolverFailedError("it would not")
+
+    searches_that_find(monkeypatch, fail)
+    begun = []
+    (case,) = run_study(CASES[:1], QUICK, begun.append).cases
+    assert case.failures == (
+        "nsga2 (2 of 2 seeds): it would not",
+        "nsga2, polished: not tried, as nsga2 found no front to start from",
+        "vepso (2 of 2 seeds): it would not",
+        "vepso, polished: not tried, as vepso found no front to start from",
+    )
+    assert case.polishes == {}
+    assert len(begun) == amount_of_work(CASES[:1], QUICK)
+
+
+def test_the_first_front_that_has_points_is_polished(monkeypatch, known):
+    fronts = {front.method: front for front in known}
+
+    def first_empty(method):
+        return [replace(fronts[method], points=()), fronts[method]]
+
+    searches_that_find(monkeypatch, first_empty)
+    (case,) = run_study(CASES[:1], QUICK).cases
+    assert case.failures == (
+        "nsga2 (1 of 2 seeds): found no point",
+        "vepso (1 of 2 seeds): found no point",
+    )
+    for method in ("nsga2", "vepso"):
+        assert len(case.polishes[method].gains) == len(fronts[method].points)
+
+
+def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(monkeypatch, known):
+    cut = replace(known[2], complete=False)
+    searches_that_find(monkeypatch, lambda method: [cut])
+    begun = []
+    found = run_study(CASES, QUICK, begun.append)
+    assert len(begun) == 3
+    assert found.done == 2
+    (case,) = found.cases
+    assert [run.front for run in case.comparison.runs] == [*known[:2], cut]
+    assert case.failures == (
+        "nsga2 (1 of 2 seeds): interrupted, with what was found until then",
+        "nsga2 (1 of 2 seeds): not done before the interruption",
+        "nsga2, polished: not done before the interruption",
+        "vepso (2 of 2 seeds): not done before the interruption",
+        "vepso, polished: not done before the interruption",
+        "floor: not done before the interruption",
+    )
+    assert "not done before the interruption" in study_page(found)
+
+
+def test_ctrl_c_while_the_last_task_is_put_together_loses_nothing(monkeypatch, known):
+    compared = study_module.compare_fronts
+
+    def interrupted(*given, **settings):
+        signal.raise_signal(signal.SIGINT)
+        return compared(*given, **settings)
+
+    monkeypatch.setattr(study_module, "compare_fronts", interrupted)
+    (case,) = run_study(CASES[:1], QUICK).cases
+    assert len(case.comparison.runs) == len(known)
+
+
+def test_a_study_of_which_one_front_was_found_is_a_page(small):
+    (case, _) = small.cases
+    alone = compare_fronts([case.comparison.runs[0].front], least=1)
+    page = study_page(Study(QUICK, (replace(case, comparison=alone, polishes={}),), 1.0, done=1))
+    assert "epsilon constraint" in page
+
+
+def test_a_study_that_found_nothing_before_ctrl_c_is_none(let_sweep):
+    def stopped(*given, **settings):
+        raise KeyboardInterrupt
+
+    let_sweep("epsilon", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        run_study(CASES[:1], QUICK)
+
+
+def test_epsilon_has_a_point_at_every_residual_that_energies_are_compared_at(small):
+    for found in small.cases:
+        front = next(r.front for r in found.comparison.runs if r.front.method == "epsilon")
+        for level in found.comparison.levels:
+            assert level * (1 - 3e-4) < front.cheapest(level).residual <= level
