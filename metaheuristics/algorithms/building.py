@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -16,7 +16,7 @@ from pymoo.operators.mutation.pm import PM
 from metaheuristics.algorithms.presets import Preset
 from metaheuristics.algorithms.settings import Value
 
-_OPERATORS = {"crossover": SBX, "mutation": PM}
+_OPERATORS: dict[str, Callable[..., Any]] = {"crossover": SBX, "mutation": PM}
 
 
 def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algorithm:

@@ -30,7 +30,7 @@ from studies.profiles import profile_of
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 RESUMABLE = [name for name in METAHEURISTICS if PRESETS[name].resumable]
-_OF_SEARCHES = dict.fromkeys(
+_OF_SEARCHES: dict[str, list[str]] = dict.fromkeys(
     ("population", "generations", "setting", "runs", "workers", "scheduler"), METAHEURISTICS
 )
 _ONLY_FOR = {
