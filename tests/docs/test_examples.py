@@ -120,7 +120,7 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
-    quiet = ["--quiet"] if words[0] in {"front", "polish", "robustness", "study"} else []
+    quiet = ["--quiet"] if words[0] in {"compare", "front", "polish", "robustness", "study"} else []
     fewer = []
     if words[0] == "study":
         fewer = SHORTER["study"]
