@@ -26,6 +26,7 @@ COMMANDS = {
     "floor": "Find the least energy over all joint motions.",
     "robustness": "Show what plans leave when the plant is not the assumed one.",
     "study": "Run every method on a task, and write one report.",
+    "contest": "Hold methods with equal evaluations against exact fronts.",
     "reproduce": "Recompute the paper.",
 }
 """What each command does; `NAME` is the function `NAME` of `studies.cli.commands.NAME`."""
