@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from metaheuristics.algorithms.presets import PRESETS
+from metaheuristics.algorithms.presets import preset_of
 from metaheuristics.budget.record import Mark, Scale, Visits
 from metaheuristics.runs.settings import search_versions
 from ocp import Front, JointProfile, PointToPoint, reference_corner
@@ -94,7 +94,7 @@ def search_within(
     from metaheuristics.runs.front import verified_points
     from metaheuristics.runs.settings import SearchSettings
 
-    preset = PRESETS[method]
+    preset = preset_of(method)
     population = preset.population if population is None else population
     SearchSettings(bound, population, preset.generations)  # refuses what is out of range
     algorithm = preset.build(population)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from metaheuristics import PRESETS
+from metaheuristics.algorithms.presets import preset_of
 from metaheuristics.budget.run import number_of_evaluations, search_within
 from metaheuristics.ensemble import seeds_of
 from metaheuristics.runs.settings import number_of_individuals
@@ -15,7 +15,6 @@ from metaheuristics.sharing.running import run_pieces
 from metaheuristics.sharing.workers import HERE, Workers
 from ocp import QuietarmError
 from ocp.base.interrupts import note_interrupts
-from ocp.base.names import nearest
 from studies.contest.problems import Problem, Yardstick, exact_front
 from studies.contest.runs import Folder, Key, Run, check_alike
 
@@ -57,9 +56,12 @@ class Contest:
 
     def __post_init__(self) -> None:
         for name in self.methods:
-            if name not in PRESETS:
-                known = f"{nearest(name, PRESETS)}(known: {', '.join(PRESETS)})"
-                raise ValueError(f"unknown method {name!r}; {known}")
+            preset = preset_of(name)
+            limited = [problem.name for problem in self.problems if problem.task.limits]
+            if limited and not preset.keeps_limits:
+                raise ValueError(
+                    f"{name} cannot search {limited[0]}, which has limits; leave it out"
+                )
         object.__setattr__(self, "methods", tuple(dict.fromkeys(self.methods)))
         seeds_of(self.seed, self.runs)
         number_of_evaluations(self.evaluations)
