@@ -73,7 +73,8 @@ class Stage:
         heights = [0.3 + rows * row, _PROFILES]
         self._figure = new_figure(inches, sum(heights))
         self._figure.set_dpi(width / inches)
-        above, below = self._figure.subfigures(2, 1, height_ratios=heights)
+        parts = self._figure.subfigures(2, 1, squeeze=False, height_ratios=heights)
+        above, below = parts.flat
         title = title_of(cast[0].line.plan.task) if same else "several moves on one clock"
         words = _short(title, 22 * columns + 44)
         self._title = self._figure.suptitle(words, x=0.01, ha="left", fontsize=11, parse_math=False)
