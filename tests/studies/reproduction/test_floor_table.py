@@ -22,7 +22,7 @@ from studies.reproduction.floor_table import (
     floor_tables,
     multiples,
 )
-from studies.reproduction.recompute import SEARCHES
+from studies.reproduction.pieces import SEARCHES
 from studies.reproduction.report import print_reproduction
 
 TERMS = (2, 4, 6, 8, 10)
