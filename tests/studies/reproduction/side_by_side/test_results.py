@@ -88,7 +88,8 @@ WRONG = {
 @pytest.mark.parametrize("case", WRONG, ids=lambda case: case.name)
 def test_the_residual_with_a_wrong_frequency_is_the_larger_of_both_sides(reproduction, case):
     found = on(reproduction, case)["boxed gradient"]
-    assert found.wrong_residual * 1e3 == pytest.approx(max(WRONG[case]), abs=0.06)
+    # 1 %: plans of nearly equal energy differ by as much, as on 0 to pi/2 in 1.1 s
+    assert found.wrong_residual * 1e3 == pytest.approx(max(WRONG[case]), abs=0.06, rel=0.01)
     assert found.motion.residual < 1e-8  # README, 'How exact'
 
 

@@ -27,7 +27,7 @@ def test_every_table_is_whole_on_the_screen(reproduction, width):
         (title,) = [line for line in text.splitlines() if line.strip().endswith(case.name)]
         below = text.split(title)[1].split("Side by side")[0]
         for found in systems:  # a line each, in one piece
-            (line,) = [line for line in below.splitlines() if line.startswith(f" {found.name}  ")]
+            (line,) = [line for line in below.splitlines() if line.startswith(f"  {found.name}  ")]
             assert line.split()[-1] == ("-" if found.seconds is None else f"{found.seconds:.2g}")
             if found.motion is not None:
                 assert f" {found.energy:.4f} " in line
