@@ -327,9 +327,12 @@ def test_the_table_of_results_is_that_of_the_physics():
 
 def test_every_reader_is_sent_to_a_section_that_is_there():
     section = README.split("## Where to go on\n", 1)[1].split("\n## ", 1)[0]
-    named = re.findall(r"'([A-Z][^']+)'", section)
-    assert len(named) >= 6
-    assert [name for name in named if f"\n## {name}\n" not in README] == []
+    named = set(re.findall(r"\(#([\w-]+)\)", section))
+    headings = re.findall(r"^## (.*)$", README, re.MULTILINE)
+    # GitHub's rule: small letters, hyphens for blanks, and no other marks
+    anchors = {re.sub(r"[^\w-]", "", heading.lower().replace(" ", "-")) for heading in headings}
+    assert len(named) == 6
+    assert named <= anchors
 
 
 def test_the_python_that_it_asks_for_is_the_packages():
