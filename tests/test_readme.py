@@ -7,13 +7,13 @@ import shutil
 import subprocess
 import tomllib
 
-import numpy as np
 import pytest
+from PIL import Image
 from pages import COMMANDS, DOCS, NOTEBOOK, PAGES, README, ROOT, TWO_COMMANDS
 
 from ocp import evaluate_coefficients, plan_move
 from studies.cli import quietarm
-from studies.paper.printed import CONDITIONS, ROWS, SINGLE_LINK_SIXTH
+from studies.paper.printed import SINGLE_LINK_SIXTH
 
 # The two commands
 
@@ -141,7 +141,7 @@ def test_the_order_of_the_packages_is_that_of_the_contract():
 
 def test_the_picture_says_what_is_computed():
     # The picture's text: the plain cycloid leaves so much, the plan needs such a share.
-    (alt,) = re.findall(r"!\[([^]]*)\]\(notebooks/move\.png\)", README)
+    (alt,) = re.findall(r"!\[([^]]*)\]\(docs/move\.gif\)", README)
     task = SINGLE_LINK_SIXTH.task
     cycloid, plan = evaluate_coefficients(task, []), plan_move(task)
     assert re.search(r"ringing by (\d+) mm", alt).group(1) == f"{cycloid.residual * 1e3:.0f}"
@@ -150,18 +150,13 @@ def test_the_picture_says_what_is_computed():
     assert plan.residual < 1e-8
 
 
-def test_the_table_of_energies_is_what_is_found():
-    lines = README.split("| plant and move |", 1)[1].split("\n\n", 1)[0].splitlines()[2:]
-    table = np.array([[float(cell) for cell in line.split("|")[2:6]] for line in lines])
-    printed = {row.condition: row.energy for row in ROWS if row.terms == 6}
-    for condition, (paper, boxed, free, floor) in zip(CONDITIONS, table, strict=True):
-        assert paper == printed[condition]
-        # As exact as three figures say.
-        assert boxed == pytest.approx(
-            plan_move(condition.task, bound=condition.bound).energy, rel=4e-3
-        )
-        assert free == pytest.approx(plan_move(condition.task).energy, rel=4e-3)
-        assert floor < free  # held against the floors of `reproduce` in test_floor_table
+def test_the_picture_at_the_top_moves_and_is_what_its_commands_make():
+    with Image.open(ROOT / "docs" / "move.gif") as picture:
+        # 0.8 s and the second after it, 25 frames a second, and the first
+        assert (picture.format, picture.n_frames, picture.width) == ("GIF", 46, 800)
+    section = DOCS["pictures"].split("## Pictures that move\n", 1)[1]
+    assert "quietarm plan single-link --target 30deg --duration 0.8" in section
+    assert README.index("(docs/move.gif)") < README.index("\n## ")
 
 
 def test_the_python_that_it_asks_for_is_the_packages():

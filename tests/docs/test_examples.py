@@ -38,8 +38,8 @@ def test_the_example_in_python_plans_saves_and_exports(tmp_path):
     printed = run_python(MOVE, tmp_path)
     plan = Plan.load(tmp_path / "plan.json")
     assert printed == f"{plan.energy} {plan.residual} {plan.coefficients}\n"
-    assert plan.residual < 1e-8  # docs/exactness.md
-    assert plan.motion.peak_torque <= 0.2 * 1.001  # docs/exactness.md
+    assert plan.residual < 1e-8  # docs/accuracy.md
+    assert plan.motion.peak_torque <= 0.2 * 1.001  # docs/accuracy.md
     assert len((tmp_path / "move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
 
 
@@ -115,16 +115,15 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
     "epsilon": ["--points", "5"],
     "weighted": ["--points", "5"],
     "study": [*SEARCH, "--runs", "1", "--points", "4"],
+    "contest": ["--runs", "1", "--evaluations", "150"],
 }
 
 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
-    quiet = ["--quiet"] if words[0] in {"compare", "front", "polish", "robustness", "study"} else []
-    fewer = []
-    if words[0] == "study":
-        fewer = SHORTER["study"]
-    elif words[0] == "front":
+    quiet = ["--quiet"] if words[0] in {"animate", "compare", "contest", "front", "polish", "robustness", "study"} else []
+    fewer = SHORTER.get(words[0], [])
+    if words[0] == "front":
         fewer = SHORTER.get(words[words.index("--method") + 1], SEARCH)
     return [*words, *quiet, *fewer]
 
