@@ -13,6 +13,7 @@ from ocp.robustness.plants import checked_ranges
 from studies.display.progress import count
 from studies.display.saving import finish
 from studies.reports.robustness import Figured, print_robustness, robustness_files
+from studies.runs.loading import load_plan
 
 DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
 """The errors where none is asked for."""
@@ -71,7 +72,7 @@ def _loaded(paths: Sequence[Path]) -> dict[str, Plan]:
             raise ValueError(f"{path} is given twice; give it once")
     stems = [path.stem for path in paths]
     names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
-    return {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
+    return {name: load_plan(path) for name, path in zip(names, paths, strict=True)}
 
 
 def _evaluated(
