@@ -1,7 +1,8 @@
-"""What is read from files; its figures are checked against the plant first."""
+"""What is read from files: a front, whose figures are checked against the plant; plans."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from metaheuristics.objective.claims import check_figures, check_plan
@@ -33,26 +34,35 @@ def load_front(path: Path) -> Front:
     return front
 
 
-def load_plan(path: Path) -> Plan:
-    """The plan of a file, after its motion was evaluated again.
+def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
+    """Plans from their files, after their motions were evaluated again.
 
     Parameters
     ----------
-    path : Path
-        The file.
+    paths : sequence of Path
+        The files.
 
     Returns
     -------
-    Plan
-        The plan.
+    dict
+        The plans by what they are called: the name of their file, or the whole path where files of
+        several folders have one name.
 
     Raises
     ------
     FileFormatError
-        When the file is no plan.
+        When a file is no plan.
     ValueError
-        When its figures are not those of its motion.
+        When there is no file, one is given twice, or its figures are not those of its motion.
     """
-    plan = Plan.load(path)
-    check_plan(plan, str(path))
-    return plan
+    if not paths:
+        raise ValueError("no plan is given; give files that were written by quietarm plan --output")
+    for path in paths:
+        if list(paths).count(path) > 1:
+            raise ValueError(f"{path} is given twice; give it once")
+    stems = [path.stem for path in paths]
+    names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
+    plans = {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
+    for plan, path in zip(plans.values(), paths, strict=True):
+        check_plan(plan, str(path))
+    return plans
