@@ -140,7 +140,7 @@ def test_the_gradient_answers_are_at_rest_on_arrival_and_verified(reproduction):
     plans += reproduction.more_terms.values()
     for plan in plans:
         assert plan.status.solved
-        assert plan.residual < 1e-8  # README, 'How exact'
+        assert plan.residual < 1e-8  # docs/accuracy.md
         assert abs(plan.verification.energy_difference) < 1e-3 * plan.energy
 
 
