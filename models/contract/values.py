@@ -143,7 +143,7 @@ class Equations:
         matrices[:, :modes, modes:] = np.eye(modes)
         matrices[:, modes:] = resting.reshape(-1, 2 * modes, modes).transpose(0, 2, 1)
         values = np.linalg.eigvals(matrices)
-        self._check_stiff(values)
+        self._check_stiff(np.abs(values))
         growth = values.real.max(axis=1)
         grows = np.flatnonzero(growth > _GROWTH * np.abs(values).max(axis=1))
         if grows.size:
@@ -155,9 +155,8 @@ class Equations:
                 "returns W'' = -2 zeta omega W' - omega^2 W - ..."
             )
 
-    def _check_stiff(self, values: Array) -> None:
+    def _check_stiff(self, sizes: Array) -> None:
         """Every mode comes back: no eigenvalue of the resting structure is 0."""
-        sizes = np.abs(values)
         loose = np.flatnonzero(sizes.min(axis=1) <= _TINY * sizes.max(axis=1))
         if loose.size:
             angle = self._points[_KINDS - 1 :: _KINDS, 0][self._defined][loose[0]]
