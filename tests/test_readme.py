@@ -8,8 +8,8 @@ import subprocess
 import tomllib
 
 import pytest
-from PIL import Image
 from pages import COMMANDS, DOCS, NOTEBOOK, PAGES, README, ROOT, TWO_COMMANDS
+from PIL import Image
 
 from ocp import evaluate_coefficients, plan_move
 from studies.cli import quietarm

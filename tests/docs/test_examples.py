@@ -121,7 +121,11 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
-    quiet = ["--quiet"] if words[0] in {"animate", "compare", "contest", "front", "polish", "robustness", "study"} else []
+    quiet = (
+        ["--quiet"]
+        if words[0] in {"animate", "compare", "contest", "front", "polish", "robustness", "study"}
+        else []
+    )
     fewer = SHORTER.get(words[0], [])
     if words[0] == "front":
         fewer = SHORTER.get(words[words.index("--method") + 1], SEARCH)
