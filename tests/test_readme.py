@@ -211,13 +211,15 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
     "vepso": SEARCH,
     "epsilon": ["--points", "5"],
     "study": [*SEARCH, "--runs", "1", "--points", "4"],
+    "contest": ["--runs", "1", "--evaluations", "150"],
 }
 
 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
     method = words[words.index("--method") + 1] if "--method" in words else words[0]
-    quiet = ["--quiet"] if words[0] in {"animate", "front", "polish", "robustness", "study"} else []
+    long = {"animate", "front", "polish", "robustness", "study", "contest"}
+    quiet = ["--quiet"] if words[0] in long else []
     return [*words, *quiet, *(SHORTER.get(method, []) if words[0] != "plan" else [])]
 
 
