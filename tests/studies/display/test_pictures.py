@@ -19,7 +19,5 @@ def test_a_picture_that_cannot_be_drawn_is_told_in_one_line(tmp_path, monkeypatc
 
 def test_a_date_that_is_none_is_told_in_one_line(tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "today")
-    with pytest.raises(
-        ValueError, match=r"a\.pdf cannot be drawn \(.*'today'\); "
-    ):
+    with pytest.raises(ValueError, match=r"a\.pdf cannot be drawn \(.*'today'\); "):
         save_figure(Figure(), tmp_path / "a.pdf")
