@@ -88,7 +88,7 @@ FRONT = f"front {MOVE} --method nsga2"
         (f"{FRONT} --bound 0.2 --seed -1", "seed is -1", "give"),
         (f"{FRONT} --bound 0.2 --terms 0", "0 terms", "give 1 term or more"),
         (f"{FRONT} --bound 0.2 --resume nowhere", "nowhere", "cannot be read"),
-        (f"front {MOVE} --method annealing --bound 0.2", "annealing", "'nsga2', 'vepso'"),
+        (f"front {MOVE} --method annealing --bound 0.2", "annealing", "vepso, nsga2, "),
         ("reproduce --seeds 0", "seeds is 0", "from 1 up"),
         ("reproduce --seeds 0 --output results", "seeds is 0", "from 1 up"),
     ],
