@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metaheuristics.budget.record import CORNER
 from metaheuristics.ensemble import Spread
 from studies.comparison.staircase import objectives, within
 from studies.contest.problems import Yardstick
@@ -20,6 +21,7 @@ Array = NDArray[np.float64]
 TARGETS = (1e-2, 1e-3)
 """Shares of the exact front's hypervolume that may be missing for a target to count as reached."""
 _TIMES = 120
+_PLACES = 3000
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +75,23 @@ class Field:
         exact = within(objectives(self.yardstick.front), LEVELS)
         found = [within(objectives(run.front), LEVELS, inf) for run in self.runs]
         return np.array(found) / exact - 1
+
+    @cached_property
+    def visited(self) -> Array:
+        """Share of the feasible candidates in each third and beyond, shape (runs, 4)."""
+        counts = np.array([astuple(run.visits) for run in self.runs], dtype=float)
+        return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
+
+    @cached_property
+    def missing_by_thirds(self) -> Array:
+        """Share of the exact hypervolume over each third of the residuals that is missing.
+
+        Shape (runs, 3): still, middle, cheap. Both hypervolumes are up to the corner in the energy.
+        """
+        scale = self.yardstick.scale
+        exact = _over_thirds(scale.scaled(objectives(self.yardstick.front)))
+        found = [_over_thirds(scale.scaled(objectives(run.front))) for run in self.runs]
+        return 1.0 - np.array(found) / exact
 
     def hits(self, target: float) -> Array:
         """Evaluations after which a target was first seen reached, shape (runs,); else infinite.
@@ -163,6 +182,14 @@ def arenas_of(runs: Mapping[Key, Run], yardsticks: Mapping[str, Yardstick]) -> t
         ]
         arenas.append(Arena(yardsticks[problem], tuple(fields)))
     return tuple(arenas)
+
+
+def _over_thirds(scaled: Array) -> Array:
+    """Area between a front and the corner's energy over each third of the residuals, shape (3,)."""
+    ordered = scaled[np.argsort(scaled[:, 0])]
+    places = np.linspace(0.0, 1.0, _PLACES, endpoint=False) + 0.5 / _PLACES
+    height = np.maximum(CORNER - within(ordered, places, CORNER), 0.0)
+    return height.reshape(3, -1).mean(axis=1)
 
 
 def methods_in(arenas: Iterable[Arena]) -> tuple[str, ...]:

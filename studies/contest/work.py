@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from metaheuristics.algorithms.presets import preset_of
-from metaheuristics.budget.run import number_of_evaluations, search_within
+from metaheuristics import PRESETS
+from metaheuristics.budget.run import number_of_evaluations, parts_of, search_within
 from metaheuristics.ensemble import seeds_of
 from metaheuristics.runs.settings import number_of_individuals
 from metaheuristics.sharing.pieces import Done, Listener, NotTriedError, Piece, Say, to_the_end
@@ -56,11 +56,11 @@ class Contest:
 
     def __post_init__(self) -> None:
         for name in self.methods:
-            preset = preset_of(name)
+            search, _ = parts_of(name)
             limited = [problem.name for problem in self.problems if problem.task.limits]
-            if limited and not preset.keeps_limits:
+            if limited and search in PRESETS and not PRESETS[search].keeps_limits:
                 raise ValueError(
-                    f"{name} cannot search {limited[0]}, which has limits; leave it out"
+                    f"{name} cannot search {limited[0]}, which has limits; leave one of them out"
                 )
         object.__setattr__(self, "methods", tuple(dict.fromkeys(self.methods)))
         seeds_of(self.seed, self.runs)

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 @click.argument("problems", nargs=-1, metavar="[PROBLEM]...")
 @click.option(
     "--methods", default="nsga2,vepso", show_default=True, metavar="NAME,NAME,...",
-    help="Methods, with commas between them.",
+    help="Methods, with commas between them: those of quietarm front, as they are or with the "
+    "gradient's help (nsga2+polish, nsga2+seeds); multistart is the gradient alone.",
 )  # fmt: skip
 @click.option("--runs", type=int, default=31, show_default=True, help="Seeds of each method.")
 @click.option(
@@ -61,6 +62,7 @@ def contest(
     from studies.contest.measures import arenas_of
     from studies.contest.problems import problems_of
     from studies.contest.runs import Folder
+    from studies.contest.statistics import why_none
     from studies.contest.tables import summary_table
     from studies.contest.work import Contest, pieces_of, run_contest
     from studies.display.progress import progress
@@ -86,6 +88,9 @@ def contest(
         for arena in arenas:
             print_lines(console, arena.problem)
             print_table(console, summary_table(arena))
+        none = why_none(arenas)
+        if none:
+            print_lines(console, none)
 
     trouble = _why_not_whole(done, len(pieces))
     page, *others = report_files(arenas, output)
