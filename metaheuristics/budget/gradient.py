@@ -37,6 +37,7 @@ class Gradient:
         settings = SolveSettings(bound=bound, starts=1, seed=seed)
         self._sweep = Sweep(objective.task, objective.profile, settings)
         self._problem, self._random = problem, np.random.default_rng(seed)
+        self._lower, self._upper = objective.profile.box(bound)
 
     @property
     def iterations(self) -> int:
@@ -57,13 +58,13 @@ class Gradient:
         an_iteration = 1 + size + size * (size + 1) // 2
         self._problem.spend((self.iterations - before) * an_iteration)
         if found.status.solved:
-            inside = np.clip(found.coefficients, self._problem.xl, self._problem.xu)
+            inside = np.clip(found.coefficients, self._lower, self._upper)
             self._problem.evaluate(inside[None, :])
         return found
 
     def random_start(self) -> Array:
         """Coefficients drawn evenly from the box."""
-        return self._random.uniform(self._problem.xl, self._problem.xu)
+        return self._random.uniform(self._lower, self._upper)
 
     def seeds(self) -> Array:
         """Coefficients for a first population: both ends of the front and motions between.
@@ -80,7 +81,7 @@ class Gradient:
         limits = [0.0, *(share * reach for share in _BETWEEN if reach > 0)]
         found = [cheapest, *(self.solve(self.random_start(), limit) for limit in limits)]
         rows = [one.coefficients for one in found if one.status.solved]
-        return np.array(rows).reshape(-1, self._problem.n_var)
+        return np.array(rows).reshape(-1, len(self._lower))
 
     def polish(self) -> None:
         """Improve what was found, each motion at its own residual, until the budget is spent.
@@ -88,7 +89,7 @@ class Gradient:
         The motions are taken as far from each other as they can be: ends, middle, quarters, ...
         """
         X, F = self._problem.non_dominated()
-        for i in _spread_out(np.argsort(F[:, 0])):
+        for i in _spread_out(np.argsort(F[:, 0]).tolist()):
             self.solve(X[i], float(F[i, 0]))
 
     def multistart(self) -> None:
@@ -103,7 +104,7 @@ class Gradient:
                 return
 
 
-def _spread_out(ordered: NDArray[np.int64]) -> list[int]:
+def _spread_out(ordered: list[int]) -> list[int]:
     """The same places, both ends first, then the middle, the quarters and so on."""
     last = len(ordered) - 1
     places = [0, last]
@@ -111,4 +112,4 @@ def _spread_out(ordered: NDArray[np.int64]) -> list[int]:
     while step <= 2 * max(last, 1):
         places += [round(last * odd / step) for odd in range(1, step, 2)]
         step *= 2
-    return [int(ordered[place]) for place in dict.fromkeys(places) if last >= 0]
+    return [ordered[place] for place in dict.fromkeys(places) if last >= 0]

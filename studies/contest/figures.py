@@ -121,8 +121,7 @@ def draw_surfaces(arena: Arena, looks: dict[str, Look], ax: Axes | None = None) 
         own = looks[field.method]
         ax.plot(1e3 * residuals, np.median(_stairs(field, residuals), axis=0), color=own.colour,
                 linestyle=own.dash, label=label_of(field.method))  # fmt: skip
-    exact = within(objectives(arena.yardstick.front), residuals)
-    ax.plot(1e3 * residuals, exact, color="black", linewidth=0.9, label="exact")
+    _draw_exact(arena, ax)
     _of_a_front(ax, arena)
     ax.set_title("what half of the runs attain", loc="left", fontsize=10)
     return ax
@@ -152,13 +151,20 @@ def draw_difference(arena: Arena, one: Field, other: Field, ax: Axes | None = No
     shares = (attained[0] - attained[1]).T
     mesh = ax.pcolormesh(1e3 * residuals, energies, shares, cmap="RdBu", vmin=-1, vmax=1,
                          rasterized=True, shading="nearest")  # fmt: skip
-    exact = within(objectives(arena.yardstick.front), residuals)
-    ax.plot(1e3 * residuals, exact, color="black", linewidth=0.9)
+    _draw_exact(arena, ax)
     _of_a_front(ax, arena)
     figure = ax.figure
     figure.colorbar(mesh, ax=ax, ticks=(-1, 0, 1), shrink=0.8)
-    ax.set_title(f"{label_of(one.method)}\nless {label_of(other.method)}", loc="left", fontsize=9)
+    ax.set_title(
+        f"{label_of(one.method)} (blue)\n{label_of(other.method)} (red)", loc="left", fontsize=9
+    )
     return ax
+
+
+def _draw_exact(arena: Arena, ax: Axes) -> None:
+    """Draw the exact front: motions between its points are on the lines that join them."""
+    front = arena.yardstick.front
+    ax.plot(1e3 * front.residuals, front.energies, color="black", linewidth=0.9, label="exact")
 
 
 def _grid(arena: Arena) -> tuple[Array, Array]:
@@ -177,7 +183,8 @@ def _stairs(field: Field, residuals: Array) -> Array:
 
 
 def _of_a_front(ax: Axes, arena: Arena) -> None:
-    _, energies = _grid(arena)
+    residuals, energies = _grid(arena)
+    ax.set_xlim(1e3 * residuals[0], 1e3 * residuals[-1])
     ax.set_ylim(energies[0], energies[-1])
     ax.set_xlabel("residual F1 [mm]")
     ax.set_ylabel("energy F2 [J]")

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
 from math import inf
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from metaheuristics.budget.record import CORNER
 from metaheuristics.ensemble import Spread
 from studies.comparison.staircase import objectives, within
+from studies.contest.landscape import Landscape
 from studies.contest.problems import Yardstick
 from studies.contest.runs import Key, Run
 from studies.methods import LEVELS
@@ -139,10 +141,13 @@ class Arena:
         The problem and its exact front.
     fields : tuple of Field
         The methods, each with one run or more.
+    landscape : Landscape or None
+        Its local minima, where they were looked for.
     """
 
     yardstick: Yardstick
     fields: tuple[Field, ...]
+    landscape: Landscape | None = None
 
     @property
     def problem(self) -> str:
@@ -157,7 +162,11 @@ class Arena:
         return np.geomspace(max(first, 1e-4), max(last, 2e-4), _TIMES)
 
 
-def arenas_of(runs: Mapping[Key, Run], yardsticks: Mapping[str, Yardstick]) -> tuple[Arena, ...]:
+def arenas_of(
+    runs: Mapping[Key, Run],
+    yardsticks: Mapping[str, Yardstick],
+    landscapes: Mapping[str, Landscape] = MappingProxyType({}),
+) -> tuple[Arena, ...]:
     """The problems with runs, in the order of their names; methods in that of theirs.
 
     Parameters
@@ -166,6 +175,8 @@ def arenas_of(runs: Mapping[Key, Run], yardsticks: Mapping[str, Yardstick]) -> t
         As `Folder.runs` gives them.
     yardsticks : mapping of str to Yardstick
         By problem.
+    landscapes : mapping of str to Landscape
+        By problem, where they are known.
 
     Returns
     -------
@@ -180,7 +191,7 @@ def arenas_of(runs: Mapping[Key, Run], yardsticks: Mapping[str, Yardstick]) -> t
             Field(m, yardsticks[problem], tuple(runs[key] for key in own if key.method == m))
             for m in methods
         ]
-        arenas.append(Arena(yardsticks[problem], tuple(fields)))
+        arenas.append(Arena(yardsticks[problem], tuple(fields), landscapes.get(problem)))
     return tuple(arenas)
 
 

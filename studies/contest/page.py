@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from metaheuristics.budget.run import MULTISTART, Help, parts_of
 from studies.contest.citations import bibtex
 from studies.contest.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from studies.contest.measures import Arena, methods_in
 from studies.contest.statistics import ALPHA, Ranking, pairs_on, ranking_on, ranking_over, why_none
 from studies.contest.tables import effects_table, label_of, summary_table, visits_table
 from studies.display.html_page import Markup, bullets, element, page, picture, table_element
-from studies.display.words import counted, title_of
+from studies.display.words import counted, millimetres, title_of
 
 _ANYTIME = (
     "Share of the exact front's hypervolume that is missing, over evaluations and over time: "
@@ -97,8 +98,32 @@ def _section(arena: Arena, methods: Sequence[str]) -> Markup:
         picture(attainment_figure(arena, looks), f"{_ATTAINMENT} On {title}.", _ATTAINMENT),
         *_statistics(arena),
         table_element(visits_table(arena)),
+        *([bullets(explanation(arena.landscape))] if arena.landscape else []),
     ]
     return element("section", *parts, id=arena.problem)
+
+
+def explanation(found: Landscape) -> list[str]:
+    """What makes a problem hard, in sentences."""
+    level = millimetres(LEVEL)
+    lines = [
+        f"Of {found.starts} random starts in the box, the gradient ended at a minimum of the "
+        f"energy within {level} from {found.solved:.0%}, and at the best of these from "
+        f"{found.best:.0%}; of the minima, {found.minima} differ by more than 0.1 % in energy.",
+        f"Over {CANDIDATES} random candidates, energy and distance to the cheapest motion "
+        f"correlate by {found.candidates:.2f} (1 where better candidates lie nearer to it).",
+    ]
+    if found.correlation is not None:
+        lines.append(
+            f"Over the minima found, energy and distance to the best one correlate by "
+            f"{found.correlation:.2f}."
+        )
+    for share, ratio in found.boxes:
+        of = f"With a box {share:g} times as large the least energy within {level} is"
+        lines.append(
+            f"{of} not found." if ratio is None else f"{of} {ratio:.4g} times that in this one."
+        )
+    return lines
 
 
 def _statistics(arena: Arena) -> list[Markup]:

@@ -131,7 +131,7 @@ def ranking(values: Array, methods: Sequence[str], what: str) -> Ranking:
     with np.errstate(invalid="ignore"):  # where all are equal
         found = stats.friedmanchisquare(*values.T)
     quantile = stats.studentized_range.ppf(1 - ALPHA, count, np.inf) / np.sqrt(2)
-    order = np.argsort(means, kind="stable")
+    order: list[int] = np.argsort(means, kind="stable").tolist()
     return Ranking(
         what=what,
         blocks=blocks,

@@ -28,6 +28,10 @@ if TYPE_CHECKING:
 @click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
 @click.option("--population", type=int, help="Of every method; each method's own by default.")
 @click.option(
+    "--explain", is_flag=True,
+    help="Look for the local minima of each problem as well, and say what the box costs.",
+)  # fmt: skip
+@click.option(
     "--output", type=FOLDER, required=True,
     help="Folder for the runs and what they say; runs that are there are not done again.",
 )  # fmt: skip
@@ -40,6 +44,7 @@ def contest(
     evaluations: int,
     seed: int,
     population: int | None,
+    explain: bool,
     output: Path,
     workers: int,
     scheduler: str | None,
@@ -73,14 +78,14 @@ def contest(
 
     asked = Contest(
         problems_of(problems), tuple(name.strip() for name in methods.split(",")), runs,
-        evaluations, seed, population, Workers(workers, scheduler),
+        evaluations, seed, population, explain, Workers(workers, scheduler),
     )  # fmt: skip
     folder, errors = Folder(output), Console(stderr=True)
     pieces = pieces_of(asked, folder)
     warn_of_workers(errors, workers, len(pieces))
     with progress(len(pieces), errors, quiet=quiet) as begin:
         done = run_contest(pieces, folder, asked.workers, begin)
-    arenas = arenas_of(folder.runs(), folder.yardsticks())
+    arenas = arenas_of(folder.runs(), folder.yardsticks(), folder.landscapes())
     if not arenas:
         raise QuietarmError(_why_not_whole(done, len(pieces)) or "no run was done")
 
