@@ -14,6 +14,7 @@ from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.robustness.plants import checked_ranges
 from ocp.robustness.population import ErrorPopulation, Figures
+from ocp.robustness.uncertain import on_assumed
 from ocp.simulation.resimulation import resimulate
 from ocp.task.point_to_point import PointToPoint
 
@@ -120,6 +121,14 @@ class Robustness:
         return float(np.percentile(getattr(self.samples, figure), share))
 
 
+def tolerated_residual(task: PointToPoint) -> float:
+    """`TOLERATED` of what the plain cycloid of the same duration leaves on the assumed plant [m].
+
+    A motion is insensitive to errors within which it leaves no more.
+    """
+    return TOLERATED * resimulate(on_assumed(task), CycloidPolynomial(0), []).residual
+
+
 def evaluate_robustness(
     task: PointToPoint,
     profile: JointProfile,
@@ -135,7 +144,7 @@ def evaluate_robustness(
     Parameters
     ----------
     task : PointToPoint
-        The move, of the assumed plant.
+        The move; of an uncertain plant the assumed one counts.
     profile : JointProfile
         How the joint moves.
     coefficients : array_like, shape (profile.size,)
@@ -161,6 +170,7 @@ def evaluate_robustness(
         When there is no such parameter, a number is out of range, a plant within the ranges breaks
         its contract, or the coefficients or the duration do not fit the profile.
     """
+    task = on_assumed(task)
     ranges = checked_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)

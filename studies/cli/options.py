@@ -13,7 +13,7 @@ import click
 from models import Plant, load_plant_file
 from ocp.base.files import check_writable
 from ocp.task.quantities import QUANTITIES, Quantity
-from studies.cli.plants import parse_plant, parse_setting
+from studies.cli.plants import parse_error, parse_plant, parse_setting
 from studies.cli.quantities import (
     is_number,
     parse_angle,
@@ -115,6 +115,7 @@ def _is_plant_file(text: str) -> Mapping[str, type[Plant]]:
 
 PLANT = Parsed("plant", parse_plant)
 SETTING = Parsed("parameter=value", parse_setting)
+ERROR = Parsed("name=share", parse_error)
 ANGLE = _Angle("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
@@ -198,6 +199,11 @@ _WORKERS_OPTIONS = (
 )  # fmt: skip
 
 
+robust_option = click.option(
+    "--robust", type=ERROR, multiple=True, metavar="NAME=SHARE",
+    help="Count as the residual the largest one while the frequency, the damping or a parameter of "
+    "the plant is wrong by up to this, as frequency=10%; may be repeated.",
+)  # fmt: skip
 quiet_option = click.option("--quiet", is_flag=True, help="Show no progress.")
 
 

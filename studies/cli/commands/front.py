@@ -16,6 +16,7 @@ from studies.cli.options import (
     WEIGHTS,
     family_option,
     quiet_option,
+    robust_option,
     task_options,
     terms_option,
     workers_options,
@@ -91,6 +92,7 @@ _ONLY_FOR = {
 @click.option(
     "--figure", type=PICTURE, help="Draw the fronts, all in one picture (.png, .pdf or .svg)."
 )
+@robust_option
 @quiet_option
 @click.pass_context
 def front(
