@@ -137,7 +137,7 @@ def search_many(
     task : PointToPoint
         The move.
     method : str
-        ``"nsga2"`` or ``"vepso"``.
+        A name of `PRESETS`.
     runs : int
         Number of seeds, from `seed` on.
     workers : int
@@ -152,7 +152,7 @@ def search_many(
     done : callable, optional
         Called with every front when its run ends.
     **settings : Any
-        As for `search`: profile, bound, population, generations.
+        As for `search`: profile, bound, population, generations, settings.
 
     Returns
     -------
@@ -174,7 +174,7 @@ def search_many(
     seeds, where = seeds_of(seed, runs), Workers(workers, scheduler)
     if not isinstance(method, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ValueError(
-            f"method is {type(method).__name__}; give {' or '.join(map(repr, PRESETS))}, or call "
+            f"method is {type(method).__name__}; give one of {', '.join(PRESETS)}, or call "
             "`search` once a seed with an algorithm of your own"
         )
     _refuse_checkpoints(settings, runs, where)
@@ -225,7 +225,7 @@ def one_seed(
     task : PointToPoint
         The move.
     method : str
-        ``"nsga2"`` or ``"vepso"``.
+        A name of `PRESETS`.
     settings : mapping
         As for `search`.
     seed : int

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
+from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, preset_of
 from metaheuristics.runs.progress import Report
 from metaheuristics.runs.settings import SearchSettings, SearchSpec
 from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
@@ -31,6 +31,7 @@ def search(
     bound: float | None = None,
     population: int | None = None,
     generations: int | None = None,
+    settings: Mapping[str, object] | None = None,
     seed: int = 0,
     threads: int = 1,
     checkpoint: str | Path | None = None,
@@ -46,21 +47,26 @@ def search(
     task : PointToPoint
         The move; its limits become constraints.
     algorithm : str or pymoo Algorithm
-        ``"nsga2"`` or ``"vepso"`` with the paper's settings, or any multi-objective algorithm of
-        pymoo that was not run yet; it is copied, so the one given stays as it is.
+        A name of `PRESETS`: ``"nsga2"`` and ``"vepso"`` have the paper's settings, the others
+        pymoo's. Or any multi-objective algorithm of pymoo that was not run yet; it is copied, so
+        the one given stays as it is.
     profile : JointProfile, optional
         How the joint moves; the cycloid of a polynomial of six terms by default.
     bound : float
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     population, generations : int, optional
-        Individuals (particles in a swarm) and generations; those of the paper by default. With an
-        algorithm of your own its population counts, and generations are required.
+        Individuals (particles in a swarm) and generations; those of the preset by default. With
+        an algorithm of your own its population counts, and generations are required.
+    settings : mapping, optional
+        What else a method known by name is set to, as ``{"crossover": 0.7}``; `Preset.settings`
+        says what it has.
     seed : int
         Seed of the random numbers.
     threads : int
         Blocks of the population that are evaluated at the same time.
     checkpoint : path, optional
-        File to write the state to every few seconds; for ``"nsga2"`` and ``"vepso"``.
+        File to write the state to every few seconds; for ``"nsga2"`` and ``"vepso"``, the two that
+        can go on from one.
     resume : path, optional
         Checkpoint to go on from, of the same search and the same versions.
     report : callable, optional
@@ -95,12 +101,13 @@ def search(
     profile = CycloidPolynomial() if profile is None else profile
     _refuse_other_kinds(task, profile)
     bound = profile.default_bound if bound is None else bound
-    method, chosen, settings = _chosen(algorithm, bound, population, generations)
+    method, chosen, asked = _chosen(algorithm, task, bound, population, generations, settings)
     loop = Loop(
-        SearchSpec(task, profile, method, settings, seed, settings_of(chosen)), chosen, threads
+        SearchSpec(task, profile, method, asked, seed, settings_of(chosen)), chosen, threads
     )
     if (checkpoint or resume) and not isinstance(chosen, Resumable):
-        raise ValueError(f"checkpoints are for {' and '.join(PRESETS)}, not for {method}")
+        resumable = " and ".join(name for name, preset in PRESETS.items() if preset.resumable)
+        raise ValueError(f"checkpoints are for {resumable}, not for {method}")
     keeper = None if checkpoint is None else Keeper(loop, check_writable(checkpoint))
     if resume is not None:
         resume_from(resume, loop)
@@ -129,21 +136,28 @@ def _refuse_other_kinds(task: object, profile: object) -> None:
 
 def _chosen(
     algorithm: str | Algorithm,
+    task: PointToPoint,
     bound: float | None,
     population: int | None,
     generations: int | None,
+    settings: Mapping[str, object] | None,
 ) -> tuple[str, Algorithm, SearchSettings]:
-    """Name, algorithm and settings, each checked; those that are not given are the paper's."""
+    """Name, algorithm and settings, each checked; those that are not given are the preset's."""
     if not isinstance(algorithm, str):
+        if settings:
+            raise ValueError("settings are set in the algorithm that you give, not beside it")
         return _own(algorithm, bound, population, generations)
-    preset = PRESETS.get(algorithm)
-    if preset is None:
-        raise ValueError(f"unknown method {algorithm!r}; give one of {', '.join(PRESETS)}")
+    preset = preset_of(algorithm)
+    if task.limits and not preset.keeps_limits:
+        raise ValueError(
+            f"{preset.name} cannot search a task with limits; choose another method, or leave "
+            "the limits out"
+        )
     bound = _required(bound, preset.name)
     population = preset.population if population is None else population
     generations = preset.generations if generations is None else generations
-    settings = SearchSettings(bound, population, generations)
-    return preset.name, preset.build(population), settings
+    asked = SearchSettings(bound, population, generations)
+    return preset.name, preset.build(asked.population or 0, settings), asked
 
 
 def _own(

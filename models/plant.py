@@ -14,6 +14,8 @@ from dataclasses import Field, field, fields
 from numbers import Real
 from typing import Any, ClassVar, NamedTuple
 
+from models.drawing import Body, rigid_link
+
 Expression = Any
 """An SX scalar, an MX matrix or a number: casadi gives these no common base class."""
 
@@ -152,6 +154,27 @@ class Plant(ABC):
     @abstractmethod
     def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
         """Displacements of the tips that must come to rest [m], linear in `W` [m]."""
+
+    def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
+        """The structure as it is drawn, seen from above; give your own where it looks otherwise.
+
+        Parameters
+        ----------
+        angle : float
+            Joint angle [rad].
+        tips : sequence of float
+            Tip displacements [m], those of `tip_displacements` times the scale of the picture.
+
+        Returns
+        -------
+        sequence of Body
+            Its parts. Unless a plant says otherwise: for each tip a straight link of 1 m from the
+            joint, displaced across at its end.
+        """
+        return [
+            *(Body(rigid_link(1.0, angle, tip), rigid=True, tip=True) for tip in tips),
+            Body(rigid_link(1.0, angle)[:1], rigid=True),
+        ]
 
     @property
     def parameters(self) -> dict[str, float]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
 
+from metaheuristics import PRESETS
 from ocp import Front, epsilon_front, weighted_front
 
 LEVELS = (1e-4, 1e-3, 5e-3)
@@ -63,11 +64,18 @@ EPSILON = Method(
     "epsilon", "epsilon constraint", Kind.GRADIENT, sweep=partial(epsilon_front, at=LEVELS)
 )
 WEIGHTED = Method("weighted", "weighted sum", Kind.GRADIENT, sweep=weighted_front)
-NSGA2 = Method("nsga2", "NSGA-II", Kind.METAHEURISTIC)
-VEPSO = Method("vepso", "VEPSO", Kind.METAHEURISTIC)
-
-METHODS = {method.name: method for method in (EPSILON, WEIGHTED, NSGA2, VEPSO)}
+METHODS = {
+    method.name: method
+    for method in (
+        EPSILON,
+        WEIGHTED,
+        *(Method(name, preset.label, Kind.METAHEURISTIC) for name, preset in PRESETS.items()),
+    )
+}
 """Every method that a user can ask for, by name."""
+NSGA2, VEPSO = METHODS["nsga2"], METHODS["vepso"]
+PAPERS = (NSGA2, VEPSO)
+"""The searches of the paper, which a study runs where no others are asked for."""
 
 
 def method_of(name: str) -> Method:

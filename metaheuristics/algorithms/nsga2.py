@@ -63,6 +63,8 @@ class PaperNSGA2(NSGA2):
     ----------
     population : int
         Number of individuals, and of offspring a generation.
+    crossover, mutation : SBX, PM, optional
+        Others than the paper's.
 
     Raises
     ------
@@ -70,15 +72,19 @@ class PaperNSGA2(NSGA2):
         When the population is below 2: a pair is needed to cross.
     """
 
-    def __init__(self, population: int = 200) -> None:
+    def __init__(
+        self, population: int = 200, crossover: SBX | None = None, mutation: PM | None = None
+    ) -> None:
+        self._crossover = SBX(**CROSSOVER) if crossover is None else crossover
+        self._mutation = PM(**MUTATION) if mutation is None else mutation
         self._size = whole("population", population, 2)
         super().__init__(
             pop_size=self._size,
             n_offsprings=self._size,
             sampling=FloatRandomSampling(),
             selection=TournamentSelection(func_comp=binary_tournament, pressure=2),
-            crossover=SBX(**CROSSOVER),
-            mutation=PM(**MUTATION),
+            crossover=self._crossover,
+            mutation=self._mutation,
             survival=RankAndCrowding(crowding_func="cd"),
             eliminate_duplicates=ExactDuplicates(),
         )
@@ -91,8 +97,8 @@ class PaperNSGA2(NSGA2):
             "population": self._size,
             "sampling": "uniform in the box",
             "selection": "binary tournament by constraints, dominance, crowding distance",
-            "crossover": f"SBX({_stated(CROSSOVER)})",
-            "mutation": f"PM({_stated(MUTATION)})",
+            "crossover": f"SBX({_stated(self._crossover)})",
+            "mutation": f"PM({_stated(self._mutation)})",
             "survival": "rank and crowding distance",
             "duplicates": "none with equal coefficients",
         }
@@ -158,5 +164,6 @@ class PaperNSGA2(NSGA2):
         self.pop = individuals
 
 
-def _stated(values: Mapping[str, float]) -> str:
+def _stated(operator: Any) -> str:
+    values = {name: getattr(operator, name).value for name in ("prob", "prob_var", "eta")}
     return ", ".join(f"{name}={value:g}" for name, value in values.items())

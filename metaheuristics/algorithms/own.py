@@ -29,7 +29,7 @@ def own_algorithm(algorithm: object) -> Algorithm:
     """
     if not isinstance(algorithm, Algorithm):
         raise ValueError(
-            f"algorithm is {algorithm!r}; give {', '.join(PRESETS)} or an instance of one of "
+            f"algorithm is {algorithm!r}; give {', '.join(PRESETS)}, or an instance of one of "
             "pymoo's algorithms"
         )
     name = type(algorithm).__name__

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -84,7 +85,7 @@ class Loop:
         """
         try:
             while not interrupts and self._algorithm.has_next():
-                self._algorithm.next()
+                self._step()
                 # some algorithms, as MOEA/D, take many steps a generation
                 if self._algorithm.n_iter - 1 > len(self.history):
                     progress = self._record()
@@ -92,6 +93,12 @@ class Loop:
                         report(progress)
         except KeyboardInterrupt:  # raised by a report, say
             interrupts.append(signal.SIGINT)
+
+    def _step(self) -> None:
+        # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves
+        # all warnings of the process switched off
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            self._algorithm.next()
 
     def found(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Coefficients and objectives of the feasible, finite points of the front so far."""

@@ -14,12 +14,14 @@ from typing import Any, TypeGuard
 import casadi as ca
 import numpy as np
 
+from models.drawing import Body
 from models.plant import Expression, JointMotion, Plant
 
 _WRITE = {
     "modal_accelerations": ("self, joint, W, dW", "a list of W'' [m/s^2], one for each mode"),
     "torque": ("self, joint, W, dW, ddW", "one expression, the joint torque [N m]"),
     "tip_displacements": ("self, W", "a list of tip displacements [m]"),
+    "structure": ("self, angle, tips", "a list of models.Body"),
 }
 """For every method its arguments, and what it should return."""
 
@@ -72,6 +74,16 @@ class Calls:
             )
         return Outputs(accelerations, torque, tips)
 
+    def structure(self, angle: float, tips: Sequence[float]) -> list[Body]:
+        """The bodies of a plant's drawing; ValueError where it gives something else."""
+        found = self._called("structure", angle, tips)
+        if not isinstance(found, list | tuple) or not found:
+            raise self.wrong("structure", f"returns {_brief(found)}")
+        for entry in found:
+            if not isinstance(entry, Body):
+                raise self.wrong("structure", f"returns a list with {_brief(entry)}")
+        return list(found)
+
     def _listed(self, method: str, *arguments: object) -> list[Expression]:
         found = self._called(method, *arguments)
         if not isinstance(found, list | tuple):
@@ -104,7 +116,10 @@ class Calls:
             ) from None
         except Exception as error:
             remedy = ""
-            if isinstance(error, RuntimeError | TypeError):  # what casadi raises over its symbols
+            equation = method != "structure"
+            if equation and isinstance(
+                error, RuntimeError | TypeError
+            ):  # what casadi raises over its symbols
                 remedy = (
                     "write it with casadi.cos, casadi.fmax, casadi.if_else and so on: math's "
                     "functions, if, max and float() take no symbols"

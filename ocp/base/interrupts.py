@@ -56,15 +56,6 @@ def keep_interrupts() -> Iterator[None]:
 
 
 @contextmanager
-def defer_interrupts() -> Iterator[None]:
-    """Let the block run to its end when Ctrl-C comes during it; raise KeyboardInterrupt then."""
-    with note_interrupts() as came:
-        yield
-    if came:
-        raise KeyboardInterrupt
-
-
-@contextmanager
 def note_interrupts() -> Iterator[list[int]]:
     """Let the block run to its end when Ctrl-C comes during it; the block can see that it came.
 

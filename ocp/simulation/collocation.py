@@ -294,7 +294,7 @@ def _times(factor: Expression, entry: Expression) -> Expression:
 
 def is_zero(entry: Expression) -> bool:
     """Whether an entry is nothing whatever the symbols are: modes that do not act on each other."""
-    return isinstance(entry, float) and entry == 0
+    return isinstance(entry, float) and entry == 0.0
 
 
 def _combine(

@@ -72,7 +72,12 @@ def plan_files(
     ]
 
 
-def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequence[str]]) -> None:
+def refuse_idle(
+    context: click.Context,
+    method: str,
+    only_for: Mapping[str, Sequence[str]],
+    called: str = "",
+) -> None:
     """Refuse an option that would have no effect; ValueError says what it is for.
 
     Parameters
@@ -83,10 +88,12 @@ def refuse_idle(context: click.Context, method: str, only_for: Mapping[str, Sequ
         What was chosen.
     only_for : mapping of str to sequence of str
         For each such option the choices for which it does something.
+    called : str
+        What these are called, where they are too many to name.
     """
     for name, methods in only_for.items():
         typed = context.get_parameter_source(name) is not ParameterSource.DEFAULT
         if typed and method not in methods:
             *some, last = methods
-            known = f"{', '.join(some)} and {last}" if some else last
+            known = called or (f"{', '.join(some)} and {last}" if some else last)
             raise ValueError(f"--{name} is for {known}, not for {method}; leave it out")

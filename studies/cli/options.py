@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,10 +12,12 @@ import click
 
 from models import Plant, load_plant_file
 from ocp.base.files import check_writable
+from ocp.base.names import nearest
 from ocp.task.quantities import QUANTITIES, Quantity
 from studies.cli.plants import parse_error, parse_plant, parse_setting
 from studies.cli.quantities import (
     is_number,
+    literal,
     parse_angle,
     parse_coefficients,
     parse_length,
@@ -55,6 +57,22 @@ class _Angle(Parsed):
         """Read the text, and note where it has no unit."""
         if isinstance(value, str) and is_number(value) and param and ctx:
             ctx.meta.setdefault(_BARE, {})[param.name] = value.strip()
+        return super().convert(value, param, ctx)
+
+
+class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
+    """One of several names; an error suggests the nearest one."""
+
+    def __init__(self, what: str, names: Iterable[str]) -> None:
+        super().__init__(list(names))
+        self._what = what
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The name."""
+        if isinstance(value, str) and value not in self.choices:
+            hint = nearest(value, self.choices)
+            known = ", ".join(self.choices)
+            self.fail(f"unknown {self._what} {value!r}; {hint}(known: {known})", param, ctx)
         return super().convert(value, param, ctx)
 
 
@@ -114,7 +132,10 @@ def _is_plant_file(text: str) -> Mapping[str, type[Plant]]:
 
 
 PLANT = Parsed("plant", parse_plant)
-SETTING = Parsed("parameter=value", parse_setting)
+SETTING = Parsed("parameter=value", partial(parse_setting, what="a parameter", example="omega=9"))
+METHOD_SETTING = Parsed(
+    "name=value", partial(parse_setting, what="a setting", example="mutation=1")
+)
 ERROR = Parsed("name=share", parse_error)
 ANGLE = _Angle("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
@@ -159,6 +180,59 @@ def _limit_option(quantity: Quantity) -> Callable[[F], F]:
         help_text = f"{words} [{quantity.unit}], or as 60deg."
         return click.option(option, type=Parsed(quantity.name, parse), help=help_text)
     return click.option(option, type=float, help=f"{words} [{quantity.unit}].")
+
+
+def method_settings_option(example: str) -> Callable[[F], F]:
+    """The option for what else a metaheuristic is set to."""
+    return click.option(
+        "--setting", type=METHOD_SETTING, multiple=True,
+        help=f"Metaheuristic: set one of its settings, {example}; may be repeated. "
+        "docs/methods.md lists them.",
+    )  # fmt: skip
+
+
+def settings_given(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | bool | str]:
+    """Settings as they were typed; ValueError where one is given twice."""
+    given: dict[str, float | int | bool | str] = {}
+    for name, text in pairs:
+        if name in given:
+            raise ValueError(f"setting {name} is given twice; give it once")
+        given[name] = literal(text)
+    return given
+
+
+def settings_by_method(
+    pairs: Iterable[tuple[str, str]], methods: Sequence[str]
+) -> dict[str, dict[str, float | int | bool | str]]:
+    """Settings of several methods, each typed as ``method.name=value``, by method.
+
+    Parameters
+    ----------
+    pairs : iterable of (str, str)
+        Names and values.
+    methods : sequence of str
+        The methods that run.
+
+    Returns
+    -------
+    dict
+        The settings of each method that has one.
+
+    Raises
+    ------
+    ValueError
+        When a name names no method that runs, or is given twice.
+    """
+    found: dict[str, dict[str, float | int | bool | str]] = {}
+    for name, value in settings_given(pairs).items():
+        method, dot, own = name.partition(".")
+        if not dot or method not in methods:
+            raise ValueError(
+                f"setting {name} names no method that runs; give it as {methods[0]}.{own or name}, "
+                f"with one of {', '.join(methods)}"
+            )
+        found.setdefault(method, {})[own] = value
+    return found
 
 
 plant_file_option = partial(

@@ -24,11 +24,11 @@ def parse_plant(name: str) -> type[Plant]:
     )
 
 
-def parse_setting(text: str) -> tuple[str, str]:
-    """Read the setting of a parameter, ``omega=9``; ValueError when it is none."""
+def parse_setting(text: str, what: str, example: str) -> tuple[str, str]:
+    """Read what is set to which value, ``omega=9``; ValueError when it is nothing."""
     name, equals, value = text.partition("=")
     if not (equals and name.strip() and value.strip()):
-        raise ValueError(f"{text!r} sets nothing; give a parameter and its value, as omega=9")
+        raise ValueError(f"{text!r} sets nothing; give {what} and its value, as {example}")
     return name.strip(), value.strip()
 
 

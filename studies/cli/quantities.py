@@ -130,3 +130,16 @@ def _with_unit(text: str, units: dict[str, float], kind: str, examples: str) -> 
         return float(text)  # nan and inf, for the task to refuse with its own words
     except ValueError:
         raise ValueError(f"{text!r} is not {kind}; give {examples}") from None
+
+
+def literal(text: str) -> float | int | bool | str:
+    """Read a value of any kind: true or false, a number, or else a word."""
+    words = {"true": True, "false": False}
+    if text.lower() in words:
+        return words[text.lower()]
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text

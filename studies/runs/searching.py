@@ -45,6 +45,7 @@ def plan_by_search(
     seed: int,
     polish: bool,
     quiet: bool = False,
+    settings: Mapping[str, object] | None = None,
 ) -> Plan:
     """The cheapest point of a metaheuristic's front within the residual limit, as a plan.
 
@@ -53,7 +54,7 @@ def plan_by_search(
     task : PointToPoint
         The move.
     method : Method
-        A metaheuristic, run with the paper's settings.
+        A metaheuristic, run with its own population and generations.
     profile : JointProfile
         How the joint moves.
     bound : float or None
@@ -67,6 +68,8 @@ def plan_by_search(
         Improve the point by the gradient, at the residual limit that was asked for.
     quiet : bool
         Show no progress.
+    settings : mapping, optional
+        What else the method is set to.
 
     Returns
     -------
@@ -76,7 +79,10 @@ def plan_by_search(
     limit = limit_of(task, residual_limit) or SEARCH_RESIDUAL
     SolveSettings(residual_limit=limit, seed=seed)  # refused before the search, not after
     with search_display(Console(stderr=True), quiet=quiet) as report:
-        front = search(task, method.name, profile=profile, bound=bound, seed=seed, report=report)
+        front = search(
+            task, method.name, profile=profile, bound=bound, settings=settings, seed=seed,
+            report=report,
+        )  # fmt: skip
     if not front.complete:
         raise QuietarmError(
             "interrupted; a plan needs a whole search, and nothing was written; `quietarm front` "
@@ -86,7 +92,7 @@ def plan_by_search(
         point = front.cheapest(limit)
     except ValueError as error:
         raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
-    settings = {**front.settings, "seed": seed, "residual_limit": limit}
+    used = {**front.settings, "seed": seed, "residual_limit": limit}
     stopped = None
     if polish:
         try:
@@ -100,13 +106,13 @@ def plan_by_search(
             provenance = replace(
                 polished.provenance,
                 method=f"{method.name}, polished by ipopt",
-                search=settings,
+                search=used,
                 seconds=front.seconds + polished.provenance.seconds,
             )
             return replace(polished, provenance=provenance)
     with note_interrupts() if stopped else nullcontext():
         found = evaluate_coefficients(
-            task, point.coefficients, profile=profile, method=method.name, settings=settings
+            task, point.coefficients, profile=profile, method=method.name, settings=used
         )
     provenance = replace(found.provenance, seconds=front.seconds, stopped=stopped)
     return replace(found, provenance=provenance)
@@ -146,7 +152,7 @@ def run_front(
         after what was found is written.
     """
     runs = options["runs"]
-    if runs > 1 and (options["checkpoint"] or options["resume"]):
+    if runs > 1 and (options.get("checkpoint") or options.get("resume")):
         raise ValueError("--checkpoint and --resume are for one run, not with --runs")
     seeds = seeds_of(options["seed"], runs)
     targets = _targets("--output", output, seeds)
@@ -218,9 +224,9 @@ def _refuse_same_files(
 ) -> None:
     written: list[tuple[str, Path | None]] = [("--output", path) for path in outputs]
     written += [*(("--csv", path) for path in tables), ("--figure", figure)]
-    refuse_same_file([*written, ("--checkpoint", options["checkpoint"])])
+    refuse_same_file([*written, ("--checkpoint", options.get("checkpoint"))])
     # a checkpoint may be continued in the same file, but not overwritten by a front
-    refuse_same_file([*written, ("--resume", options["resume"])])
+    refuse_same_file([*written, ("--resume", options.get("resume"))])
 
 
 def _targets(option: str, output: Path | None, seeds: range) -> dict[int, Path]:

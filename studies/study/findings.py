@@ -10,10 +10,9 @@ import numpy as np
 from studies.comparison.measures import Comparison, Group
 from studies.comparison.staircase import within
 from studies.display.words import millimetres, title_of
-from studies.methods import WEIGHTED, Kind, Method, methods_of
+from studies.methods import WEIGHTED, Kind, Method
 from studies.study.work import CaseStudy, Study
 
-SEARCHES = methods_of(Kind.METAHEURISTIC)
 STILL_LEVEL = 1
 """Which of the comparison's residual levels the summary speaks of."""
 _ALIKE = 1e-4
@@ -56,11 +55,17 @@ def _listed(words: Sequence[str]) -> str:
 
 def case_findings(found: CaseStudy) -> list[str]:
     """What was found for one task."""
-    comparison = found.comparison
-    lines = [_best(comparison), *(_search(found, method) for method in SEARCHES), _weighted(found)]
-    lines += [_polish(found, method) for method in SEARCHES]
+    comparison, searches = found.comparison, _searches_of(found)
+    lines = [_best(comparison), *(_search(found, method) for method in searches), _weighted(found)]
+    lines += [_polish(found, method) for method in searches]
     lines += [_paper(found), _floor(found), *found.failures]
     return [line for line in lines if line]
+
+
+def _searches_of(found: CaseStudy) -> list[Method]:
+    """The metaheuristics that found something, in the order of the work."""
+    methods = [group.method for group in found.comparison.groups if not group.method.polished]
+    return [method for method in methods if method.kind is Kind.METAHEURISTIC]
 
 
 def _best(comparison: Comparison) -> str:
@@ -174,7 +179,8 @@ def _floor(found: CaseStudy) -> str:
 
 def findings(study: Study) -> list[str]:
     """What the whole study found, in a few sentences."""
-    lines = [_whose_hypervolume(study), *(_searches(study, method) for method in SEARCHES)]
+    searches = study.settings.searches
+    lines = [_whose_hypervolume(study), *(_searches(study, method) for method in searches)]
     lines += [_polishes(study), _weights(study), _floors(study), _times(study)]
     return [line for line in lines if line]
 
@@ -221,7 +227,7 @@ def _searches(study: Study, method: Method) -> str:
 
 def _polishes(study: Study) -> str:
     words: list[str] = []
-    for method in SEARCHES:
+    for method in study.settings.searches:
         medians = [
             float(np.median([gain.share for gain in found.polishes[method.name].gains]))
             for found in study.cases

@@ -6,8 +6,8 @@ from metaheuristics import PRESETS
 from studies.comparison.tables import how_to_read, tables, units
 from studies.display.words import counted, millimetres, title_of
 from studies.figures.comparison import BANDS, PANELS, panel_figure
-from studies.methods import LEVELS, Method
-from studies.study.findings import SEARCHES, STILL_LEVEL, case_findings, findings
+from studies.methods import LEVELS, PAPERS, Method
+from studies.study.findings import STILL_LEVEL, case_findings, findings
 from studies.study.html_page import Markup, bullets, element, joined, page, picture, table_element
 from studies.study.overview import gap_figure, overview_table
 from studies.study.work import CaseStudy, Study, StudySettings
@@ -116,7 +116,7 @@ def method_lines(settings: StudySettings) -> list[str]:
     """What the methods are, and the settings that they ran with."""
     levels = ", ".join(millimetres(level) for level in LEVELS)
     of_seeds = f"from {counted(settings.runs, 'seed')}"
-    searches = [_search_line(method, settings, of_seeds) for method in SEARCHES]
+    searches = [_search_line(method, settings, of_seeds) for method in settings.searches]
     return [
         "epsilon constraint: the least energy at each of a series of residual limits, "
         f"{levels} among them, by IPOPT.",
@@ -134,11 +134,15 @@ def _search_line(method: Method, settings: StudySettings, of_seeds: str) -> str:
     used = (
         settings.population or preset.population, settings.generations or preset.generations,
     )  # fmt: skip
+    given = settings.settings.get(method.name, {})
+    others = "".join(f", {name} {value}" for name, value in given.items())
+    asked = f"with a population of {used[0]} and {counted(used[1], 'generation')}{others}"
+    if method not in PAPERS:
+        return f"{method.label} ({preset.source}): {of_seeds}, {asked}."
     papers = (preset.population, preset.generations)
     beside = (
-        "as in the paper" if used == papers else "where the paper has {} and {}".format(*papers)
+        "as in the paper"
+        if used == papers and not given
+        else "where the paper has {} and {}".format(*papers)
     )
-    return (
-        f"{method.label}: the paper's search, {of_seeds}, with a population of {used[0]} and "
-        f"{counted(used[1], 'generation')}, {beside}."
-    )
+    return f"{method.label}: the paper's search, {of_seeds}, {asked}, {beside}."

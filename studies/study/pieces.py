@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
+from metaheuristics.algorithms.presets import preset_of
+from metaheuristics.algorithms.settings import with_defaults
 from metaheuristics.ensemble import one_seed, seeds_of
 from metaheuristics.runs.settings import number_of_generations, number_of_individuals
 from metaheuristics.sharing.pieces import Done, NotTriedError, Piece, Say, to_the_end
@@ -23,7 +25,7 @@ from ocp import (
 from ocp.answers.provenance import number_of_points
 from ocp.base.checks import whole
 from studies.display.words import title_of
-from studies.methods import Kind, Method, methods_of
+from studies.methods import METHODS, PAPERS, Kind, Method, methods_of
 from studies.paper.case import Case
 
 FLOOR = "floor"
@@ -48,7 +50,11 @@ class StudySettings:
     scheduler : str, optional
         Address of a dask scheduler whose workers share it instead.
     population, generations : int, optional
-        Of the metaheuristics; the paper's by default.
+        Of the metaheuristics; their own by default.
+    methods : tuple of str
+        The metaheuristics.
+    settings : mapping, optional
+        What else each is set to, by its name.
 
     Raises
     ------
@@ -64,6 +70,8 @@ class StudySettings:
     scheduler: str | None = None
     population: int | None = None
     generations: int | None = None
+    methods: tuple[str, ...] = tuple(method.name for method in PAPERS)
+    settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         CycloidPolynomial(self.terms)
@@ -75,6 +83,13 @@ class StudySettings:
             number_of_individuals(self.population)
         if self.generations is not None:
             number_of_generations(self.generations)
+        for name in self.methods:
+            with_defaults(name, preset_of(name).settings, self.settings.get(name))
+
+    @property
+    def searches(self) -> tuple[Method, ...]:
+        """The metaheuristics."""
+        return tuple(METHODS[name] for name in self.methods)
 
 
 class Key(NamedTuple):
@@ -98,13 +113,14 @@ def pieces_of(case: Case, settings: StudySettings) -> list[Piece]:
         key = Key(case, method.name)
         add(key, partial(_swept, case, method, settings), *earlier)
         earlier.append(key)
-    search = {
+    shared = {
         "profile": CycloidPolynomial(settings.terms),
         "bound": case.bound,
         "population": settings.population,
         "generations": settings.generations,
     }
-    for method in methods_of(Kind.METAHEURISTIC):
+    for method in settings.searches:
+        search = {**shared, "settings": settings.settings.get(method.name)}
         seeds = seeds_of(settings.seed, settings.runs)
         keys = [Key(case, method.name, seed) for seed in seeds]
         for seed, key in zip(seeds, keys, strict=True):

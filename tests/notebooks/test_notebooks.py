@@ -1,20 +1,28 @@
-"""The notebooks run as they stand, and are committed with what they show."""
-
-import base64
-from pathlib import Path
+"""The notebooks and their exercises run as they stand, and are committed with what they show."""
 
 import nbformat
 import pytest
-from nbclient import NotebookClient
+from notebook_files import (
+    NOTEBOOKS,
+    PATHS,
+    code_cells,
+    execute,
+    pictures,
+    printed,
+    read,
+    slide_type,
+    solutions,
+)
+from same_numbers import differences
 
-NOTEBOOKS = Path(__file__).parent.parent.parent / "notebooks"
-PATHS = sorted(NOTEBOOKS.glob("*.ipynb"))
-
-each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.name)
+each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
 
 
-def code_cells(notebook):
-    return [cell for cell in notebook.cells if cell.cell_type == "code"]
+@pytest.fixture(scope="module", params=PATHS, ids=lambda path: path.stem)
+def both(request, tmp_path_factory):
+    """A notebook as committed and executed anew, in a folder that is not the repository's."""
+    folder = tmp_path_factory.mktemp("notebook")
+    return read(request.param), execute(request.param, folder), folder
 
 
 def kinds(notebook):
@@ -26,78 +34,111 @@ def kinds(notebook):
     ]
 
 
-def pictures(notebook):
-    found = [
-        output.get("data", {}).get("image/png")
-        for cell in code_cells(notebook)
-        for output in cell.outputs
+def folded(notebook):
+    return [
+        found["shown"]
+        for cell in notebook.cells
+        if cell.cell_type == "markdown"
+        for found in solutions(cell.source)
     ]
-    return [base64.b64decode(picture) for picture in found if picture]
-
-
-@pytest.fixture(scope="module", params=PATHS, ids=lambda path: path.name)
-def both(request, tmp_path_factory):
-    """A notebook as committed and executed anew, in a folder that is not the repository's."""
-    committed = nbformat.read(request.param, as_version=4)
-    anew = nbformat.read(request.param, as_version=4)
-    for cell in code_cells(anew):
-        cell.outputs, cell.execution_count = [], None
-    folder = tmp_path_factory.mktemp("notebook")
-    # Raises CellExecutionError, with the cell and its traceback, where one fails.
-    NotebookClient(anew, timeout=600, resources={"metadata": {"path": str(folder)}}).execute()
-    return committed, anew, folder
-
-
-def test_there_is_the_notebook_of_the_readme():
-    assert "01_plan_a_move.ipynb" in [path.name for path in PATHS]
 
 
 def test_it_runs_and_writes_no_warning(both):
-    _, anew, _ = both
-    shown = [output for cell in code_cells(anew) for output in cell.outputs]
+    _, anew, folder = both
+    shown = [output for cell in code_cells(anew.notebook) for output in cell.outputs]
     assert shown
     assert [o for o in shown if o.output_type == "error" or o.get("name") == "stderr"] == []
-
-
-def test_it_leaves_nothing_behind(both):
-    assert list(both[2].iterdir()) == []
+    assert list(folder.iterdir()) == []  # it leaves nothing behind
 
 
 def test_it_shows_the_same_kinds_of_things_as_committed(both):
     committed, anew, _ = both
-    assert kinds(anew) == kinds(committed)
-    assert len(pictures(anew)) >= 1
+    assert kinds(anew.notebook) == kinds(committed)
+
+
+def test_it_prints_the_numbers_that_are_committed(both):
+    committed, anew, _ = both
+    for then, now in zip(code_cells(committed), code_cells(anew.notebook), strict=True):
+        if "varies" not in then.metadata.get("tags", []):
+            assert differences(printed(then), printed(now)) == [], then.source
+
+
+def test_its_solutions_print_what_they_say(both):
+    committed, anew, _ = both
+    for then, now in zip(folded(committed), anew.solutions, strict=True):
+        assert differences(then, now) == []
+
+
+@each_notebook
+def test_it_says_first_what_it_is_for_and_last_has_three_exercises(path):
+    cells = read(path).cells
+    assert cells[0].source.startswith("# ")
+    assert "**You will be able to**" in cells[0].source
+    assert "**You need**" in cells[0].source
+    exercises = [c for c in cells if c.cell_type == "markdown" and solutions(c.source)]
+    assert len(exercises) == sum("<details>" in cell.source for cell in cells) == 3
+    begin = next(n for n, cell in enumerate(cells) if cell.source.startswith("## Exercises"))
+    assert all(cells.index(exercise) >= begin for exercise in exercises)
 
 
 @each_notebook
 def test_it_is_committed_executed_from_top_to_bottom(path):
-    cells = code_cells(nbformat.read(path, as_version=4))
+    cells = code_cells(read(path))
     assert [cell.execution_count for cell in cells] == list(range(1, len(cells) + 1))
     assert any(cell.outputs for cell in cells)
 
 
 @each_notebook
 def test_it_is_committed_without_errors_or_the_traces_of_one_run(path):
-    notebook = nbformat.read(path, as_version=4)
+    notebook = read(path)
     nbformat.validate(notebook)
     assert set(notebook.metadata) <= {"kernelspec", "language_info"}
     assert set(notebook.metadata.language_info) == {"name"}
-    assert [dict(cell.metadata) for cell in notebook.cells] == [{}] * len(notebook.cells)
+    for cell in notebook.cells:
+        assert set(cell.metadata) <= {"slideshow", "tags"}
+        assert set(cell.metadata.get("tags", [])) <= {"varies"}
     assert not [o for c in code_cells(notebook) for o in c.outputs if o.output_type == "error"]
 
 
 @each_notebook
-def test_its_pictures_are_pictures(path):
-    for picture in pictures(nbformat.read(path, as_version=4)):
+def test_its_slides_follow_its_headings_and_pictures(path):
+    cells = read(path).cells
+    placed = [cell.metadata.get("slideshow", {}).get("slide_type", "-") for cell in cells]
+    assert placed == [slide_type(cell) for cell in cells]
+
+
+@each_notebook
+def test_its_pictures_are_pictures_and_it_is_small_enough_to_be_committed(path):
+    assert path.stat().st_size < 700_000
+    found = pictures(read(path))
+    assert found
+    for picture in found:
         assert picture.startswith(b"\x89PNG\r\n\x1a\n")
         assert len(picture) > 10_000  # something is drawn
 
 
-@each_notebook
-def test_it_is_small_enough_to_be_committed(path):
-    assert path.stat().st_size < 700_000
-
-
 def test_the_picture_of_the_readme_is_the_last_of_the_first_notebook():
-    first = nbformat.read(NOTEBOOKS / "01_plan_a_move.ipynb", as_version=4)
+    first = read(NOTEBOOKS / "01_plan_a_move.ipynb")
     assert (NOTEBOOKS / "move.png").read_bytes() == pictures(first)[-1]
+
+
+def test_the_list_of_notebooks_has_every_one():
+    text = (NOTEBOOKS / "README.md").read_text()
+    assert [path.name for path in PATHS if f"]({path.name})" not in text] == []
+
+
+@pytest.mark.parametrize(
+    ("then", "now", "same"),
+    [
+        ("F1 = 77.1146 mm", "F1 =   77.1145 mm", True),  # the last digit, and a wider column
+        ("F1 = 77.1146 mm", "F1 = 77.2146 mm", False),
+        ("F1 = 77.1146 mm", "F2 = 77.1146 mm", False),
+        ("5.0e-07 mm", "3.2e-08 mm", True),  # at rest, both
+        ("26% of it", "27% of it", True),  # rounded
+        ("26% of it", "36% of it", False),
+        ("3 of 5 seeds", "4 of 5 seeds", False),  # counts are equal
+        ("-0.25", "0.25", False),
+    ],
+)
+def test_numbers_are_compared_within_their_last_digit(then, now, same):
+    assert (differences(then, now) == []) is same

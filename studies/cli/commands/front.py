@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from metaheuristics import PRESETS
 from studies.cli.arguments import refuse_idle, task_of
 from studies.cli.options import (
     INPUT,
@@ -14,9 +15,12 @@ from studies.cli.options import (
     PICTURE,
     STATE,
     WEIGHTS,
+    Named,
     family_option,
+    method_settings_option,
     quiet_option,
     robust_option,
+    settings_given,
     task_options,
     terms_option,
     workers_options,
@@ -26,22 +30,26 @@ from studies.profiles import profile_of
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
+RESUMABLE = [name for name in METAHEURISTICS if PRESETS[name].resumable]
+_OF_SEARCHES: dict[str, list[str]] = dict.fromkeys(
+    ("population", "generations", "setting", "runs", "workers", "scheduler"), METAHEURISTICS
+)
 _ONLY_FOR = {
     "points": GRADIENT,
     "starts": GRADIENT,
     "weights": [WEIGHTED.name],
-    **dict.fromkeys(("population", "generations", "runs"), METAHEURISTICS),
-    **dict.fromkeys(("workers", "scheduler", "checkpoint", "resume"), METAHEURISTICS),
-}  # fmt: skip
+    "checkpoint": RESUMABLE,
+    "resume": RESUMABLE,
+}
 """For every option that not all methods have: the methods that have it."""
 
 
 @click.command()
 @task_options
 @click.option(
-    "--method", type=click.Choice(list(METHODS)), required=True,
+    "--method", type=Named("method", METHODS), required=True,
     help="epsilon: the gradient, at one residual limit after another; weighted: the gradient, for "
-    "one weighted sum after another; nsga2, vepso: a metaheuristic.",
+    "one weighted sum after another; all others: a metaheuristic.",
 )  # fmt: skip
 @family_option
 @terms_option
@@ -62,21 +70,22 @@ _ONLY_FOR = {
 )  # fmt: skip
 @click.option(
     "--population", type=int,
-    help="Metaheuristic: individuals, or particles in a swarm; the paper's by default.",
+    help="Metaheuristic: individuals, or particles in a swarm; docs/methods.md has the defaults.",
 )  # fmt: skip
-@click.option("--generations", type=int, help="Metaheuristic: generations; the paper's by default.")
+@click.option("--generations", type=int, help="Metaheuristic: generations.")
+@method_settings_option("as in --setting crossover=0.7")
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed; of several, the first.")
 @click.option(
     "--runs", type=int, default=1, show_default=True, help="Metaheuristic: number of seeds."
 )
 @workers_options
 @click.option(
-    "--checkpoint", type=STATE, help="Metaheuristic: write the state here every few seconds."
+    "--checkpoint", type=STATE, help="nsga2 and vepso: write the state here every few seconds."
 )
 @click.option(
     "--resume",
     type=INPUT,
-    help="Metaheuristic: continue from this checkpoint. To save what follows as well, give "
+    help="nsga2 and vepso: continue from this checkpoint. To save what follows as well, give "
     "--checkpoint, which may name the same file.",
 )
 @click.option(
@@ -103,12 +112,12 @@ def front(
     quiet: bool,
     **rest: Any,
 ) -> None:
-    """Find the trade-off of residual and energy by the gradient, or with NSGA-II or VEPSO.
+    """Find the trade-off of residual and energy by the gradient, or with a metaheuristic.
 
     Ctrl-C ends the work early and keeps what was found.
 
     \b
-    Examples; the metaheuristics with the paper's settings:
+    Examples; NSGA-II and VEPSO with the paper's settings:
       quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --method epsilon \\
           --output epsilon.json --csv epsilon.csv --figure epsilon.png
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method weighted
@@ -116,14 +125,18 @@ def front(
           --output front.json --figure front.png
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method vepso \\
           --runs 5 --workers 2 --output front.json --figure fronts.png
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
+          --population 100 --generations 200 --setting crossover=0.7
     """  # noqa: D301  # \b is click's: do not rewrap
     method = METHODS[rest.pop("method")]
     refuse_idle(context, method.name, _ONLY_FOR)
+    refuse_idle(context, method.name, _OF_SEARCHES, "a metaheuristic")
     profile, terms = rest.pop("profile"), rest.pop("terms")
+    only_for = {**_ONLY_FOR, **_OF_SEARCHES}
     names = ["bound", "seed"]
-    names += [name for name, methods in _ONLY_FOR.items() if method.name in methods]
+    names += [name for name, methods in only_for.items() if method.name in methods]
     options = {name: rest[name] for name in names}
-    for name in (*_ONLY_FOR, "bound", "seed"):
+    for name in (*only_for, "bound", "seed"):
         del rest[name]
     task = task_of(rest)
     options["profile"] = profile_of(profile, task, terms)
@@ -134,4 +147,6 @@ def front(
             refuse_idle(context, "--weights", {"points": ("weights that the sweep chooses",)})
     else:
         from studies.runs.searching import run_front as run
+
+        options["settings"] = settings_given(options.pop("setting"))
     run(task, method, options, output, csv_file, figure, quiet)

@@ -11,10 +11,13 @@ from ocp import plan_move
 from studies.cli.arguments import plan_files, refuse_idle, split_options
 from studies.cli.options import (
     LENGTH,
+    Named,
+    method_settings_option,
     output_options,
     profile_option,
     quiet_option,
     robust_option,
+    settings_given,
     task_options,
     terms_option,
 )
@@ -26,7 +29,7 @@ from studies.profiles import FAMILIES, profile_of
 from studies.reports.plan import print_plan
 
 IPOPT = "ipopt"
-OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "polish")
+OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "setting", "polish")
 """Options that need a profile with coefficients."""
 SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 
@@ -44,10 +47,11 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random starts.")
 @click.option(
-    "--method", type=click.Choice([IPOPT, *SEARCHES]), default=IPOPT, show_default=True,
+    "--method", type=Named("method", [IPOPT, *SEARCHES]), default=IPOPT, show_default=True,
     help="The gradient, or the cheapest point of a metaheuristic's front within the residual "
     "limit (1mm where that is 0).",
 )  # fmt: skip
+@method_settings_option("as in --setting crossover=0.7")
 @click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
 @robust_option
 @quiet_option
@@ -62,6 +66,7 @@ def plan(
     starts: int,
     seed: int,
     method: str,
+    setting: tuple[tuple[str, str], ...],
     polish: bool,
     quiet: bool,
     **rest: Any,
@@ -82,9 +87,9 @@ def plan(
     task, outputs = split_options(rest)
     refuse_idle(context, profile, {name: list(FAMILIES) for name in OF_FAMILIES})
     refuse_idle(context, method, {"starts": [IPOPT]})
+    refuse_idle(context, method, {"setting": SEARCHES}, "a metaheuristic")
     if method == IPOPT and polish:
-        named = " or ".join(SEARCHES)
-        raise ValueError(f"--polish is for a metaheuristic's point; give --method {named}")
+        raise ValueError("--polish is for a metaheuristic's point; give a --method, as nsga2")
     motions = profile_of(profile, task, terms)
     if method == IPOPT:
         with working("solving", Console(stderr=True), quiet=quiet):
@@ -95,8 +100,9 @@ def plan(
         from studies.runs.searching import plan_by_search
 
         found = plan_by_search(
-            task, METHODS[method], motions, bound, residual_limit, seed, polish, quiet
-        )
+            task, METHODS[method], motions, bound, residual_limit, seed, polish, quiet,
+            settings_given(setting),
+        )  # fmt: skip
 
     def show(console: Console) -> None:
         print_plan(console, found)

@@ -10,8 +10,19 @@ import click
 from click.core import ParameterSource
 from rich.console import Console
 
+from metaheuristics import PRESETS
 from studies.cli.arguments import task_of
-from studies.cli.options import FOLDER, OUTPUT, quiet_option, task_options, workers_options
+from studies.cli.options import (
+    FOLDER,
+    OUTPUT,
+    Named,
+    method_settings_option,
+    quiet_option,
+    settings_by_method,
+    task_options,
+    workers_options,
+)
+from studies.methods import PAPERS
 
 
 def _not_required(command: click.Command) -> click.Command:
@@ -31,11 +42,18 @@ def _not_required(command: click.Command) -> click.Command:
 )
 @click.option("--runs", type=int, default=3, show_default=True, help="Seeds of each metaheuristic.")
 @click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
+@click.option(
+    "--method", "methods", type=Named("metaheuristic", PRESETS), multiple=True,
+    default=[method.name for method in PAPERS], show_default=True,
+    help="A metaheuristic to run; may be repeated.",
+)  # fmt: skip
 @workers_options
 @click.option(
-    "--population", type=int, help="Individuals, or particles in a swarm; the paper's by default."
-)
-@click.option("--generations", type=int, help="Generations; the paper's by default.")
+    "--population", type=int,
+    help="Individuals, or particles in a swarm; docs/methods.md has the defaults.",
+)  # fmt: skip
+@click.option("--generations", type=int, help="Generations.")
+@method_settings_option("as in --setting nsga2.crossover=0.7")
 @click.option(
     "--output", type=OUTPUT, default="study.html", show_default=True, help="Write the report here."
 )
@@ -48,14 +66,16 @@ def study(
     """Run every method on a task, compare what they find, and write one page of HTML.
 
     Without PLANT, on all six conditions of the paper, which takes some minutes. The methods:
-    fronts by gradient (epsilon-constraint and weighted sum), NSGA-II and VEPSO from several seeds,
-    both polished by the gradient, and the floor. The page stands alone: pictures are inside.
+    fronts by gradient (epsilon-constraint and weighted sum), NSGA-II and VEPSO or other
+    metaheuristics from several seeds, each polished by the gradient, and the floor. The page stands
+    alone: pictures are inside.
 
     \b
     Examples:
       quietarm study --output study.html
       quietarm study arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --runs 5
       quietarm study single-link --target 30deg --duration 0.8 --torque-limit 0.2 --fronts fronts
+      quietarm study single-link --target 30deg --duration 0.8 --method smsemoa --method gde3
     """  # noqa: D301  # \b is click's: do not rewrap
     from ocp import QuietarmError
     from studies.display.progress import progress
@@ -70,7 +90,11 @@ def study(
     from studies.study.work import amount_of_work, run_study
 
     names = ("terms", "points", "runs", "seed", "workers", "scheduler", "population", "generations")
-    settings = StudySettings(**{name: rest.pop(name) for name in names})
+    settings = StudySettings(
+        **{name: rest.pop(name) for name in names},
+        methods=tuple(dict.fromkeys(rest["methods"])),
+        settings=settings_by_method(rest.pop("setting"), rest.pop("methods")),
+    )
     bound = rest.pop("bound")
     if rest["plant"] is None and rest["plant_file"] is None:
         _refuse_without_plant(context, ("bound", *rest))

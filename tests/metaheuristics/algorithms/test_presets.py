@@ -1,22 +1,45 @@
-"""The registry of the algorithms that are known by name."""
+"""The registry of the methods that are known by name."""
+
+import inspect
+import re
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 
 from metaheuristics import PRESETS, VEPSO, PaperNSGA2
+from metaheuristics.algorithms import building
+from metaheuristics.algorithms.presets import preset_of
+
+DOCUMENT = Path(__file__).parents[3] / "docs" / "methods.md"
+NUMBA = {"agemoea", "agemoea2"}  # pymoo compiles these for seconds as they load
+NAMES = pytest.mark.parametrize("name", [name for name in PRESETS if name not in NUMBA])
 
 
-def test_the_papers_settings_are_the_defaults():
+def test_the_papers_settings_are_the_defaults_of_its_searches():
     # sections 3.1 and 3.2
-    settings = {name: (p.population, p.generations) for name, p in PRESETS.items()}
-    assert settings == {"vepso": (100, 200), "nsga2": (200, 500)}
+    assert (PRESETS["vepso"].population, PRESETS["vepso"].generations) == (100, 200)
+    assert (PRESETS["nsga2"].population, PRESETS["nsga2"].generations) == (200, 500)
+    assert PRESETS["vepso"].evaluations(100, 200) == 40_000  # two swarms
 
 
 def test_presets_are_known_by_their_names_and_have_labels():
     assert [preset.name for preset in PRESETS.values()] == list(PRESETS)
-    assert {name: preset.label for name, preset in PRESETS.items()} == {
-        "vepso": "VEPSO",
-        "nsga2": "NSGA-II",
-    }
+    assert (PRESETS["vepso"].label, PRESETS["nsga2"].label) == ("VEPSO", "NSGA-II")
+    assert len({preset.label for preset in PRESETS.values()}) == len(PRESETS)
+
+
+def test_every_algorithm_of_pymoo_for_two_objectives_is_there():
+    # those that are left out: docs/methods.md, "Left out"
+    left_out = {"dnsga2", "kgb", "pinsga2", "rnsga2", "rnsga3"}
+    folder = Path(import_module("pymoo.algorithms.moo").__path__[0])
+    modules = {path.stem for path in folder.glob("*.py")} - {"__init__"}
+    sources = {preset.kind.partition(":")[0] for preset in PRESETS.values()}
+    mended = import_module("metaheuristics.algorithms.mended")
+    own = {name for name, _ in inspect.getmembers(mended, inspect.ismodule)}
+    named = {source.rpartition(".")[2] for source in sources} | own
+    assert modules - left_out <= named
+    assert not left_out & named
 
 
 @pytest.mark.parametrize(
@@ -27,3 +50,109 @@ def test_a_preset_builds_a_new_algorithm_of_the_population_given(name, kind, siz
     assert type(one) is kind
     assert getattr(one, size) == 30
     assert one is not other
+
+
+def contents(thing, seen=None):
+    """Everything that an algorithm is set to: the numbers and words in it, at any depth."""
+    seen = [] if seen is None else seen
+    if isinstance(thing, bool | int | float | str | None):
+        return thing
+    if callable(thing) and not hasattr(thing, "do"):
+        return getattr(thing, "__qualname__", type(thing).__name__)
+    if not hasattr(thing, "__dict__") or any(thing is other for other in seen):
+        return type(thing).__name__
+    inner = {name: contents(value, [*seen, thing]) for name, value in vars(thing).items()}
+    return type(thing).__name__, inner
+
+
+@NAMES
+def test_the_defaults_are_those_of_the_algorithm_itself(name):
+    # what its class does without them: pymoo's own settings, or the paper's
+    module, _, kind = PRESETS[name].kind.partition(":")
+    kind = getattr(import_module(module), kind)
+    if kind.__module__ == "metaheuristics.algorithms.mended":
+        kind = kind.__mro__[1]
+    plain = kind(building.directions(12) if PRESETS[name].by_directions else 12)
+    (_, built), (_, wanted) = contents(PRESETS[name].build(12)), contents(plain)
+    if name in ("nsga3", "unsga3"):  # whose comparison is mended
+        built["mating"][1].pop("selection")
+        wanted["mating"][1].pop("selection")
+    assert built == wanted
+
+
+OTHERS = {
+    "boundary": "reflect", "velocity_limit": 0.3, "archive_size": 7, "crossover": 0.75,
+    "crossover_gene": 0.25, "crossover_eta": 9, "mutation": 0.25, "mutation_gene": 0.3,
+    "mutation_eta": 9, "normalise": False, "neighbours": 5, "neighbour_mating": 0.5, "alpha": 3,
+    "adaptation": 0.2, "inertia": 0.5, "cognitive": 1, "social": 1, "elites": 4,
+    "first_velocity": "zero", "variant": "DE/best/2/exp", "scale": 0.5, "jitter": 0,
+    "repair": "midway", "delta": 0.01, "objective_crowding": False, "coefficient_crowding": False,
+}  # fmt: skip
+
+
+@NAMES
+def test_every_setting_reaches_the_algorithm(name):
+    built = contents(PRESETS[name].build(12))
+    for setting in PRESETS[name].settings:
+        value = OTHERS[setting.name]
+        assert value != setting.default
+        assert contents(PRESETS[name].build(12, {setting.name: value})) != built, setting.name
+
+
+BAD = [
+    ("nsga2", {"crossing": 1}, ["nsga2 has no setting 'crossing'", "did you mean 'crossover'"]),
+    ("gde3", {"alpha": 1}, ["gde3 has no setting 'alpha'", "variant, crossover, scale"]),
+    ("nsga2", {"crossover": 1.5}, ["crossover is 1.5", "0 to 1"]),
+    ("nsga2", {"crossover": "often"}, ["crossover is 'often'", "number"]),
+    ("nsga2", {"crossover": float("nan")}, ["crossover is nan", "finite"]),
+    ("nsga2", {"crossover": True}, ["crossover is True", "number"]),
+    ("nsga2", {"crossover_gene": 0}, ["crossover_gene", "positive"]),
+    ("nsga2", {"crossover_eta": 1}, ["crossover_eta is 1", "between 1 and 100"]),
+    ("spea2", {"normalise": "maybe"}, ["normalise is 'maybe'", "true or false"]),
+    ("moead", {"neighbours": 1}, ["neighbours is 1", "from 2 up"]),
+    ("moead", {"neighbours": 2.5}, ["neighbours is 2.5", "whole number"]),
+    ("vepso", {"boundary": "clop"}, ["boundary is 'clop'", "did you mean 'clip'"]),
+    ("gde3", {"variant": "DE/rand/9/bin"}, ["variant is 'DE/rand/9/bin'", "did you mean"]),
+    ("gde3", {"scale": 2.5}, ["scale is 2.5", "up to 2"]),
+    ("mopso-cd", {"archive_size": 10**9}, ["archive_size", "at most 100000"]),
+]
+
+
+@pytest.mark.parametrize(("name", "settings", "words"), BAD)
+def test_bad_settings_are_refused_with_the_remedy(name, settings, words):
+    with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+        PRESETS[name].build(10, settings)
+    assert all(word in str(caught.value) for word in words)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_unknown_method_is_refused_with_the_nearest_one():
+    with pytest.raises(ValueError, match="unknown method 'smsmoa'; did you mean 'smsemoa'"):
+        preset_of("smsmoa")
+
+
+def test_a_method_without_its_library_says_what_to_install(monkeypatch):
+    monkeypatch.setattr(building, "find_spec", lambda name: None)
+    with pytest.raises(ValueError, match=r"agemoea2 needs numba; .*'quietarm\[numba\]'"):
+        PRESETS["agemoea2"].build(10)
+
+
+def test_the_document_has_every_method_with_its_settings_and_defaults():
+    text = DOCUMENT.read_text(encoding="utf-8")
+    for preset in PRESETS.values():
+        row = next(line for line in text.splitlines() if line.startswith(f"| `{preset.name}` |"))
+        cells = [cell.strip() for cell in row.strip("|").split("|")]
+        assert cells[1] == f"{preset.label}, {preset.source}"
+        assert cells[2] == f"{preset.population} x {preset.generations}"
+        stated = dict(re.findall(r"`(\w+)` ([^,]+)", cells[3]))
+        assert stated == {s.name: _written(s.default) for s in preset.settings}
+        for setting in preset.settings:
+            assert f"| `{setting.name}` |" in text
+
+
+def _written(default):
+    if default is None:
+        return "-"
+    return (
+        f"{default:g}" if isinstance(default, float) else str(default).lower().replace("de/", "DE/")
+    )

@@ -13,7 +13,7 @@ import pytest
 
 from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, PointToPoint, rollout
-from ocp.base.interrupts import defer_interrupts, keep_interrupts, note_interrupts
+from ocp.base.interrupts import keep_interrupts, note_interrupts
 from ocp.simulation import collocation, residual
 
 ROOT = Path(__file__).parents[3]
@@ -94,19 +94,6 @@ def test_noted_interrupts_are_told_and_end_nothing(times):
     assert value == 1
     assert interrupts == [signal.SIGINT] * times
     assert signal.getsignal(signal.SIGINT) is before
-
-
-def test_deferred_interrupts_come_after_the_block():
-    reached = []
-
-    def work():
-        with defer_interrupts():
-            signal.raise_signal(signal.SIGINT)
-            reached.append("the end of the block")
-
-    with pytest.raises(KeyboardInterrupt):
-        work()
-    assert reached
 
 
 def test_errors_of_the_block_pass():

@@ -1,0 +1,67 @@
+"""Build a method that is known by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pymoo.core.algorithm import Algorithm
+from pymoo.operators.crossover.sbx import SBX
+from pymoo.operators.mutation.pm import PM
+
+from metaheuristics.algorithms.presets import Preset
+from metaheuristics.algorithms.settings import Value
+
+_OPERATORS: dict[str, Callable[..., Any]] = {"crossover": SBX, "mutation": PM}
+
+
+def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algorithm:
+    """A new algorithm.
+
+    Its operators are its own: those of pymoo's default arguments are shared, and some remember a
+    run.
+
+    Parameters
+    ----------
+    preset : Preset
+        Which.
+    population : int
+        Individuals, or particles in a swarm.
+    values : mapping of str to value
+        All its settings, by name.
+
+    Returns
+    -------
+    Algorithm
+        One that was not run.
+
+    Raises
+    ------
+    ValueError
+        When a library is missing.
+    """
+    if preset.needs and find_spec(preset.needs) is None:
+        raise ValueError(
+            f"{preset.name} needs {preset.needs}; install it by pip install "
+            f"'quietarm[{preset.needs}]'"
+        )
+    arguments = dict[str, Any]()
+    operators = dict[str, dict[str, Value]]()
+    for setting in preset.settings:
+        operator, dot, argument = setting.argument.partition(".")
+        own = operators.setdefault(operator, {}) if dot else arguments
+        own[argument if dot else operator] = values[setting.name]
+    arguments.update((name, _OPERATORS[name](**given)) for name, given in operators.items())
+    module, _, kind = preset.kind.partition(":")
+    first = directions(population) if preset.by_directions else population
+    return getattr(import_module(module), kind)(first, **arguments)
+
+
+def directions(number: int) -> NDArray[np.float64]:
+    """Evenly spread reference directions of two objectives, shape (number, 2), of sum 1."""
+    first = np.linspace(0.0, 1.0, number)
+    return np.column_stack([first, 1.0 - first])

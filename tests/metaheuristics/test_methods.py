@@ -1,0 +1,103 @@
+"""Every method that is known by name, at work on both of the paper's plants."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from small_searches import HALF, LIMITED, SIXTH, assert_is_a_front, exactly, one_line
+
+from metaheuristics import PRESETS, search
+from metaheuristics.algorithms.presets import preset_of
+from ocp import rollout
+
+SMALL = {"population": 8, "generations": 4, "bound": 0.3}
+TASKS = {"single-link": SIXTH, "arm": HALF}
+METHOD = pytest.mark.parametrize("name", PRESETS)
+KEEPS_LIMITS = [name for name, preset in PRESETS.items() if preset.keeps_limits]
+
+
+class NoNumbers:
+    """In the place of a generator without a seed: whoever draws from it fails."""
+
+    def __getattr__(self, name):
+        raise AssertionError(f"{name} of a generator that has no seed")
+
+
+@pytest.fixture
+def only_seeded(monkeypatch):
+    """Let no generator without a seed give random numbers."""
+    seeded = np.random.default_rng
+    monkeypatch.setattr(
+        np.random, "default_rng", lambda seed=None: NoNumbers() if seed is None else seeded(seed)
+    )
+
+
+@METHOD
+@pytest.mark.parametrize("plant", TASKS)
+def test_the_seed_decides_about_the_front(only_seeded, name, plant):
+    one, same, other = (search(TASKS[plant], name, seed=seed, **SMALL) for seed in (2, 2, 3))
+    assert exactly(one) == exactly(same)
+    assert one.points != other.points
+    assert_is_a_front(one)
+    assert (one.method, one.complete, len(one.history)) == (name, True, 4)
+
+
+@METHOD
+def test_a_population_and_a_generation_mean_the_same_for_all(name):
+    front = search(HALF, name, seed=2, **SMALL)
+    wanted = preset_of(name).swarms * 8 * 4
+    assert front.evaluations == wanted == preset_of(name).evaluations(8, 4)
+    steps = [entry.evaluations for entry in front.history]
+    assert steps == [wanted // 4 * generation for generation in range(1, 5)]
+
+
+@pytest.mark.parametrize("name", KEEPS_LIMITS)
+def test_limits_are_kept_and_the_seed_still_decides(only_seeded, name):
+    task = LIMITED["nsga2"]
+    settings = {"bound": 0.5, "population": 16, "generations": 8, "seed": 2}
+    one, same = (search(task, name, **settings) for _ in range(2))
+    assert exactly(one) == exactly(same)
+    assert one.infeasible > 0
+    assert one.points
+    for point in one.points:
+        motion = rollout(task, one.profile, point.coefficients).motion
+        assert motion.peak_torque <= task.torque_limit * (1 + 1e-6)
+        assert motion.peak_acceleration <= task.acceleration_limit * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("name", sorted(set(PRESETS) - set(KEEPS_LIMITS)))
+def test_a_method_that_passes_over_limits_refuses_them(name):
+    with pytest.raises(ValueError, match=f"{name} cannot search a task with limits; ") as caught:
+        search(LIMITED["nsga2"], name, **SMALL)
+    one_line(caught)
+
+
+def test_what_a_run_leaves_does_not_change_the_next():
+    # pymoo's SPEA2 keeps the scale of its first run in a default argument
+    first = search(HALF, "spea2", seed=2, **SMALL)
+    search(dataclasses.replace(HALF, duration=2.0), "spea2", seed=2, **SMALL)
+    assert exactly(search(HALF, "spea2", seed=2, **SMALL)) == exactly(first)
+
+
+def test_settings_change_the_front_and_stand_in_it():
+    plain = search(HALF, "smsemoa", seed=2, **SMALL)
+    other = search(HALF, "smsemoa", seed=2, settings={"crossover_eta": 5}, **SMALL)
+    assert plain.points != other.points
+    assert "eta=15.0" in plain.settings["crossover"]
+    assert "eta=5.0" in other.settings["crossover"]
+
+
+def test_settings_beside_an_algorithm_of_ones_own_are_refused():
+    with pytest.raises(ValueError, match="settings are set in the algorithm that you give"):
+        search(HALF, PRESETS["nsga3"].build(8), bound=0.5, generations=2, settings={"mutation": 1})
+
+
+@pytest.mark.parametrize("option", ["checkpoint", "resume"])
+def test_a_method_without_a_state_says_that_it_has_no_checkpoints(tmp_path, option):
+    with pytest.raises(ValueError, match="checkpoints are for vepso and nsga2, not for smsemoa"):
+        search(HALF, "smsemoa", **SMALL, **{option: tmp_path / "file"})
+
+
+def test_an_unknown_method_is_refused_with_the_nearest_one():
+    with pytest.raises(ValueError, match="unknown method 'nsga'; did you mean 'nsga2'"):
+        search(HALF, "nsga", **SMALL)

@@ -1,0 +1,124 @@
+"""Notebooks as files: what they show, their folded solutions, and how they are executed anew."""
+
+import base64
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import nbformat
+from nbclient import NotebookClient
+from nbformat.v4 import new_code_cell
+
+NOTEBOOKS = Path(__file__).parent.parent.parent.parent / "notebooks"
+PATHS = sorted(NOTEBOOKS.glob("*.ipynb"))
+
+FOLDED = re.compile(r"<details>\n<summary>Solution</summary>\n(.*?)</details>", re.DOTALL)
+"""A solution, folded wherever a notebook is shown: in JupyterLab, as HTML, on slides."""
+
+SOLUTION = re.compile(r"```python\n(?P<code>.*?)```\n+```text\n(?P<shown>.*?)```", re.DOTALL)
+"""What a solution computes and what that prints; `refresh.py` writes the second."""
+
+ATTEMPT = "# Your attempt"
+"""How the cells begin that wait for a reader's lines."""
+
+WIDGET = "application/vnd.jupyter.widget-view+json"
+"""What a slider shows where a kernel runs; a file keeps the picture that stands beside it."""
+
+STRICT = """
+import warnings
+
+warnings.simplefilter("error")
+warnings.filterwarnings("ignore", module="ipykernel")  # of its own ways, when it shuts down
+"""
+
+
+class Executed(NamedTuple):
+    """A notebook after its execution, and what its solutions printed, in order."""
+
+    notebook: nbformat.NotebookNode
+    solutions: list[str]
+
+
+def read(path):
+    return nbformat.read(path, as_version=4)
+
+
+def code_cells(notebook):
+    return [cell for cell in notebook.cells if cell.cell_type == "code"]
+
+
+def solutions(source):
+    """Find code and printed text of the solutions that are folded in a markdown cell."""
+    return [found for folded in FOLDED.findall(source) for found in SOLUTION.finditer(folded)]
+
+
+def printed(cell):
+    """All text that a code cell shows, but for the names of its pictures and sliders."""
+    text = ""
+    for output in cell.outputs:
+        if output.output_type == "stream":
+            text += output.text if output.name == "stdout" else ""
+        elif not {"image/png", WIDGET} & set(output.get("data", {})):
+            text += output.get("data", {}).get("text/plain", "") + "\n"
+    return text
+
+
+def pictures(notebook):
+    outputs = [output for cell in code_cells(notebook) for output in cell.outputs]
+    found = [output.get("data", {}).get("image/png") for output in outputs]
+    return [base64.b64decode(picture) for picture in found if picture]
+
+
+def slide_type(cell):
+    """Place a cell on the slides: a slide for each heading, another below it for each picture."""
+    if cell.cell_type == "markdown":
+        heading = re.match(r"#+ ", cell.source)
+        return {None: "-", "# ": "slide", "## ": "slide"}.get(heading and heading[0], "subslide")
+    if cell.source.startswith(("%matplotlib", ATTEMPT)):
+        return "skip"
+    shows_a_picture = any("image/png" in output.get("data", {}) for output in cell.outputs)
+    return "subslide" if shows_a_picture else "-"
+
+
+def execute(path, folder):
+    """Execute a notebook and its solutions in a clean kernel, with warnings as errors.
+
+    Raises nbclient's CellExecutionError, with the cell and its traceback, where one fails.
+    """
+    notebook = read(path)
+    extra = [new_code_cell(STRICT)]
+    cells = list(extra)
+    for cell in notebook.cells:
+        cells.append(cell)
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+        else:
+            found = [new_code_cell(each["code"]) for each in solutions(cell.source)]
+            cells += found
+            extra += found
+    whole = nbformat.v4.new_notebook(cells=cells, metadata=notebook.metadata)
+    NotebookClient(
+        whole,
+        timeout=600,
+        coalesce_streams=True,
+        record_timing=False,
+        store_widget_state=False,
+        resources={"metadata": {"path": str(folder)}},
+    ).execute()
+    for number, cell in enumerate(code_cells(notebook), 1):
+        _keep_what_lasts(cell, number)
+    return Executed(notebook, [_shown_by(cell) for cell in extra[1:]])
+
+
+def _keep_what_lasts(cell, number):
+    """Number a cell as in the notebook, and drop what only a running kernel can show."""
+    cell.execution_count = number
+    for output in cell.outputs:
+        if "execution_count" in output:
+            output.execution_count = number
+        output.get("data", {}).pop(WIDGET, None)
+
+
+def _shown_by(cell):
+    assert all(output.get("name") != "stderr" for output in cell.outputs), cell.outputs
+    return printed(cell)
