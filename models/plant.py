@@ -8,6 +8,7 @@ plain number (a table). Use `casadi.sin` and its like, not those of `numpy` or `
 from __future__ import annotations
 
 import math
+import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import Field, field, fields
@@ -115,10 +116,10 @@ class Plant(ABC):
                     f"{entry.name}: ClassVar[{_OF_CLASS[entry.name]}]"
                 )
             value = getattr(self, entry.name)
-            number = isinstance(value, Real) and not isinstance(value, bool)
-            if not number or not math.isfinite(value):
+            if not _is_finite(value):
                 raise ValueError(
-                    f"{self.name}: parameter {entry.name} is {value}; give a finite number"
+                    f"{self.name}: parameter {entry.name} is {reprlib.repr(value)}; give a finite "
+                    "number"
                 )
             object.__setattr__(self, entry.name, float(value))
 
@@ -208,6 +209,15 @@ class Plant(ABC):
 
 _OF_CLASS = {"name": "str", "modes": "int", "small_deflection": "float | None"}
 """What a class of plants sets beside its parameters, with the type."""
+
+
+def _is_finite(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond double precision
+        return False
 
 
 def _is_ours(plant: type[Plant]) -> bool:

@@ -18,6 +18,7 @@ from ocp.plan.only_motion import only_motion
 from ocp.plan.robust import held_between, limit_of
 from ocp.plan.verification import HURRIED, MOST_SOLVER_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.problem import Problem
 from ocp.program.solution import Solution, same_minimum
@@ -91,9 +92,11 @@ def plan_move(
         After Ctrl-C before a start was solved.
     """
     profile = CycloidPolynomial() if profile is None else profile
+    refuse_other_kinds(task, profile)
     if guess is not None:
         guess = profile.checked(guess)
-    settings = SolveSettings(residual_limit or 0.0, bound, starts, seed, steps, guess)
+    least = 0.0 if residual_limit is None else residual_limit
+    settings = SolveSettings(least, bound, starts, seed, steps, guess)
     if profile.size == 0:
         return only_motion(task, profile, settings.residual_limit)
     settings = replace(settings, residual_limit=limit_of(task, residual_limit))

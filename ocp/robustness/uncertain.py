@@ -8,8 +8,8 @@ from functools import lru_cache
 from itertools import product
 from typing import Any
 
-from models import Expression, JointMotion, Plant
-from ocp.base.checks import finite
+from models import Body, Expression, JointMotion, Plant
+from ocp.base.checks import finite, of_kind
 from ocp.base.readonly import ReadOnlyDict
 from ocp.robustness.plants import checked_ranges, with_errors
 from ocp.task.point_to_point import PointToPoint
@@ -50,6 +50,7 @@ class UncertainPlant(Plant):
     samples: tuple[tuple[float, ...], ...] = ()
 
     def __post_init__(self) -> None:
+        of_kind("assumed plant", self.assumed, Plant, "a Plant, such as SingleLinkManipulator()")
         if isinstance(self.assumed, UncertainPlant):
             raise ValueError("the plant is uncertain already; give the assumed one")
         ranges = checked_ranges(self.assumed, self.ranges)
@@ -105,6 +106,10 @@ class UncertainPlant(Plant):
         """Those of every part, one after another [m]."""
         each = zip(self.parts, self._by_part(W), strict=True)
         return [tip for part, W in each for tip in part.tip_displacements(W)]
+
+    def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
+        """That of the assumed plant."""
+        return self.assumed.structure(angle, tips[: self.assumed.tips])
 
     def _by_part(self, rows: Sequence[Expression]) -> list[Sequence[Expression]]:
         size = self.assumed.modes

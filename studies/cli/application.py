@@ -27,6 +27,7 @@ COMMANDS = {
     "robustness": "Show what plans leave when the plant is not the assumed one.",
     "animate": "Draw plans in motion, as a GIF or an MP4.",
     "study": "Run every method on a task, and write one report.",
+    "contest": "Hold methods with equal evaluations against exact fronts.",
     "reproduce": "Recompute the paper.",
 }
 """What each command does; `NAME` is the function `NAME` of `studies.cli.commands.NAME`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from metaheuristics.objective.claims import check_figures
+from metaheuristics.objective.claims import check_figures, check_plan
 from ocp import Front, Plan
 
 
@@ -35,7 +35,7 @@ def load_front(path: Path) -> Front:
 
 
 def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
-    """Plans from their files.
+    """Plans from their files, after their motions were evaluated again.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
     FileFormatError
         When a file is no plan.
     ValueError
-        When there is no file, or one is given twice.
+        When there is no file, one is given twice, or its figures are not those of its motion.
     """
     if not paths:
         raise ValueError("no plan is given; give files that were written by quietarm plan --output")
@@ -62,4 +62,7 @@ def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
             raise ValueError(f"{path} is given twice; give it once")
     stems = [path.stem for path in paths]
     names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
-    return {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
+    plans = {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
+    for plan, path in zip(plans.values(), paths, strict=True):
+        check_plan(plan, str(path))
+    return plans

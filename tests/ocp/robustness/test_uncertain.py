@@ -175,6 +175,18 @@ def test_what_is_wrong_is_said_in_a_line(ranges, samples, complaint):
     assert "\n" not in str(found.value)
 
 
+def test_only_a_plant_can_be_uncertain():
+    with pytest.raises(ValueError, match="assumed plant is 'single-link'; give a Plant, such as"):
+        UncertainPlant("single-link", {"frequency": 0.1})
+
+
+def test_it_is_drawn_as_the_assumed_plant(task):
+    bodies = [p.structure(0.3, [0.01] * p.tips) for p in (task.plant, task.plant.assumed)]
+    assert len(bodies[0]) == len(bodies[1])
+    for one, other in zip(*bodies, strict=True):
+        np.testing.assert_array_equal(one.outline, other.outline)
+
+
 def test_an_uncertain_plant_is_not_made_uncertain_again(task):
     with pytest.raises(ValueError, match="uncertain already; give the assumed one"):
         UncertainPlant(task.plant, {"frequency": 0.1})
