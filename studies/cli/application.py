@@ -25,6 +25,7 @@ COMMANDS = {
     "compare": "Compare fronts of one task.",
     "floor": "Find the least energy over all joint motions.",
     "robustness": "Show what plans leave when the plant is not the assumed one.",
+    "problems": "List named problems with their exact fronts.",
     "study": "Run every method on a task, and write one report.",
     "reproduce": "Recompute the paper.",
 }
