@@ -1,5 +1,7 @@
 """The named problems and their exact fronts, held against other routes."""
 
+from dataclasses import replace
+
 import moocore
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ from pymoo.optimize import minimize
 
 from metaheuristics import PROBLEMS, MoveFunction, problem_of
 from metaheuristics.objective.claims import check_figures
+from metaheuristics.problems import finding
 from metaheuristics.problems.catalogue import FRONTS
 from ocp import CycloidPolynomial, evaluate_coefficients, plan_move, weighted_front
 
@@ -93,15 +96,32 @@ def test_no_weighted_sum_is_better(name):
     assert found.cheapest().energy == pytest.approx(front.cheapest().energy, rel=BETTER)
 
 
-def test_the_fronts_are_found_again():
+def test_the_fronts_are_found_again(monkeypatch):
+    # fewer points between, the same at the ends and at the levels
+    monkeypatch.setattr(finding, "POINTS", 4)
     problem, begun = problem_of(TWO_TERMS[1]), []
     found = problem.find_again(begun.append)
     assert begun == [problem.name] == list(found)
     (front,), (again,) = problem.fronts(), found.values()
-    levels = front.residuals[1:] * (1 + 1e-6)
-    assert least_energies(again, levels) == pytest.approx(front.energies[1:], rel=5e-3)
-    assert again.stillest().energy == pytest.approx(front.stillest().energy, rel=BETTER)
-    assert again.cheapest().energy == pytest.approx(front.cheapest().energy, rel=BETTER)
+    assert len(again.points) == 4 + len(finding.LEVELS)
+    residuals = [*finding.LEVELS, front.residuals[0] + 1e-9, front.residuals[-1]]
+    wanted = least_energies(front, np.array(residuals) * (1 + 1e-6))
+    assert least_energies(again, np.array(residuals) * (1 + 1e-6)) == pytest.approx(
+        wanted, rel=BETTER
+    )
+
+
+def test_random_starts_find_what_the_sweep_passes_by(monkeypatch):
+    # a sweep whose middle point is not the best of its residual
+    problem = problem_of(TWO_TERMS[0])
+    (front,) = problem.fronts()
+    middle = front.points[14]
+    worse = replace(middle, energy=middle.energy * 1.001)
+    swept = replace(front, points=(front.points[0], worse, front.points[-1]))
+    monkeypatch.setattr(finding, "epsilon_front", lambda *task, **settings: swept)
+    found = finding.exact_front(problem.task, problem.profile, problem.bound)
+    assert found.points[1].energy == pytest.approx(middle.energy, rel=BETTER)
+    assert (found.points[0], found.points[2]) == (front.points[0], front.points[-1])
 
 
 def test_pymoo_has_the_exact_front_and_set():
