@@ -14,6 +14,7 @@ from metaheuristics.runs.settings import SearchSettings, SearchSpec
 from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
 from ocp.base.files import check_writable
 from ocp.base.interrupts import note_interrupts
+from ocp.profiles.kinds import refuse_other_kinds
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -99,7 +100,7 @@ def search(
     from metaheuristics.runs.loop import Loop
 
     profile = CycloidPolynomial() if profile is None else profile
-    _refuse_other_kinds(task, profile)
+    refuse_other_kinds(task, profile)
     bound = profile.default_bound if bound is None else bound
     method, chosen, asked = _chosen(algorithm, task, bound, population, generations, settings)
     loop = Loop(
@@ -123,15 +124,6 @@ def search(
     if trouble:
         warn(f"the end of the search is in no checkpoint: {trouble}")
     return replace(front, complete=not interrupts)
-
-
-def _refuse_other_kinds(task: object, profile: object) -> None:
-    if not isinstance(task, PointToPoint):
-        raise ValueError(f"task is {task!r}; give a PointToPoint")
-    if not isinstance(profile, JointProfile):
-        raise ValueError(
-            f"profile is {profile!r}; give a JointProfile, such as CycloidPolynomial(6)"
-        )
 
 
 def _chosen(

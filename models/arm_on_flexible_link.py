@@ -7,8 +7,17 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import casadi as ca
+import numpy as np
 
+from models.drawing import TIP_SLOPE, Body, flexible_link, rigid_link
 from models.plant import Expression, JointMotion, Plant, parameter
+
+_LENGTH = 0.55
+"""Of the link [m], section 3.2."""
+_ARM = 2 * 0.105
+"""Length at which the arm is drawn [m]: it is not printed; the centre of gravity is at 105 mm."""
+_CLAMP = 0.05
+"""Half the width at which the clamp is drawn [m]."""
 
 
 @dataclass(frozen=True)
@@ -17,9 +26,9 @@ class ArmOnFlexibleLink(Plant):
 
     name: ClassVar[str] = "arm-on-flexible-link"
     modes: ClassVar[int] = 1
-    small_deflection: ClassVar[float | None] = 0.1 * 0.55
-    """A tenth of the link's length, 550 mm in section 3.2: there the linear stiffness of a
-    cantilever is 1 % off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
+    small_deflection: ClassVar[float | None] = 0.1 * _LENGTH
+    """A tenth of the link's length: there the linear stiffness of a cantilever is 1 %
+    off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
 
     alpha1: float = parameter(-1.055e-1, "-", "eq (15)")
     alpha2: float = parameter(-9.949e-3, "m", "eq (15)")
@@ -65,3 +74,18 @@ class ArmOnFlexibleLink(Plant):
     def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
         """w(t, l) = phi W [m]."""
         return [self.phi * W[0]]
+
+    def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
+        """The link from its clamp along the x axis, the motor at its tip, and the arm.
+
+        At 0 rad the arm points back along the link: that is how eqs (13) and (14) have it, see
+        docs/physics.md, 'How the structures are drawn'.
+        """
+        link = flexible_link(_LENGTH, 0.0, tips[0])
+        slope = np.arctan(TIP_SLOPE * tips[0] / _LENGTH)
+        arm = rigid_link(_ARM, np.pi - angle + slope, base=link[-1])
+        clamp = [[0.0, -_CLAMP], [0.0, _CLAMP]]
+        return [
+            Body(np.array(clamp), rigid=True), Body(link, tip=True),
+            Body(arm, rigid=True), Body(link[-1:], rigid=True),
+        ]  # fmt: skip

@@ -6,8 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
+from models.drawing import Body, flexible_link
 from models.plant import Expression, JointMotion, Plant, parameter
 
+_LENGTH = 0.5
+"""Length at which both links are drawn [m]: theirs are not published."""
 _IDENTIFIED = "theoretical value times identified factor, docs/physics.md"
 
 
@@ -67,3 +72,11 @@ class DualLinkManipulator(Plant):
     def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
         """Displacement of either tip, phi W_i [m]."""
         return [self.phi * W[0], self.phi * W[1]]
+
+    def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
+        """Two links on one hub, the second opposite the first: how they stand is not published."""
+        first, second = (
+            flexible_link(_LENGTH, at, tip)
+            for at, tip in zip((angle, angle + np.pi), tips, strict=True)
+        )
+        return [Body(first, tip=True), Body(second, tip=True), Body(first[:1], rigid=True)]

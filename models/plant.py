@@ -8,11 +8,14 @@ plain number (a table). Use `casadi.sin` and its like, not those of `numpy` or `
 from __future__ import annotations
 
 import math
+import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import Field, field, fields
 from numbers import Real
 from typing import Any, ClassVar, NamedTuple
+
+from models.drawing import Body, rigid_link
 
 Expression = Any
 """An SX scalar, an MX matrix or a number: casadi gives these no common base class."""
@@ -113,10 +116,10 @@ class Plant(ABC):
                     f"{entry.name}: ClassVar[{_OF_CLASS[entry.name]}]"
                 )
             value = getattr(self, entry.name)
-            number = isinstance(value, Real) and not isinstance(value, bool)
-            if not number or not math.isfinite(value):
+            if not _is_finite(value):
                 raise ValueError(
-                    f"{self.name}: parameter {entry.name} is {value}; give a finite number"
+                    f"{self.name}: parameter {entry.name} is {reprlib.repr(value)}; give a finite "
+                    "number"
                 )
             object.__setattr__(self, entry.name, float(value))
 
@@ -153,6 +156,27 @@ class Plant(ABC):
     def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
         """Displacements of the tips that must come to rest [m], linear in `W` [m]."""
 
+    def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
+        """The structure as it is drawn, seen from above; give your own where it looks otherwise.
+
+        Parameters
+        ----------
+        angle : float
+            Joint angle [rad].
+        tips : sequence of float
+            Tip displacements [m], those of `tip_displacements` times the scale of the picture.
+
+        Returns
+        -------
+        sequence of Body
+            Its parts. Unless a plant says otherwise: for each tip a straight link of 1 m from the
+            joint, displaced across at its end.
+        """
+        return [
+            *(Body(rigid_link(1.0, angle, tip), rigid=True, tip=True) for tip in tips),
+            Body(rigid_link(1.0, angle)[:1], rigid=True),
+        ]
+
     @property
     def parameters(self) -> dict[str, float]:
         """The plant's parameters by name, in SI units."""
@@ -180,6 +204,15 @@ class Plant(ABC):
 
 _OF_CLASS = {"name": "str", "modes": "int", "small_deflection": "float | None"}
 """What a class of plants sets beside its parameters, with the type."""
+
+
+def _is_finite(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond double precision
+        return False
 
 
 def _is_ours(plant: type[Plant]) -> bool:

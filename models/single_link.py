@@ -6,7 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from models.drawing import Body, flexible_link
 from models.plant import Expression, JointMotion, Plant, parameter
+
+_LENGTH = 0.475
+"""Of the plate [m], section 3.1."""
 
 
 @dataclass(frozen=True)
@@ -15,9 +19,9 @@ class SingleLinkManipulator(Plant):
 
     name: ClassVar[str] = "single-link"
     modes: ClassVar[int] = 1
-    small_deflection: ClassVar[float | None] = 0.1 * 0.475
-    """A tenth of the plate's length, 475 mm in section 3.1: there the linear stiffness of a
-    cantilever is 1 % off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
+    small_deflection: ClassVar[float | None] = 0.1 * _LENGTH
+    """A tenth of the plate's length: there the linear stiffness of a cantilever is 1 %
+    off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
 
     alpha1: float = parameter(2.383e-2, "kg m^2", "eq (10)")
     alpha2: float = parameter(9.261e-2, "kg m", "eq (10)")
@@ -57,3 +61,8 @@ class SingleLinkManipulator(Plant):
     def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
         """w(t, l) = phi W [m]."""
         return [self.phi * W[0]]
+
+    def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
+        """The plate on its hub; it begins on the axis, since the hub's radius is not printed."""
+        plate = flexible_link(_LENGTH, angle, tips[0])
+        return [Body(plate, tip=True), Body(plate[:1], rigid=True)]

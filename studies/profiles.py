@@ -25,6 +25,10 @@ FAMILIES: Mapping[str, type[Cycloid]] = {
 }
 """Profiles with coefficients to choose; each takes a number of terms and has one by default."""
 PROFILES = (*FAMILIES, *SHAPERS)
+OTHERS: Mapping[str, Cycloid] = {
+    "network": CycloidNetwork(), "Gaussians": CycloidGaussians(), "spline": CycloidSpline(),
+}  # fmt: skip
+"""What stands beside the polynomial in comparisons, by what tables call it, in its default size."""
 
 
 def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> JointProfile:

@@ -11,6 +11,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from ocp import Front, Plan
 from studies import figures
@@ -129,8 +130,8 @@ def test_the_example_in_python_plans_saves_and_exports(tmp_path):
     printed = run_python(PYTHON[0], tmp_path)
     plan = Plan.load(tmp_path / "plan.json")
     assert printed == f"{plan.energy} {plan.residual} {plan.coefficients}\n"
-    assert plan.residual < 1e-8  # 'How exact'
-    assert plan.motion.peak_torque <= 0.2 * 1.001  # 'How exact'
+    assert plan.residual < 1e-8  # docs/accuracy.md
+    assert plan.motion.peak_torque <= 0.2 * 1.001  # docs/accuracy.md
     assert len((tmp_path / "move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
 
 
@@ -210,13 +211,15 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
     "vepso": SEARCH,
     "epsilon": ["--points", "5"],
     "study": [*SEARCH, "--runs", "1", "--points", "4"],
+    "contest": ["--runs", "1", "--evaluations", "150"],
 }
 
 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
     method = words[words.index("--method") + 1] if "--method" in words else words[0]
-    quiet = ["--quiet"] if words[0] in {"front", "polish", "robustness", "study"} else []
+    long = {"animate", "front", "polish", "robustness", "study", "contest"}
+    quiet = ["--quiet"] if words[0] in long else []
     return [*words, *quiet, *(SHORTER.get(method, []) if words[0] != "plan" else [])]
 
 
@@ -268,7 +271,7 @@ def test_files_that_it_names_are_there():
     linked = re.findall(r"!?\[[^]]*\]\(([^)#]+)\)", README)
     quoted = re.findall(r"`([\w.-]+/[\w./-]+\.\w+)`", README)
     names = [name for name in [*linked, *quoted] if "://" not in name]
-    assert "notebooks/move.png" in names
+    assert {"docs/move.gif", "notebooks/move.png"} <= set(names)
     assert "notebooks/01_plan_a_move.ipynb" in names
     assert [name for name in names if not (ROOT / name).exists()] == []
 
@@ -285,7 +288,7 @@ def test_the_order_of_the_packages_is_that_of_the_contract():
 
 def test_the_picture_says_what_is_computed(tmp_path):
     # The picture's text: the plain cycloid leaves so much, the plan needs such a share.
-    (alt,) = re.findall(r"!\[([^]]*)\]\(notebooks/move\.png\)", README)
+    (alt,) = re.findall(r"!\[([^]]*)\]\(docs/move\.gif\)", README)
     printed = run_python(
         """
 from math import pi
@@ -304,6 +307,34 @@ print(cycloid.residual * 1e3, plan.energy / cycloid.energy, plan.residual)
     assert "a quarter of the energy" in alt
     assert share == pytest.approx(0.25, abs=0.02)
     assert residual < 1e-8
+
+
+def test_the_picture_at_the_top_moves_and_is_what_its_commands_make():
+    with Image.open(ROOT / "docs" / "move.gif") as picture:
+        # 0.8 s and the second after it, 25 frames a second, and the first
+        assert (picture.format, picture.n_frames, picture.width) == ("GIF", 46, 800)
+    section = README.split("## Pictures that move\n", 1)[1].split("\n## ", 1)[0]
+    assert "quietarm plan single-link --target 30deg --duration 0.8" in section
+    assert README.index("(docs/move.gif)") < README.index("\n## ")
+
+
+def test_the_table_of_results_is_that_of_the_physics():
+    section = README.split("## What there is to gain\n", 1)[1].split("\n## ", 1)[0]
+    rows = re.findall(r"^\|.*\|$", section, re.MULTILINE)
+    assert len(rows) == 2 + 6
+    physics = (ROOT / "docs" / "physics.md").read_text()
+    table = physics.split("## The published optima are not optimal\n", 1)[1].split("\n## ", 1)[0]
+    assert "\n".join(rows) in table
+
+
+def test_every_reader_is_sent_to_a_section_that_is_there():
+    section = README.split("## Where to go on\n", 1)[1].split("\n## ", 1)[0]
+    named = set(re.findall(r"\(#([\w-]+)\)", section))
+    headings = re.findall(r"^## (.*)$", README, re.MULTILINE)
+    # GitHub's rule: small letters, hyphens for blanks, and no other marks
+    anchors = {re.sub(r"[^\w-]", "", heading.lower().replace(" ", "-")) for heading in headings}
+    assert len(named) == 6
+    assert named <= anchors
 
 
 def test_the_python_that_it_asks_for_is_the_packages():

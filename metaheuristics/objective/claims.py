@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 
 from metaheuristics.objective.population import BLOCK, PopulationObjective
-from ocp import Front, FrontPoint, JointProfile, PointToPoint
+from ocp import Front, FrontPoint, JointProfile, Plan, PointToPoint
 from ocp.answers.provenance import AGREEMENT, REST
 from ocp.front.evaluation import refuse_beyond_box
 from ocp.plan.verification import OVERRUN
+from ocp.simulation.resimulation import resimulate
 from ocp.simulation.rollout import default_steps
 from ocp.task.quantities import QUANTITIES
 
@@ -49,6 +51,38 @@ def check_figures(front: Front, name: str) -> None:
         check_points(objective, front.points, limited=True)
     except ValueError as error:
         raise ValueError(f"{name}: {error}; find the front again") from None
+
+
+def check_plan(plan: Plan, name: str) -> None:
+    """Evaluate the motion of a plan again, and refuse the plan where the figures differ.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan.
+    name : str
+        What to call it in a message.
+
+    Raises
+    ------
+    ValueError
+        When the energy or a peak differs by more than `AGREEMENT`, or the residual by more than
+        that and `REST`.
+    SolverFailedError
+        When CVODES cannot follow the motion.
+    """
+    found = resimulate(plan.task, plan.profile, plan.coefficients)
+    figures = [("residual", "m", REST), ("energy", "J", 0.0)]
+    peaks = [(figure, QUANTITIES[figure].unit, 0.0) for figure in QUANTITIES]
+    for figure, unit, least in figures + peaks:
+        stated, gives = plan.motion.peak(figure), found.peak(figure)
+        known = math.isfinite(stated) and math.isfinite(gives)  # older files lack the jerk
+        if known and not abs(stated - gives) <= AGREEMENT * abs(gives) + least:
+            figure = f"peak {figure}" if figure in QUANTITIES else figure
+            raise ValueError(
+                f"{name} states {figure} {stated:.4g} {unit}, but its coefficients give "
+                f"{gives:.4g} {unit}; find the plan again"
+            )
 
 
 def check_points(

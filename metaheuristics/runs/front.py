@@ -7,13 +7,14 @@ from collections.abc import Callable
 from dataclasses import asdict, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from metaheuristics.algorithms.provenance import flat
 from metaheuristics.objective.population import PopulationObjective
 from metaheuristics.runs.loop import Loop
 from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.runs.settings import search_versions
-from ocp import Front, FrontPoint, non_dominated
+from ocp import Front, FrontPoint, JointProfile, PointToPoint, non_dominated
 from ocp.simulation.rollout import default_steps
 
 WITHIN = 1e-6
@@ -68,7 +69,7 @@ def front_of(loop: Loop) -> Front:
     return Front(
         task=spec.task,
         profile=spec.profile,
-        points=_points(loop, threads),
+        points=verified_points(spec.task, spec.profile, loop.found()[0], threads),
         method=spec.method,
         settings={**asdict(spec.settings), **dict(flat(spec.algorithm))},
         seed=spec.seed,
@@ -82,9 +83,27 @@ def front_of(loop: Loop) -> Front:
     )
 
 
-def _points(loop: Loop, threads: int) -> tuple[FrontPoint, ...]:
-    task, profile = loop.spec.task, loop.spec.profile
-    X, _ = loop.found()
+def verified_points(
+    task: PointToPoint, profile: JointProfile, X: NDArray[np.float64], threads: int = 1
+) -> tuple[FrontPoint, ...]:
+    """The points of a front, with figures of a finer rollout than that of the search.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    X : ndarray, shape (candidates, profile.size)
+        Coefficients that the search found.
+    threads : int
+        Blocks of the population that are evaluated at the same time.
+
+    Returns
+    -------
+    tuple of FrontPoint
+        Those that keep the limits and that no other dominates.
+    """
     fine = PopulationObjective(task, profile, steps=default_steps(task), threads=threads)
     values = fine(X)
     kept = np.flatnonzero((values.violations <= WITHIN).all(axis=1)).tolist()

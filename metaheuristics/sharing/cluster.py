@@ -16,6 +16,7 @@ from typing import Any
 
 from dask import config
 from distributed import Client, LocalCluster
+from distributed.comm.addressing import get_address_host_port
 
 from metaheuristics.sharing.workers import Workers
 from ocp import QuietarmError
@@ -126,6 +127,10 @@ def _end(cluster: LocalCluster) -> None:
 
 @contextmanager
 def _existing(address: str) -> Iterator[Cluster]:
+    try:  # before there is a client: one without a scheduler takes long to end, and fails
+        get_address_host_port(address, strict=True)
+    except ValueError:
+        raise ValueError(f"scheduler is {address!r}; give it as tcp://host:8786") from None
     try:
         client = Client(address, timeout=_CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:

@@ -14,6 +14,9 @@ from models.contract.calls import is_number
 from models.contract.values import Equations
 from models.plant import Plant
 
+MOST_MODES = 100
+"""With more the equations fill the memory; a link's shape takes a few."""
+
 
 def check_contract(plant: Plant) -> None:
     """Check all that `Plant` asks of its subclasses.
@@ -47,6 +50,8 @@ def _check_class(plant: Plant) -> None:
             f"plant {called} has {has}; write how many it has, 1 or more, as "
             "modes: ClassVar[int] = 1"
         )
+    if modes > MOST_MODES:
+        raise ValueError(f"plant {called} has {modes} modes; give at most {MOST_MODES}")
     small = plant.small_deflection
     if small is not None and not (is_number(small) and small > 0):
         raise ValueError(
@@ -62,5 +67,6 @@ def _check_equations(plant: Plant) -> None:
     equations.check_one_by_one()
     equations.check_finite()
     equations.check_rest()
+    equations.check_tips()
     equations.check_stable()
     equations.check_numbers()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 import reprlib
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from numbers import Real
@@ -14,14 +15,19 @@ from typing import Any, TypeGuard
 import casadi as ca
 import numpy as np
 
+from models.drawing import Body
 from models.plant import Expression, JointMotion, Plant
 
 _WRITE = {
     "modal_accelerations": ("self, joint, W, dW", "a list of W'' [m/s^2], one for each mode"),
     "torque": ("self, joint, W, dW, ddW", "one expression, the joint torque [N m]"),
     "tip_displacements": ("self, W", "a list of tip displacements [m]"),
+    "structure": ("self, angle, tips", "a list of models.Body"),
 }
 """For every method its arguments, and what it should return."""
+
+_NUMPYS = r"\s*casadi: a numpy function"
+"""How casadi's warning begins where a function of NumPy is given a symbol."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,16 @@ class Calls:
             )
         return Outputs(accelerations, torque, tips)
 
+    def structure(self, angle: float, tips: Sequence[float]) -> list[Body]:
+        """The bodies of a plant's drawing; ValueError where it gives something else."""
+        found = self._called("structure", angle, tips)
+        if not isinstance(found, list | tuple) or not found:
+            raise self.wrong("structure", f"returns {_brief(found)}")
+        for entry in found:
+            if not isinstance(entry, Body):
+                raise self.wrong("structure", f"returns a list with {_brief(entry)}")
+        return list(found)
+
     def _listed(self, method: str, *arguments: object) -> list[Expression]:
         found = self._called(method, *arguments)
         if not isinstance(found, list | tuple):
@@ -96,18 +112,22 @@ class Calls:
         except TypeError:
             raise self.wrong(method, "takes other arguments than it is given") from None
         try:
-            return call(*arguments)
+            with warnings.catch_warnings():
+                warnings.filterwarnings("error", _NUMPYS, FutureWarning)
+                return call(*arguments)
         except IndexError:
             raise ValueError(
                 f"plant {self._plant.name!r} says modes = {self._modes} but its {method} uses "
                 "more; set modes to their number"
             ) from None
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             remedy = ""
-            if isinstance(error, RuntimeError | TypeError):  # what casadi raises over its symbols
+            equation = method != "structure"
+            # what casadi raises over its symbols
+            if equation and isinstance(error, RuntimeError | TypeError | FutureWarning):
                 remedy = (
-                    "write it with casadi.cos, casadi.fmax, casadi.if_else and so on: math's "
-                    "functions, if, max and float() take no symbols"
+                    "write it with casadi.cos, casadi.fmax, casadi.if_else and so on: math's and "
+                    "numpy's functions, if, max and float() take no symbols"
                 )
             raise self.wrong(method, f"fails{_line_of(error)} ({_words(error)})", remedy) from None
 
@@ -131,7 +151,7 @@ def _brief(value: object) -> str:
     return f"{type(value).__name__} {reprlib.repr(value)}" if value is not None else "None"
 
 
-def _line_of(error: Exception) -> str:
+def _line_of(error: BaseException) -> str:
     """Where in the user's method an error came from."""
     trace = error.__traceback__
     inside = trace.tb_next if trace else None
@@ -140,8 +160,10 @@ def _line_of(error: Exception) -> str:
     return f" at line {inside.tb_lineno} of {Path(inside.tb_frame.f_code.co_filename).name}"
 
 
-def _words(error: Exception) -> str:
+def _words(error: BaseException) -> str:
     """An error's name and first line, without the place in casadi that it comes from."""
+    if isinstance(error, FutureWarning):
+        return "a function of numpy is given a symbol"
     lines = str(error).strip().splitlines() or [""]
     if "to_double" in lines[0] or "to_int" in lines[0]:
         return "a symbol is no number"

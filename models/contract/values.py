@@ -123,6 +123,16 @@ class Equations:
                 "measure W from the static deflection"
             )
 
+    def check_tips(self) -> None:
+        """Every tip moves with some mode: else nothing would be kept still."""
+        tips = self._values[:, 1 + self._modes :]
+        still = np.flatnonzero(~np.any(tips != 0, axis=0))
+        if still.size:
+            raise ValueError(
+                f"plant {self._plant.name!r}: tip displacement {still[0] + 1} is 0 whatever W is; "
+                "return one that W moves from tip_displacements, and check the parameters"
+            )
+
     def check_stable(self) -> None:
         """No mode grows while the joint is at rest."""
         modes = self._modes
@@ -133,6 +143,7 @@ class Equations:
         matrices[:, :modes, modes:] = np.eye(modes)
         matrices[:, modes:] = resting.reshape(-1, 2 * modes, modes).transpose(0, 2, 1)
         values = np.linalg.eigvals(matrices)
+        self._check_stiff(np.abs(values))
         growth = values.real.max(axis=1)
         grows = np.flatnonzero(growth > _GROWTH * np.abs(values).max(axis=1))
         if grows.size:
@@ -142,6 +153,17 @@ class Equations:
                 f"{angle:.4g} rad it grows as exp({growth[grows[0]]:.3g} t); check the signs of "
                 "its parameters, and of stiffness and damping in modal_accelerations, which "
                 "returns W'' = -2 zeta omega W' - omega^2 W - ..."
+            )
+
+    def _check_stiff(self, sizes: Array) -> None:
+        """Every mode comes back: no eigenvalue of the resting structure is 0."""
+        loose = np.flatnonzero(sizes.min(axis=1) <= _TINY * sizes.max(axis=1))
+        if loose.size:
+            angle = self._points[_KINDS - 1 :: _KINDS, 0][self._defined][loose[0]]
+            raise ValueError(
+                f"plant {self._plant.name!r} has a mode without stiffness: with the joint at rest "
+                f"at {angle:.4g} rad it has the frequency 0 and does not come back; give the "
+                "parameters of its stiffness, such as omega, other values than 0"
             )
 
     def check_numbers(self) -> None:

@@ -3,9 +3,42 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from numbers import Integral, Real
+from typing import TypeVar
 
 import numpy as np
+
+T = TypeVar("T")
+
+
+def of_kind(name: str, value: object, kind: type[T], remedy: str) -> T:
+    """A value of a class.
+
+    Parameters
+    ----------
+    name : str
+        What the value is, for the message.
+    value : object
+        What was given.
+    kind : type
+        Its class.
+    remedy : str
+        What to give, for the message.
+
+    Returns
+    -------
+    kind
+        The value.
+
+    Raises
+    ------
+    ValueError
+        When it is of another class, or the class itself.
+    """
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} is {reprlib.repr(value)}; give {remedy}")
+    return value
 
 
 def finite(name: str, value: object, unit: str = "") -> float:

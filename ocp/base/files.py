@@ -71,6 +71,8 @@ def check_writable(path: str | Path) -> Path:
     """
     target = Path(path)
     folder = target.parent
+    if os.path.islink(target):  # it may lead to another folder
+        folder = Path(os.path.realpath(target)).parent
     try:
         mode = target.stat().st_mode
     except FileNotFoundError:
@@ -86,6 +88,11 @@ def check_writable(path: str | Path) -> Path:
         raise ValueError(f"folder {folder} does not exist; make it first")
     if not os.access(folder, os.W_OK) or (mode is not None and not os.access(target, os.W_OK)):
         raise ValueError(f"{target} cannot be written; choose another place")
+    try:  # even with permission it may fail, as in /proc
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ValueError(f"{target} cannot be written: {reason}; choose another place") from None
     return target
 
 

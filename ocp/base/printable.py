@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from unicodedata import category
 
+_OBEYED = ("Cc", "Cf", "Zl", "Zp")
+"""Categories of what is obeyed: control characters, those that turn the direction of the text or
+cannot be seen, and other ends of lines."""
+
 
 def has_control_characters(text: str) -> bool:
     """Whether a text holds any character that a terminal obeys instead of showing it."""
-    return any(category(character) == "Cc" for character in text)
+    return any(category(character) in _OBEYED for character in text)
 
 
 def printable(text: str) -> str:
     """A text whose control characters are spelled out."""
-    control = {c: c.encode("unicode_escape").decode() for c in text if category(c) == "Cc"}
+    control = {c: c.encode("unicode_escape").decode() for c in text if category(c) in _OBEYED}
     return text.translate(str.maketrans(control))

@@ -18,6 +18,7 @@ from ocp.plan.feasibility import rescued, unmet
 from ocp.plan.solver import plan_move
 from ocp.plan.verification import refuse_passed, tightened
 from ocp.profiles.joint_profile import JointPath
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.simulation.piecewise import PiecewiseMotion
 from ocp.simulation.residual import residual_samples
@@ -90,6 +91,7 @@ def energy_floor(
     KeyboardInterrupt
         After Ctrl-C before there were two grids.
     """
+    refuse_other_kinds(task)
     settings = FloorSettings(smooth, starts, seed, tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Real
 from pathlib import Path
 from typing import ClassVar, Self
 
@@ -15,13 +16,14 @@ from ocp.answers.documents import Upgrades
 from ocp.answers.older import front_of_version_2
 from ocp.answers.provenance import Setting, versions
 from ocp.answers.saved import Saved
-from ocp.base.checks import not_negative
+from ocp.base.checks import not_negative, of_kind
 from ocp.base.files import write_whole
 from ocp.base.ranges import Count, NotNegative, Positive
 from ocp.base.readonly import ReadOnlyDict
 from ocp.front.evaluation import evaluated, table_of
 from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
 from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.simulation.rollout import rollout
 from ocp.task.point_to_point import PointToPoint
@@ -101,11 +103,10 @@ class Front(Saved):
     seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.task, PointToPoint):
-            raise ValueError(f"task is {self.task!r}; give a PointToPoint")
-        if not isinstance(self.profile, JointProfile):
-            raise ValueError(f"profile is {self.profile!r}; give a JointProfile")
+        refuse_other_kinds(self.task, self.profile)
         self._check_entries("task", "profile", "points")
+        if not self.method.strip():
+            raise ValueError(f"method is {self.method!r}; give the name of what found the points")
         for name in ("settings", "versions"):
             object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
         object.__setattr__(self, "points", tuple(self.points))
@@ -248,6 +249,7 @@ class Front(Saved):
         points = self._nonempty()
         if residual_limit is None:
             return points[-1]
+        of_kind("residual limit", residual_limit, Real, "a number in m")
         still = [point for point in points if point.residual <= residual_limit]
         if not still:
             raise ValueError(

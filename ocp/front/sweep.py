@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ocp.answers.provenance import SolveSettings
 from ocp.plan.solver import first_steps, start_coefficients
 from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.program.problem import Problem
 from ocp.program.solution import LEAST_ENERGY, Solution
 from ocp.program.task_program import TaskProgram
@@ -57,6 +58,7 @@ class Sweep:
     began: float = field(default_factory=time.perf_counter)
 
     def __post_init__(self) -> None:
+        refuse_other_kinds(self.task, self.profile)
         if self.profile.size == 0:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
         self.steps = first_steps(self.task, self.profile, self.settings)

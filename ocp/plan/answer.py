@@ -21,7 +21,8 @@ from ocp.answers.provenance import Provenance, Setting, SolveSettings, Verificat
 from ocp.base.checks import positive
 from ocp.base.files import write_whole
 from ocp.base.status import SolveStatus
-from ocp.profiles.joint_profile import JointPath, JointProfile
+from ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.simulation.cvodes import Trajectory
 from ocp.simulation.objective import Motion
@@ -156,8 +157,8 @@ def evaluate_coefficients(
     """
     began = time.perf_counter()
     if profile is None:
-        terms = np.atleast_1d(np.asarray(coefficients, dtype=float)).size
-        profile = CycloidPolynomial(int(terms))
+        profile = CycloidPolynomial(numbers_of(coefficients).size)
+    refuse_other_kinds(task, profile)
     checked = profile.checked(coefficients)
     motion = resimulate(task, profile, checked)
     fixed = rollout(task, profile, checked)

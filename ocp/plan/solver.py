@@ -17,6 +17,7 @@ from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
 from ocp.plan.verification import HURRIED, MOST_SOLVER_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.problem import Problem
 from ocp.program.solution import Solution, same_minimum
@@ -85,6 +86,7 @@ def plan_move(
         After Ctrl-C before a start was solved.
     """
     profile = CycloidPolynomial() if profile is None else profile
+    refuse_other_kinds(task, profile)
     if guess is not None:
         guess = profile.checked(guess)
     settings = SolveSettings(residual_limit, bound, starts, seed, steps, guess)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -208,12 +209,7 @@ class JointProfile(ABC):
                 f"duration is {duration:g} s, too short for the {self.label}; give "
                 f"{_rounded_up(self.least_duration):.4g} s or more"
             )
-        try:
-            values = np.atleast_1d(np.asarray(coefficients, dtype=float))
-        except (TypeError, ValueError, OverflowError):
-            raise ValueError(
-                f"coefficients are {coefficients!r}; give {self.size} numbers"
-            ) from None
+        values = numbers_of(coefficients)
         if values.shape != (self.size,):
             raise ValueError(
                 f"got {values.size} coefficients for a profile of {self.size}; "
@@ -223,6 +219,21 @@ class JointProfile(ABC):
             bad = int(np.flatnonzero(~np.isfinite(values))[0])
             raise ValueError(f"coefficient {bad + 1} is {values[bad]}; give a finite number")
         return tuple(float(value) for value in values)
+
+
+def numbers_of(coefficients: object) -> NDArray[np.float64]:
+    """Coefficients as an array of one axis; ValueError where they are no numbers in a row."""
+    try:
+        if coefficients is None:
+            raise TypeError  # which NumPy takes for nan
+        values = np.atleast_1d(np.asarray(coefficients, dtype=float))
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(
+            f"coefficients are {reprlib.repr(coefficients)}; give a list of numbers"
+        ) from None
+    if values.ndim != 1:
+        raise ValueError(f"coefficients have shape {values.shape}; give one row of numbers")
+    return values
 
 
 def _rounded_up(value: float, digits: int = 4) -> float:

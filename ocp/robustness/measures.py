@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp.base.checks import whole
+from ocp.base.checks import not_negative, whole
 from ocp.base.readonly import ReadOnlyDict
 from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.robustness.plants import checked_ranges
 from ocp.robustness.population import ErrorPopulation, Figures
@@ -116,8 +117,18 @@ class Robustness:
         -------
         float
             The value that this share of the samples stays within, in SI units.
+
+        Raises
+        ------
+        ValueError
+            When there is no such figure, or the percentage is not within 0 to 100.
         """
-        return float(np.percentile(getattr(self.samples, figure), share))
+        values = dict(vars(self.samples))
+        if figure not in values:
+            raise ValueError(f"no figure is called {figure!r}; give one of {', '.join(values)}")
+        if not_negative("percentage", share) > 100:
+            raise ValueError(f"percentage is {share:g}; give 0 to 100")
+        return float(np.percentile(values[figure], share))
 
 
 def evaluate_robustness(
@@ -161,6 +172,7 @@ def evaluate_robustness(
         When there is no such parameter, a number is out of range, a plant within the ranges breaks
         its contract, or the coefficients or the duration do not fit the profile.
     """
+    refuse_other_kinds(task, profile)
     ranges = checked_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)

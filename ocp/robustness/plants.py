@@ -12,7 +12,8 @@ import numpy as np
 
 from models import Expression, JointMotion, Plant
 from models.contract.calls import Calls
-from ocp.base.checks import positive
+from ocp.base.checks import of_kind, positive
+from ocp.base.interrupts import keep_interrupts
 from ocp.base.names import nearest
 from ocp.simulation.collocation import modal_system
 
@@ -133,6 +134,7 @@ def checked_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float
         When there is no such parameter, a range is not between 0 and 1, or a plant at the end of
         a range breaks the contract of plants.
     """
+    of_kind("ranges", ranges, Mapping, "errors by name, as {'frequency': 0.1} for 10 %")
     if not ranges:
         raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
     return {name: _checked_range(plant, name, size) for name, size in ranges.items()}
@@ -154,7 +156,8 @@ def _checked_range(plant: Plant, name: str, size: float) -> float:
         )
     for error in (-size, size):
         try:
-            with_errors(plant, {name: error}).validate()
+            with keep_interrupts():  # casadi loses a Ctrl-C
+                with_errors(plant, {name: error}).validate()
         except ValueError as problem:
             side = "lower" if error < 0 else "higher"
             raise ValueError(f"with {name} {100 * size:g} % {side}, {problem}") from None

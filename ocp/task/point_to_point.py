@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from models import Plant
 from ocp.base.checks import finite, positive
+from ocp.base.interrupts import keep_interrupts
 from ocp.task.quantities import QUANTITIES
 
 LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}
@@ -60,7 +61,8 @@ class PointToPoint:
             raise ValueError(
                 f"plant is {self.plant!r}; give a Plant, such as SingleLinkManipulator()"
             )
-        self.plant.validate()
+        with keep_interrupts():  # casadi loses a Ctrl-C
+            self.plant.validate()
         for name in ("start", "target"):
             angle = finite(name, getattr(self, name), "rad")
             if abs(angle) > MOST_ANGLE:

@@ -26,7 +26,9 @@ COMMANDS = {
     "floor": "Find the least energy over all joint motions.",
     "robustness": "Show what plans leave when the plant is not the assumed one.",
     "problems": "List named problems with their exact fronts.",
+    "animate": "Draw plans in motion, as a GIF or an MP4.",
     "study": "Run every method on a task, and write one report.",
+    "contest": "Hold methods with equal evaluations against exact fronts.",
     "reproduce": "Recompute the paper.",
 }
 """What each command does; `NAME` is the function `NAME` of `studies.cli.commands.NAME`."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -107,19 +106,12 @@ def _is_folder(text: str) -> Path:
     if text == str(STDOUT):
         raise ValueError(f"this is for a folder, not for standard output; give ./{text} or another")
     folder = Path(_named(text))
-    place = folder
     if folder.is_dir():
         check_writable(folder / "any")
     elif folder.exists():
         raise ValueError(f"{folder} is a file; give a folder")
     else:
         check_writable(folder)  # it will be made; the folder around it must be there
-        place = folder.parent
-    try:  # even with permission it may fail, as in /proc
-        tempfile.TemporaryDirectory(dir=place, prefix=".quietarm-").cleanup()
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise ValueError(f"{folder} cannot be written: {reason}; choose another place") from None
     return folder
 
 

@@ -91,7 +91,15 @@ def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
     ]
     if without:
         raise ValueError(f"{kind.name} has no value for {without[0]}; give --set {without[0]}=...")
-    return kind(**given)
+    try:
+        return kind(**given)
+    except ValueError:  # of a parameter
+        raise
+    except (Exception, SystemExit) as error:  # of the user's own lines
+        raise ValueError(
+            f"{kind.name} cannot be made ({type(error).__name__}: {error}); mend class "
+            f"{kind.__name__}"
+        ) from None
 
 
 def _number(entry: Field[Any], text: str) -> float:

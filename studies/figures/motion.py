@@ -22,6 +22,7 @@ _IN_SIGHT = 0.4
 """A limit is drawn where a motion comes to this share of it; else it would flatten the motion."""
 
 
+_GIVE_MOTIONS = "give one motion or more, all of one duration"
 _ANGLE, _JERK = "angle", "jerk"
 _IN_MILLIMETRES = {"m": ("mm", 1e3)}
 """Units that pictures replace by others, with the factor."""
@@ -83,7 +84,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     if quantity not in QUANTITIES_DRAWN:
         known = ", ".join(QUANTITIES_DRAWN)
         raise ValueError(f"no quantity is called {quantity!r}; give one of {known}")
-    lines, (name, unit, scale) = lines_of(motions), _name_and_unit(quantity)
+    lines, (name, unit, scale) = _of_one_duration(motions), _name_and_unit(quantity)
     ax = axes_or_new(ax)
     for line in lines:
         sampled = line.plan.trajectory
@@ -127,7 +128,7 @@ def motion_figure(
     ValueError
         As `draw_quantity`.
     """
-    lines = lines_of(motions)
+    lines = _of_one_duration(motions)
     quantities = _panels_of(lines) if quantities is None else quantities
     count = len(quantities)
     columns = min(count, 2) if count <= 4 else 3
@@ -170,19 +171,27 @@ def floor_figure(floor: Floor, plan: Plan | None) -> Figure:
 
 
 def lines_of(motions: Motions) -> list[Line]:
-    """The lines of a picture, each with a colour; ValueError where they do not fit together."""
+    """The lines of a picture, each with a colour; ValueError where there is none."""
     if isinstance(motions, Plan):
         cycloid = evaluate_coefficients(motions.task, [])
         motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
     elif isinstance(motions, Floor):
         motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
-    if len({line.plan.task.duration for line in motions}) != 1:
-        raise ValueError("give one motion or more, all of one duration")
+    if not motions:
+        raise ValueError(_GIVE_MOTIONS)
     looks = [look(i) for i in range(len(motions))]
     return [
         line if line.colour else replace(line, colour=own.colour, style=own.dash)
         for line, own in zip(motions, looks, strict=True)
     ]
+
+
+def _of_one_duration(motions: Motions) -> list[Line]:
+    """`lines_of`; ValueError where their durations differ, too."""
+    lines = lines_of(motions)
+    if len({line.plan.task.duration for line in lines}) != 1:
+        raise ValueError(_GIVE_MOTIONS)
+    return lines
 
 
 def _panels_of(lines: Sequence[Line]) -> list[str]:

@@ -39,3 +39,8 @@ class Case:
                 f"give a bound on the coefficients: the paper has none for {self.task.plant.name}"
             )
         object.__setattr__(self, "bound", positive("bound on the coefficients", bound))
+
+    @property
+    def name(self) -> str:
+        """Plant and move."""
+        return f"{self.task.plant.name}, {self.label}"

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from ocp import PointToPoint, evaluate_coefficients
+from metaheuristics.ensemble import SEARCH_RESIDUAL
+from ocp import Plan, PointToPoint, evaluate_coefficients
+from studies.paper.case import Case
 from studies.paper.printed import COEFFICIENTS, MENDED, ROWS
 from studies.paper.tasks import condition_of
 
@@ -56,11 +58,38 @@ def paper_points(task: PointToPoint, terms: Collection[int]) -> list[PaperPoint]
     for row in ROWS:
         if row.condition is not condition or row.terms not in terms or row.terms in points:
             continue
-        key = (row.condition, row.terms)
-        coefficients = MENDED.get(key, COEFFICIENTS.get(key))
-        if coefficients is None:
+        plan = paper_plan(row.condition, row.terms)
+        if plan is None:
             points[row.terms] = PaperPoint(row.terms, row.energy, None)
         else:
-            plan = evaluate_coefficients(row.condition.task, coefficients)
             points[row.terms] = PaperPoint(row.terms, plan.energy, plan.residual)
     return list(points.values())
+
+
+def paper_plan(case: Case, terms: int) -> Plan | None:
+    """The printed coefficients evaluated, a misprint mended; None where the paper prints none."""
+    key = (case, terms)
+    coefficients = MENDED.get(key, COEFFICIENTS.get(key))
+    return None if coefficients is None else evaluate_coefficients(case.task, coefficients)
+
+
+def residual_level(case: Case, terms: int) -> float:
+    """Residual at which a search is judged.
+
+    Parameters
+    ----------
+    case : Case
+        The move.
+    terms : int
+        Number of terms.
+
+    Returns
+    -------
+    float
+        Residual [m] of the paper's coefficients for this move; where it prints none, of those for
+        the same plant, and for another plant `SEARCH_RESIDUAL`.
+    """
+    same_plant = (c for c, n in COEFFICIENTS if (c.task.plant, n) == (case.task.plant, terms))
+    printed = case if (case, terms) in COEFFICIENTS else next(same_plant, None)
+    plan = None if printed is None else paper_plan(printed, terms)
+    return SEARCH_RESIDUAL if plan is None else plan.residual

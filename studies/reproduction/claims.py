@@ -8,7 +8,8 @@ from itertools import pairwise
 from ocp import Plan
 from studies.paper.case import Case
 from studies.paper.printed import Row
-from studies.reproduction.recompute import BEYOND_SIX, STUDIED, Reproduction
+from studies.reproduction.pieces import BEYOND_SIX, STUDIED
+from studies.reproduction.recompute import Reproduction
 
 _AT_REST = 1e-7
 """A residual below this [m] counts as cancelled."""

@@ -11,7 +11,8 @@ from ocp import Floor
 from studies.display.tables import Cell, Column, Table
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
-from studies.reproduction.recompute import SEARCHES, TERMS, Reproduction
+from studies.reproduction.pieces import SEARCHES, TERMS
+from studies.reproduction.recompute import Reproduction
 
 PAPER, IN_BOX, FREE = "paper", "gradient, in the box", "gradient, no box"
 SERIES = (PAPER, *(method.label for method in SEARCHES), IN_BOX, FREE)

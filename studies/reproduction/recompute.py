@@ -4,53 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
-from itertools import product
 
-from metaheuristics.ensemble import Spread, energies_at, number_of_runs, one_seed
-from metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener, Piece, Say, to_the_end
+from metaheuristics.ensemble import Spread, energies_at
+from metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener
 from metaheuristics.sharing.running import run_pieces
-from ocp import (
-    CycloidPolynomial,
-    Floor,
-    Front,
-    Plan,
-    energy_floor,
-    evaluate_coefficients,
-    plan_move,
-)
+from ocp import Floor, Front, Plan, evaluate_coefficients
 from ocp.base.interrupts import note_interrupts
 from studies.methods import Method
 from studies.paper.case import Case
+from studies.paper.points import residual_level
 from studies.paper.printed import (
-    ARM_HALF,
     COEFFICIENTS,
     CONDITIONS,
     EARLIER,
     MENDED,
     PAPER_SEARCH,
     ROWS,
-    SINGLE_LINK_SIXTH,
     Row,
 )
-
-BEYOND_SIX = (8, 10)
-"""Numbers of terms that check the paper's 'no gain above six'."""
-SEARCHES = tuple(PAPER_SEARCH.values())
-"""The paper's two searches, in its order."""
-TERMS = (2, 4, 6, *BEYOND_SIX)
-"""Numbers of terms that the gradient solves every condition for."""
-STUDIED = (SINGLE_LINK_SIXTH, ARM_HALF)
-"""The conditions whose number of terms the paper varies: its Figs 2 and 5."""
-SOLVES = tuple(product(CONDITIONS, TERMS, (True, False)))
-"""What the gradient solves: condition, number of terms, whether in the paper's box."""
-
-
-COMPARED = tuple(row.condition for row in ROWS if row.earlier_energy is not None)
-"""The conditions at which the paper compares itself with an earlier study: its Tables 3 and 6."""
-EARLIER_STUDY = "earlier study"
-EARLIER_STARTS = 3
-"""Starts of the solver for the earlier studies' profiles, which have several minima."""
+from studies.reproduction.pieces import (
+    CASES,
+    PAPER_SOLVES,
+    SEARCHES,
+    STUDIED,
+    SYSTEMS,
+    pieces_of_paper,
+    searches_of,
+)
+from studies.reproduction.side_by_side.results import System
 
 
 @dataclass(frozen=True)
@@ -120,12 +101,15 @@ class Reproduction:
         Gradient answers by (condition, terms, whether in the box).
     floors : dict
         The least energy over all joint motions, at rest on arrival, of each condition.
+    systems : dict
+        All systems on each of `CASES`, side by side.
     """
 
     rows: tuple[RowResult, ...]
     cycloids: dict[Case, Plan]
     more_terms: dict[tuple[Case, int, bool], Plan]
     floors: dict[Case, Floor]
+    systems: dict[Case, tuple[System, ...]]
 
     def result(self, condition: Case, terms: int) -> RowResult:
         """The result of the first row for a condition and number of terms; KeyError if none."""
@@ -133,50 +117,6 @@ class Reproduction:
             if (result.row.condition, result.row.terms) == (condition, terms):
                 return result
         raise KeyError((condition, terms))
-
-
-def pieces_of_paper(seeds: int) -> list[Piece]:
-    """Every solve, floor and search, each once; the keys are those of `Reproduction`.
-
-    Parameters
-    ----------
-    seeds : int
-        Seeds of the metaheuristics.
-
-    Returns
-    -------
-    list of Piece
-        Solves under (condition, terms, whether in the box), those with the earlier study's profile
-        under (condition, `EARLIER_STUDY`), floors under their condition, and searches under
-        (method, condition, terms, seed).
-
-    Raises
-    ------
-    ValueError
-        When `seeds` is out of range.
-    """
-    seeds = number_of_runs(seeds, "seeds")
-    work: list[Piece] = []
-    for condition, terms, boxed in SOLVES:
-        name = f"gradient: {_label(condition, terms)}{', in the box' * boxed}"
-        solve = partial(_solved, condition, terms, boxed)
-        work.append(Piece((condition, terms, boxed), name, solve))
-    for condition in COMPARED:
-        reference, profile_name, _ = EARLIER[condition.task.plant.name]
-        name = f"{EARLIER_STUDY}: {condition.task.plant.name}, {condition.label}, {profile_name}"
-        solve = partial(_solved_as_earlier, condition)
-        work.append(Piece((condition, EARLIER_STUDY), f"{name} of ref. [{reference}]", solve))
-    for condition in CONDITIONS:
-        name = f"floor: {condition.task.plant.name}, {condition.label}"
-        work.append(Piece(condition, name, partial(_floor, condition)))
-    for method in SEARCHES:
-        for condition, terms in dict.fromkeys((row.condition, row.terms) for row in ROWS):
-            for seed in range(seeds):
-                name = f"{method.name}: {_label(condition, terms)}, seed {seed}"
-                settings = {"profile": CycloidPolynomial(terms), "bound": condition.bound}
-                search = partial(one_seed, condition.task, method.name, settings, seed)
-                work.append(Piece((method, condition, terms, seed), name, search))
-    return work
 
 
 def recompute_paper(
@@ -211,46 +151,28 @@ def recompute_paper(
         return Reproduction(
             tuple(_row_result(row, done, seeds) for row in ROWS),
             cycloids={c: evaluate_coefficients(c.task, []) for c in STUDIED},
-            more_terms={solve: done.answers[solve] for solve in SOLVES},
+            more_terms={solve: done.answers[solve] for solve in PAPER_SOLVES},
             floors={c: done.answers[c] for c in CONDITIONS},
+            systems={c: done.answers[c, SYSTEMS] for c in CASES},
         )
 
 
 def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
     key = (row.condition, row.terms)
+    _, earlier = EARLIER[row.condition.task.plant.name]
     return RowResult(
         row,
         printed=_evaluated(COEFFICIENTS, *key),
         mended=_evaluated(MENDED, *key),
         in_box=done.answers[*key, True],
         free=done.answers[*key, False],
-        earlier=(
-            None if row.earlier_energy is None else done.answers[row.condition, EARLIER_STUDY]
-        ),
+        earlier=None if row.earlier_energy is None else done.answers[row.condition, earlier],
         fronts={
-            method: tuple(done.answers[method, *key, seed] for seed in range(seeds))
+            method: tuple(done.answers[found] for found in searches_of(method, *key, seeds))
             for method in SEARCHES
         },
-        residual_level=_residual_level(*key),
+        residual_level=residual_level(*key),
     )
-
-
-def _solved(condition: Case, terms: int, boxed: bool, earlier: Done, say: Say) -> Plan:
-    bound = condition.bound if boxed else None
-    return to_the_end(plan_move(condition.task, CycloidPolynomial(terms), bound=bound))
-
-
-def _solved_as_earlier(condition: Case, earlier: Done, say: Say) -> Plan:
-    _, _, profile = EARLIER[condition.task.plant.name]
-    return to_the_end(plan_move(condition.task, profile, starts=EARLIER_STARTS))
-
-
-def _floor(condition: Case, earlier: Done, say: Say) -> Floor:
-    return to_the_end(energy_floor(condition.task))
-
-
-def _label(condition: Case, terms: int) -> str:
-    return f"{condition.task.plant.name}, {condition.label}, N = {terms}"
 
 
 def _evaluated(
@@ -258,13 +180,3 @@ def _evaluated(
 ) -> Plan | None:
     coefficients = table.get((condition, terms))
     return None if coefficients is None else evaluate_coefficients(condition.task, coefficients)
-
-
-def _residual_level(condition: Case, terms: int) -> float:
-    key = (condition, terms)
-    if key not in COEFFICIENTS:
-        key = next(
-            k for k in COEFFICIENTS if k[0].task.plant == condition.task.plant and k[1] == terms
-        )
-    coefficients = MENDED.get(key, COEFFICIENTS[key])
-    return evaluate_coefficients(key[0].task, coefficients).residual

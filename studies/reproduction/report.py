@@ -1,4 +1,4 @@
-"""What `quietarm reproduce` shows and writes: tables, the floor, claims, four figures."""
+"""What `quietarm reproduce` shows and writes: tables, systems, the floor, claims, figures."""
 
 from __future__ import annotations
 
@@ -27,6 +27,12 @@ from studies.reproduction.floor_dots import floor_dots
 from studies.reproduction.floor_table import LEGEND as FLOOR_LEGEND
 from studies.reproduction.floor_table import finding, floor_table, floor_tables
 from studies.reproduction.recompute import Reproduction, RowResult
+from studies.reproduction.side_by_side.picture import systems_figure
+from studies.reproduction.side_by_side.table import (
+    all_systems,
+    print_systems,
+    systems_in_markdown,
+)
 
 _MILLIMETRES = "{:.3g}".format
 _SECONDS = "{:.2f}".format
@@ -79,7 +85,7 @@ def tables(result: Reproduction) -> list[Table]:
     for number, title in _TITLES.items():
         chosen = [row for row in result.rows if row.row.table == number]
         method = chosen[0].own_search.label
-        reference, name, _ = EARLIER[chosen[0].row.condition.task.plant.name]
+        reference, name = EARLIER[chosen[0].row.condition.task.plant.name]
         earlier = f"{name}, ref. [{reference}] as read here,"
         columns = [
             replace(
@@ -138,7 +144,7 @@ def redrawn(result: Reproduction, condition: Case, title: str) -> Figure:
 
 def against_earlier(result: Reproduction, condition: Case, title: str) -> Figure:
     """Fig. 3 or Fig. 6: the paper's coefficients over the earlier study's profile as read here."""
-    reference, name, _ = EARLIER[condition.task.plant.name]
+    reference, name = EARLIER[condition.task.plant.name]
     row = next(r for r in result.rows if r.row.condition == condition and r.earlier)
     lines: list[Line] = []
     if row.earlier is not None:
@@ -156,6 +162,7 @@ def print_reproduction(console: Console, result: Reproduction, verdicts: Sequenc
     for table in tables(result):
         print_table(console, table)
     console.print(LEGEND, highlight=False, style="dim")
+    print_systems(console, result.systems)
     for table in floor_tables(result):
         print_table(console, table)
     console.print(FLOOR_LEGEND, highlight=False, style="dim")
@@ -185,6 +192,8 @@ def reproduction_files(folder: Path, result: Reproduction, verdicts: Sequence[Cl
     paper_tables = tables(result)
     for number, table in zip(_TITLES, paper_tables, strict=True):
         writes[f"table_{number}.csv"] = table.save_csv
+    writes["systems.png"] = drawing(partial(systems_figure, result.systems))
+    writes["systems.csv"] = all_systems(result.systems).save_csv
     writes["floor.png"] = drawing(partial(floor_dots, result))
     writes["floor.csv"] = floor_table(result).save_csv
     report = _markdown(result, paper_tables, verdicts)
@@ -197,6 +206,8 @@ def _markdown(
 ) -> str:
     parts = ["# The paper, recomputed\n", LEGEND + "\n"]
     parts += [table.markdown() for table in paper_tables]
+    parts += ["## Side by side\n", "![Side by side](systems.png)\n"]
+    parts += systems_in_markdown(result.systems)
     parts += ["## How far from the floor\n", finding(result) + "\n", FLOOR_LEGEND + "\n"]
     parts += [table.markdown() for table in floor_tables(result)]
     parts.append("![Multiples of the floor](floor.png)\n")

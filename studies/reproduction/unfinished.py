@@ -8,6 +8,7 @@ from metaheuristics.ensemble import SEARCH_RESIDUAL
 from metaheuristics.sharing.pieces import Done, Piece
 from ocp import Floor, Front, Plan
 from studies.display.tables import Cell, Column, Table
+from studies.reproduction.side_by_side.results import System
 
 FILE = "unfinished.csv"
 
@@ -25,7 +26,8 @@ def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
     Returns
     -------
     Table
-        Of a search the cheapest point within `SEARCH_RESIDUAL`, where it has one.
+        Of a search the cheapest point within `SEARCH_RESIDUAL`, where it has one; no figures of
+        what only puts others side by side.
     """
     columns = [
         Column("piece of work", key="piece"),
@@ -40,7 +42,9 @@ def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
     return Table("What was done before the interruption", columns, rows)
 
 
-def _figures(answer: Plan | Floor | Front) -> list[Cell]:
+def _figures(answer: Plan | Floor | Front | tuple[System, ...]) -> list[Cell]:
+    if isinstance(answer, tuple):
+        return [None, None]
     if not isinstance(answer, Front):
         return [answer.energy, 1e3 * answer.motion.residual]
     still = [point for point in answer.points if point.residual <= SEARCH_RESIDUAL]

@@ -13,10 +13,13 @@ from metaheuristics.sharing.workers import Workers
 
 def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
     """Make sure that no two options name one file; ValueError names them."""
-    names: dict[Path, str] = {}
+    names: dict[str, str] = {}
     for name, path in files:
-        if path is not None and names.setdefault(path.resolve(), name) != name:
-            raise ValueError(f"{names[path.resolve()]} and {name} are both {path}; give two files")
+        if path is None:
+            continue
+        place = os.path.realpath(path)  # of a link that goes in a circle, too
+        if names.setdefault(place, name) != name:
+            raise ValueError(f"{names[place]} and {name} are both {path}; give two files")
 
 
 def warn_of_workers(console: Console, workers: int, pieces: int) -> None:

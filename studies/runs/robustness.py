@@ -13,6 +13,7 @@ from ocp.robustness.plants import checked_ranges
 from studies.display.progress import count
 from studies.display.saving import finish
 from studies.reports.robustness import Figured, print_robustness, robustness_files
+from studies.runs.loading import load_plans
 
 DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
 """The errors where none is asked for."""
@@ -51,7 +52,7 @@ def run_robustness(
         When the work was interrupted.
     """
     ranges = dict(ranges) or dict(DEFAULT_RANGES)
-    plans = _loaded(paths)
+    plans = load_plans(paths)
     for label, plan in plans.items():
         try:
             checked_ranges(plan.task.plant, ranges)
@@ -60,18 +61,6 @@ def run_robustness(
     figured: Figured = _evaluated(plans, ranges, samples, seed, quiet)
     files = [] if output is None else robustness_files(output, figured)
     finish(files, partial(print_robustness, plans=figured), quiet=quiet)
-
-
-def _loaded(paths: Sequence[Path]) -> dict[str, Plan]:
-    """The plans by what they are called: the name of their file, or the whole path."""
-    if not paths:
-        raise ValueError("no plan is given; give files that were written by quietarm plan --output")
-    for path in paths:
-        if list(paths).count(path) > 1:
-            raise ValueError(f"{path} is given twice; give it once")
-    stems = [path.stem for path in paths]
-    names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
-    return {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
 
 
 def _evaluated(

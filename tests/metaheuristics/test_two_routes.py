@@ -67,7 +67,7 @@ CASES = {  # the first rows of Tables 6 and 3, in the paper's boxes
     "arm": (HALF, 0.5),
     "single link": (SIXTH, 0.2),
 }
-TOLERANCE = 1e-4  # README, 'How exact'
+TOLERANCE = 1e-4  # docs/accuracy.md
 POLISHED = 2e-3
 
 

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
 import pytest
 from sound_plant import Sound
 
@@ -196,14 +197,63 @@ def test_an_unstable_mode_is_refused(acceleration, growth):
 
 @pytest.mark.parametrize("modes", [1, 2, 3])
 def test_modes_that_do_not_decay_are_accepted(modes):
-    # Undamped and, in the last mode, free: roots on the imaginary axis and twice at zero.
+    # Undamped: roots on the imaginary axis.
     type("Undamped", (Sound,), {
         "name": "undamped",
         "modes": modes,
         "modal_accelerations": lambda p, j, W, dW: [
-            *[-(100.0 + i) * W[i] for i in range(modes - 1)], -j.acceleration
+            -(100.0 + i) * W[i] - j.acceleration for i in range(modes)
         ],
     })().validate()  # fmt: skip
+
+
+@pytest.mark.parametrize("modes", [1, 2])
+def test_a_mode_without_stiffness_is_refused(modes):
+    # The last mode is free, with both roots at zero: what it leaves is no vibration.
+    told = _told(
+        modes=modes,
+        modal_accelerations=lambda p, j, W, dW: [
+            *[-(100.0 + i) * W[i] - j.acceleration for i in range(modes - 1)], -j.acceleration
+        ],
+    )  # fmt: skip
+    assert "'broken' has a mode without stiffness" in told
+    assert "other values than 0" in told
+
+
+def test_a_parameter_that_takes_the_stiffness_away_is_refused():
+    with pytest.raises(ValueError, match=r"'single-link' has a mode without stiffness.*omega"):
+        SingleLinkManipulator(omega=0.0).validate()
+
+
+def test_a_tip_that_no_mode_moves_is_refused():
+    with pytest.raises(ValueError, match=r"'single-link': tip displacement 1 is 0 whatever W is"):
+        SingleLinkManipulator(phi=0.0).validate()
+
+
+@pytest.mark.parametrize(
+    "torque",
+    [
+        lambda p, j, W, dW, ddW: np.cos(j.angle) * j.acceleration,
+        lambda p, j, W, dW, ddW: np.interp(j.angle, [0, 1], [0, 1]),
+    ],
+    ids=["cos", "interp"],
+)
+def test_functions_of_numpy_are_told_every_time(torque):
+    for _ in range(2):  # casadi itself warns only once
+        told = _told(torque=torque)
+        assert "a function of numpy is given a symbol" in told
+        assert "casadi.cos" in told
+
+
+def test_a_method_that_ends_the_program_is_told():
+    def torque(p, j, W, dW, ddW):
+        raise SystemExit(5)
+
+    assert "torque fails at line" in _told(torque=torque)
+
+
+def test_more_modes_than_memory_holds_are_refused():
+    assert "1000000000 modes; give at most 100" in _told(modes=10**9)
 
 
 def test_a_parameter_that_makes_a_mode_unstable_is_refused():

@@ -1,5 +1,7 @@
 """The notebooks and their exercises run as they stand, and are committed with what they show."""
 
+import re
+
 import nbformat
 import pytest
 from notebook_files import (
@@ -77,6 +79,8 @@ def test_it_says_first_what_it_is_for_and_last_has_three_exercises(path):
     assert "**You need**" in cells[0].source
     exercises = [c for c in cells if c.cell_type == "markdown" and solutions(c.source)]
     assert len(exercises) == sum("<details>" in cell.source for cell in cells) == 3
+    headings = [cell.source for cell in cells if re.search(r"^## ", cell.source, re.MULTILINE)]
+    assert [text for text in headings if not text.startswith("## ")] == []  # slides begin there
     begin = next(n for n, cell in enumerate(cells) if cell.source.startswith("## Exercises"))
     assert all(cells.index(exercise) >= begin for exercise in exercises)
 

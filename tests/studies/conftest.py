@@ -26,7 +26,7 @@ from ocp import (
 from studies.cli import main
 from studies.display import progress
 from studies.methods import METHODS
-from studies.reproduction import recompute
+from studies.reproduction import pieces, recompute
 
 
 @pytest.fixture(scope="session")
@@ -39,19 +39,19 @@ def begun():
 def reproduction(begun):
     """The paper recomputed, once for all tests.
 
-    Searches, floors and the earlier studies are cut short: how well they find is tested where they
-    are.
+    Searches, floors and the solves with other profiles are cut short: how well they find is tested
+    where they are.
     """
     search, generations = ensemble.search, {"vepso": 60, "nsga2": 5}
-    floor = recompute.energy_floor
+    floor = pieces.energy_floor
 
     def short(task, method, **settings):
         return search(task, method, generations=generations[method], **settings)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensemble, "search", short)
-        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.02))
-        patch.setattr(recompute, "EARLIER_STARTS", 1)
+        patch.setattr(pieces, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.02))
+        patch.setattr(pieces, "STARTS", dict.fromkeys(pieces.STARTS, 1))
         return recompute.recompute_paper(begun.append)
 
 

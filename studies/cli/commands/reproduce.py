@@ -33,7 +33,8 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
     from studies.display.saving import finish, inside
     from studies.display.words import print_lines
     from studies.reproduction.claims import claims
-    from studies.reproduction.recompute import pieces_of_paper, recompute_paper
+    from studies.reproduction.pieces import pieces_of_paper
+    from studies.reproduction.recompute import recompute_paper
     from studies.reproduction.report import print_reproduction, reproduction_files
     from studies.reproduction.unfinished import FILE, unfinished_table
 

@@ -21,7 +21,7 @@ FINE = 140  # ocp.simulation.rollout.ROLLOUT_STEPS
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
 def test_nine_in_ten_energies_are_within_the_error_stated(plant, start, target, duration, bound):
     # `CANDIDATE_STEPS` states 1e-4. The reference is the finer rollout, itself within 1e-5 of
-    # CVODES (README, 'How exact'), as the next test checks on fewer candidates.
+    # CVODES (docs/accuracy.md), as the next test checks on fewer candidates.
     task = PointToPoint(plant, target, duration, start)
     X = candidates(1000, bound, seed=2)
     fine = PopulationObjective(task, PROFILE, steps=FINE)(X).energy

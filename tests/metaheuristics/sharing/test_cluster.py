@@ -171,6 +171,13 @@ def test_where_no_scheduler_answers_it_is_said(monkeypatch):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("address", ["localhost", "tcp://localhost", "127.0.0.1:8786", ""])
+def test_what_is_no_address_is_said_before_there_is_a_client(monkeypatch, address):
+    monkeypatch.setattr(cluster, "Client", None)  # one that cannot begin takes 20 s to end
+    with pytest.raises(ValueError, match=f"scheduler is '{address}'; give it as tcp://host:8786"):
+        search_many(TASK, "vepso", 2, scheduler=address, **SMALL)
+
+
 @SIGKILL
 def test_a_piece_that_kills_its_worker_three_times_is_reported(tmp_path):
     deaths = tmp_path / "deaths"

@@ -102,7 +102,6 @@ def execute(path, folder):
         timeout=600,
         coalesce_streams=True,
         record_timing=False,
-        store_widget_state=False,
         resources={"metadata": {"path": str(folder)}},
     ).execute()
     for number, cell in enumerate(code_cells(notebook), 1):

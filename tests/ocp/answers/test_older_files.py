@@ -57,7 +57,7 @@ def test_a_plan(name):
     assert plan.provenance.seconds == document["provenance"]["seconds"]
     # the figures are those of the task and the coefficients as they were loaded
     motion = resimulate(plan.task, plan.profile, plan.coefficients)
-    assert motion.energy == pytest.approx(plan.energy, rel=1e-9)  # README, 'How exact'
+    assert motion.energy == pytest.approx(plan.energy, rel=1e-9)  # docs/accuracy.md
     assert motion.residual == pytest.approx(plan.residual, rel=3e-6, abs=1e-12)
 
 
@@ -92,7 +92,7 @@ def test_a_front(name):
     assert front.gaps == tuple(map(tuple, document["gaps"]))
     point = front.points[0]
     found = evaluate_coefficients(front.task, point.coefficients)
-    assert found.energy == pytest.approx(point.energy, rel=1e-5)  # README, 'How exact'
+    assert found.energy == pytest.approx(point.energy, rel=1e-5)  # docs/accuracy.md
 
 
 @pytest.mark.parametrize(
@@ -122,7 +122,7 @@ def test_a_floor():
     assert floor.provenance.settings == FloorSettings(False, 2, 5, 0.9)
     assert floor.provenance.versions == document["provenance"]["versions"]
     motion = resimulated(floor.task, PiecewiseMotion.of_free_motion(floor.task, floor.free)).motion
-    assert motion.energy == pytest.approx(floor.energy, rel=1e-9)  # README, 'How exact'
+    assert motion.energy == pytest.approx(floor.energy, rel=1e-9)  # docs/accuracy.md
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ def test_no_point_is_dearer_than_a_plan_at_its_residual(case):
     task, bound, front = case
     for point in front.points[2:-1:3]:
         plan = plan_move(task, bound=bound, residual_limit=point.residual)
-        assert point.energy <= plan.energy * (1 + 1e-4)  # README, 'How exact'
+        assert point.energy <= plan.energy * (1 + 1e-4)  # docs/accuracy.md
         assert point.energy == pytest.approx(plan.energy, rel=2e-3)
 
 

@@ -62,7 +62,7 @@ def test_energy_of_friction_alone():
     assert motion.net_work == pytest.approx(motion.energy, rel=1e-12)
 
 
-# -- accuracy at the default steps (README, 'How exact') --
+# -- accuracy at the default steps (docs/accuracy.md) --
 
 BOXES = {"single link": 0.2, "arm": 0.5}
 """Eqs (12) and (17)."""

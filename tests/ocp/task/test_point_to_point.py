@@ -1,6 +1,8 @@
 """What is asked: valid tasks, and what is refused when a task is made."""
 
 import math
+import signal
+from contextlib import suppress
 from dataclasses import FrozenInstanceError
 
 import numpy as np
@@ -129,3 +131,15 @@ def test_a_plant_that_breaks_its_contract_is_refused():
     cubic = {"name": "cubic", "modal_accelerations": lambda plant, joint, W, dW: [-(W[0] ** 3)]}
     with pytest.raises(ValueError, match=r"'cubic'.*not affine"):
         _task(plant=type("Cubic", (SingleLinkManipulator,), cubic)())
+
+
+def test_ctrl_c_in_the_check_of_the_plant_is_not_lost(monkeypatch):
+    # casadi swallows the interrupt where it takes an array, and gives None for what it computed.
+    def lost(plant):
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        raise AttributeError("'NoneType' object has no attribute 'T'")
+
+    monkeypatch.setattr(SingleLinkManipulator, "validate", lost)
+    with pytest.raises(KeyboardInterrupt):
+        PointToPoint(SingleLinkManipulator(), 1.0, 0.8)

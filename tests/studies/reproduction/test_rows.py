@@ -18,7 +18,8 @@ from studies.paper.printed import (
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
 )
-from studies.reproduction.recompute import SEARCHES, pieces_of_paper, recompute_paper
+from studies.reproduction.pieces import SEARCHES, pieces_of_paper
+from studies.reproduction.recompute import recompute_paper
 
 LAST_DIGIT = {2: 1e-4, 5: 1e-3}
 """The last digit that Tables 2 and 5 print [J]."""
@@ -66,20 +67,22 @@ def test_every_problem_is_solved_once_and_announced(reproduction, begun):
     assert len(begun) == len(set(begun)) == len(pieces_of_paper(seeds=1))
     kinds = Counter(name.partition(": ")[0] for name in begun)
     assert kinds == {
-        "gradient": 6 * 5 * 2,  # conditions, N = 2 to 10, with and without the box
-        "earlier study": 6,  # conditions
-        "floor": 6,  # conditions
-        "vepso": 2 * 3 + 4,  # Tables 2 and 5; what 3 and 6 have beyond them
-        "nsga2": 2 * 3 + 4,
+        # conditions, N = 2 to 10, with and without the box; the third plant's move with N = 6;
+        # network, Gaussians and spline on all moves
+        "gradient": 6 * 5 * 2 + 2 + 7 * 3,
+        "floor": 7,  # moves
+        "vepso": 2 * 3 + 4 + 1,  # Tables 2 and 5; what 3 and 6 have beyond them; the third plant
+        "nsga2": 2 * 3 + 4 + 1,
+        "side by side": 7,  # moves
     }
-    gradient = [name for name in begun if name.startswith("gradient")]
+    gradient = [name for name in begun if name.startswith("gradient") and ", N = " in name]
     assert sum(name.endswith("in the box") for name in gradient) == len(gradient) / 2
-    assert len(reproduction.more_terms) == len(gradient)
+    assert len(reproduction.more_terms) == len(gradient) - 2  # the third plant's
 
 
 def test_every_seed_is_a_piece_of_its_own():
     one, three = (pieces_of_paper(seeds) for seeds in (1, 3))
-    assert len(three) - len(one) == 2 * len(SEARCHES) * (2 * 3 + 4)
+    assert len(three) - len(one) == 2 * len(SEARCHES) * (2 * 3 + 4 + 1)
     assert len({piece.key for piece in three}) == len({piece.name for piece in three}) == len(three)
 
 
@@ -137,7 +140,7 @@ def test_the_gradient_answers_are_at_rest_on_arrival_and_verified(reproduction):
     plans += reproduction.more_terms.values()
     for plan in plans:
         assert plan.status.solved
-        assert plan.residual < 1e-8  # README, 'How exact'
+        assert plan.residual < 1e-8  # docs/accuracy.md
         assert abs(plan.verification.energy_difference) < 1e-3 * plan.energy
 
 

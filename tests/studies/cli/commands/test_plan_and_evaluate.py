@@ -57,7 +57,7 @@ def test_a_plan_shows_its_limit_on_the_jerk_and_its_peaks(call):
     )
     assert (code, err) == (0, "")
     motion = Plan.load("plan.json").motion
-    assert motion.peak_jerk <= 5000.0 * 1.001  # README, 'How exact'
+    assert motion.peak_jerk <= 5000.0 * 1.001  # docs/accuracy.md
     shown = " ".join(out.split())
     assert "limits jerk 5000 rad/s^3" in shown
     for name, quantity in QUANTITIES.items():
@@ -85,7 +85,7 @@ def test_the_json_file_holds_the_plan_in_si_units(planned):
     assert task["duration"] == 1.0
     assert len(document["coefficients"]) == 6
     assert (task["torque_limit"], task["speed_limit"]) == (0.4, None)
-    assert 0 <= document["motion"]["residual"] < 1e-8  # README, 'How exact'
+    assert 0 <= document["motion"]["residual"] < 1e-8  # docs/accuracy.md
     assert (
         document["motion"]["energy"] > 0.13
     )  # above the least without a limit, 0.136 J in docs/physics.md

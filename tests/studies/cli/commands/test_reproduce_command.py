@@ -14,7 +14,7 @@ import studies.runs.polishing
 import studies.runs.searching
 import studies.study.work
 from studies.paper.printed import ROWS
-from studies.reproduction.recompute import pieces_of_paper
+from studies.reproduction.pieces import pieces_of_paper
 from studies.reproduction.report import reproduction_files
 
 

@@ -1,6 +1,7 @@
 """`quietarm robustness`: what it says, what it writes, what it refuses."""
 
 import csv
+import json
 import math
 
 import numpy as np
@@ -182,6 +183,25 @@ def test_what_cannot_be_is_told_in_one_line(call, folder, line, message):
     assert message in err
     assert err.count("\n") == 1
     assert {path.suffix for path in folder.iterdir()} == {".json"}
+
+
+@pytest.mark.parametrize(
+    ("figure", "told"),
+    [
+        ("residual", "states residual"),
+        ("energy", "states energy"),
+        ("peak_torque", "states peak torque"),
+        ("peak_jerk", "states peak jerk"),
+    ],
+)
+def test_a_plan_is_a_claim(call, folder, figure, told):
+    document = json.loads((folder / "arm.json").read_text())
+    document["motion"][figure] *= 1.01
+    (folder / "arm.json").write_text(json.dumps(document))
+    code, out, err = call("arm.json --quiet")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert f"arm.json {told}" in err
+    assert "find the plan again" in err
 
 
 def test_the_picture_has_a_panel_a_parameter_and_a_curve_a_plan(plans):

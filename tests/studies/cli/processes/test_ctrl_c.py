@@ -11,7 +11,7 @@ import pytest
 from lines import EVERY_FILE, MOVE
 
 from ocp import Plan
-from studies.reproduction.recompute import pieces_of_paper
+from studies.reproduction.pieces import pieces_of_paper
 
 INTERRUPTED = "quietarm: interrupted; nothing was written"
 GUARD = 120

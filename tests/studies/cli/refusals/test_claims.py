@@ -149,6 +149,7 @@ def test_a_file_larger_than_any_of_quietarm_is_refused(call, monkeypatch):
         (["method"], "\x1b[2Jnsga2"),
         (["format"], "\x1b[2J"),
         (["settings", "bound"], "\x9b2J"),
+        (["method"], "\u202e2agsn"),  # turns what follows it around
         (["settings", "\x1b[2J"], 1),
         (["versions", "numpy"], "1\r2"),
         (["failures"], [{"asked": {"residual_limit": 0.1}, "reason": "\x07"}]),

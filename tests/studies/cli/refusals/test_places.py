@@ -19,6 +19,8 @@ from lines import EVERY_FILE, MOVE, PLAN, TWO_TERMS
         ("--csv", "kept", "kept is a folder; give the name of a file in it"),
         ("--figure", "kept", "kept is a folder; give the name of a file in it"),
         ("--figure", "move.jpg", "move.jpg is no picture; end its name in .png, .pdf, .svg"),
+        ("--output", "/proc/plan.json", "/proc/plan.json cannot be written: "),
+        ("--output", "link", "folder /nowhere does not exist; make it first"),
         ("--figure", "move", "move is no picture; end its name in .png, .pdf, .svg"),
     ],
 )
@@ -27,6 +29,7 @@ def test_an_output_that_cannot_be_is_found_before_the_solve(
 ):
     (folder / "kept").mkdir()
     (folder / "old.txt").write_text("old")
+    (folder / "link").symlink_to("/nowhere/plan.json")
     message = refused(f"{command} {option} {value}", status=2)
     assert option in message
     assert remedy in message
@@ -92,3 +95,9 @@ def test_a_reproduction_finds_a_bad_folder_before_its_solves(
 ):
     (folder / "old.txt").write_text("old")
     assert remedy in refused(f"reproduce --output {value}", status=2)
+
+
+@pytest.mark.parametrize("line", ["polish", f"front {MOVE} --method vepso --bound 0.2 --resume"])
+def test_a_link_that_goes_in_a_circle_is_told(refused, folder, line):
+    (folder / "round").symlink_to("round")
+    assert "round cannot be read: too many levels of symbolic links" in refused(f"{line} round")

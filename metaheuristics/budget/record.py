@@ -1,0 +1,131 @@
+"""What a search had found after so many evaluations, measured within the exact front's extent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp import Front
+from ocp.base.ranges import Count, NotNegative, Positive
+
+Array = NDArray[np.float64]
+CORNER = 1.1
+"""Hypervolumes are measured from here, where 0 is the exact front's best and 1 its worst of each
+objective: as is usual, a tenth beyond, so that the ends of the front count."""
+_A_DECADE = 48
+"""Marks in each decade of evaluations; neighbouring ones are 5 % apart."""
+_FIRST_MARK = 10
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The exact front's extent.
+
+    Attributes
+    ----------
+    ideal : tuple of float
+        Its least residual [m] and least energy [J].
+    nadir : tuple of float
+        Its largest.
+    """
+
+    ideal: tuple[NotNegative, NotNegative]
+    nadir: tuple[Positive, Positive]
+
+    @classmethod
+    def of(cls, front: Front) -> Scale:
+        """The extent of a front; ValueError where it has none in one of the objectives."""
+        if len(front.points) < 2:
+            raise ValueError(
+                "the exact front is a single motion, which is no scale for others; give another "
+                "problem"
+            )
+        still, cheap = front.points[0], front.points[-1]
+        return cls((still.residual, cheap.energy), (cheap.residual, still.energy))
+
+    def scaled(self, objectives: Array) -> Array:
+        """Residuals [m] and energies [J], shape (n, 2), from 0 at the ideal to 1 at the nadir."""
+        ideal = np.array(self.ideal)
+        return (objectives - ideal) / (np.array(self.nadir) - ideal)
+
+    def hypervolume(self, objectives: Array) -> float:
+        """What points dominate up to `CORNER`; shape (n, 2), residuals [m] and energies [J]."""
+        if len(objectives) == 0:
+            return 0.0
+        return float(moocore.hypervolume(self.scaled(objectives), ref=[CORNER, CORNER]))
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Where a search was.
+
+    Attributes
+    ----------
+    evaluations : int
+        Evaluations spent.
+    seconds : float
+        Processor time spent, without that of this record [s].
+    hypervolume : float
+        What all that was found until then dominates, as `Scale.hypervolume` measures it.
+    """
+
+    evaluations: Count
+    seconds: NotNegative
+    hypervolume: NotNegative
+
+
+@dataclass(frozen=True)
+class Visits:
+    """Where the feasible candidates of a search lie, by their residual in the exact front's extent.
+
+    Attributes
+    ----------
+    still, middle, cheap : int
+        Candidates within the corner of the hypervolume, in the lower, middle and upper third of
+        the residuals.
+    outside : int
+        Those beyond the corner.
+    """
+
+    still: Count = 0
+    middle: Count = 0
+    cheap: Count = 0
+    outside: Count = 0
+
+    @classmethod
+    def of(cls, scaled: Array) -> Visits:
+        """Count candidates, shape (n, 2), that `Scale.scaled` gave."""
+        inside = (scaled < CORNER).all(axis=1)
+        thirds = np.clip((3 * scaled[inside, 0]).astype(int), 0, 2)
+        still, middle, cheap = (int(n) for n in np.bincount(thirds, minlength=3))
+        return cls(still, middle, cheap, int((~inside).sum()))
+
+    def __add__(self, other: Visits) -> Visits:
+        """The sum of both."""
+        return Visits(
+            self.still + other.still,
+            self.middle + other.middle,
+            self.cheap + other.cheap,
+            self.outside + other.outside,
+        )
+
+
+def marks_of(budget: int) -> tuple[int, ...]:
+    """The numbers of evaluations after which a search is measured; the last is the budget.
+
+    Parameters
+    ----------
+    budget : int
+        Evaluations in all.
+
+    Returns
+    -------
+    tuple of int
+        Rising, at even distances on a logarithmic scale.
+    """
+    first = min(_FIRST_MARK, budget)
+    number = 1 + round(_A_DECADE * np.log10(budget / first))
+    return tuple(np.unique(np.geomspace(first, budget, number).round().astype(int)).tolist())

@@ -1,0 +1,141 @@
+"""Where every structure of an animation is at every frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models import Body, Plant
+from models.contract.calls import Calls
+from ocp import Floor, Plan, Trajectory
+from ocp.base.checks import positive
+from studies.animation.clock import Clock
+from studies.figures import Line
+
+Array = NDArray[np.float64]
+Bodies = list[Body]
+
+_SCALES = (1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0)
+_BENT = 0.2
+"""Share of a structure's size up to which deflections are drawn larger than they are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Actor:
+    """One motion of an animation.
+
+    Attributes
+    ----------
+    line : Line
+        The motion, its label and look.
+    trajectory : Trajectory
+        Samples from the start to the end of the clock.
+    scale : float
+        How many times larger than they are its deflections are drawn.
+    tips : ndarray, shape (frames, tips)
+        Tip displacements [m], as they are.
+    bodies, unbent : list of list of Body
+        The structure at every frame, as it is drawn and as it would be if it did not bend.
+    """
+
+    line: Line
+    trajectory: Trajectory
+    scale: float
+    tips: Array
+    bodies: list[Bodies]
+    unbent: list[Bodies]
+
+    @cached_property
+    def paths(self) -> Array:
+        """Where the tips are drawn, shape (tips, frames, 2) [m]."""
+        drawn = [[body.points[-1] for body in bodies if body.tip] for bodies in self.bodies]
+        return np.array(drawn).reshape(len(drawn), -1, 2).transpose(1, 0, 2)
+
+    @property
+    def extent(self) -> Array:
+        """Least and largest coordinates of all that is drawn [m], shape (2, 2)."""
+        every = points_of(body for bodies in (*self.bodies, *self.unbent) for body in bodies)
+        return np.array([every.min(axis=0), every.max(axis=0)])
+
+
+def cast_of(lines: Sequence[Line], clock: Clock, scale: float | None = None) -> list[Actor]:
+    """Where the structures are at every frame.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+        The motions.
+    clock : Clock
+        The times of the frames.
+    scale : float, optional
+        How many times larger than they are deflections are drawn; by default so that the largest
+        of each plant are a fifth of its size, but never smaller than they are.
+
+    Returns
+    -------
+    list of Actor
+        The motions in their order; those of plants of one name have one scale.
+
+    Raises
+    ------
+    ValueError
+        When the scale is not positive, or a plant does not say how it is drawn.
+    """
+    given = None if scale is None else positive("deflection scale", scale)
+    samples = [_until(line.plan, clock.end) for line in lines]
+    angles = [np.interp(clock.times, one.time, one.joint[:, 0]) for one in samples]
+    tips = [_at(clock.times, one.time, one.tips) for one in samples]
+    unbent = [
+        _structures(line.plan.task.plant, at, np.zeros_like(of))
+        for line, at, of in zip(lines, angles, tips, strict=True)
+    ]
+    names = [line.plan.task.plant.name for line in lines]
+    shares = [np.abs(of).max() / _size(bodies[0]) for of, bodies in zip(tips, unbent, strict=True)]
+    actors: list[Actor] = []
+    for i, line in enumerate(lines):
+        largest = max(s for s, name in zip(shares, names, strict=True) if name == names[i])
+        one = given or _fitting(largest)
+        bodies = _structures(line.plan.task.plant, angles[i], one * tips[i])
+        actors.append(Actor(line, samples[i], one, tips[i], bodies, unbent[i]))
+    return actors
+
+
+def points_of(bodies: Iterable[Body]) -> Array:
+    """All points of bodies, shape (points, 2) [m]."""
+    return np.vstack([body.points for body in bodies])
+
+
+def _until(motion: Plan | Floor, end: float) -> Trajectory:
+    """A motion from its start to the end of the clock."""
+    window = end - motion.task.duration
+    if window == motion.task.residual_window:
+        return motion.trajectory
+    return replace(motion, task=replace(motion.task, residual_window=window)).trajectory
+
+
+def _at(times: Array, of: Array, columns: Array) -> Array:
+    return np.column_stack([np.interp(times, of, column) for column in columns.T])
+
+
+def _structures(plant: Plant, angles: Array, tips: Array) -> list[Bodies]:
+    call = Calls(plant, 1)
+    found = [
+        call.structure(float(angle), row.tolist()) for angle, row in zip(angles, tips, strict=True)
+    ]
+    if len({tuple(body.tip for body in bodies) for bodies in found}) > 1:
+        raise call.wrong("structure", "does not return the same bodies at every moment")
+    return found
+
+
+def _size(bodies: Bodies) -> float:
+    """The larger side of what is drawn [m]; 1 m of a single point."""
+    return float(np.ptp(points_of(bodies), axis=0).max()) or 1.0
+
+
+def _fitting(share: float) -> float:
+    """The scale for deflections that are this share of the structure's size."""
+    return max([s for s in _SCALES if s * share <= _BENT], default=1.0)

@@ -1,0 +1,129 @@
+"""Animations of motions: what makes one, shows it in a notebook and saves it."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ocp.base.checks import whole
+from ocp.base.files import write_whole
+from studies.animation.cast import cast_of
+from studies.animation.clock import Clock, end_of
+from studies.animation.formats import FORMATS, PAUSE, Picture, check_format, format_of
+from studies.animation.stage import Stage
+from studies.figures.motion import Motions, lines_of
+
+MOST_MOTIONS = 6
+_LEAST_WIDTH, _MOST_WIDTH = 200, 2000
+
+
+@dataclass(frozen=True, eq=False)
+class Animation:
+    """A picture that moves; a notebook shows it where it is a cell's last line.
+
+    Attributes
+    ----------
+    content : bytes
+        The file.
+    format : str
+        ``"gif"`` or ``"mp4"``.
+    frames : int
+        How many pictures it has.
+    seconds : float
+        How long it takes [s].
+    """
+
+    content: bytes = field(repr=False)
+    format: str
+    frames: int
+    seconds: float
+
+    def save(self, path: str | Path) -> None:
+        """Write the file, whole or not at all; ValueError where its ending is another format's."""
+        if format_of(path) != self.format:
+            raise ValueError(
+                f"{path} is not named .{self.format}, as this animation is; name it so, or make "
+                f"it with format={format_of(path)!r}"
+            )
+        write_whole(path, self.content)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the file itself, so that it needs no server."""
+        content = base64.b64encode(self.content).decode()
+        data = f"data:{FORMATS[self.format].media_type};base64,{content}"
+        if self.format == "mp4":
+            return f'<video controls loop src="{data}"></video>'
+        return f'<img src="{data}">'
+
+
+def animate(
+    motions: Motions,
+    *,
+    deflection_scale: float | None = None,
+    speed: float = 1.0,
+    frames_per_second: float = 25.0,
+    width: int = 800,
+    format: str = "gif",  # noqa: A002  # as Pillow and matplotlib call it
+    report: Callable[[int, int], object] | None = None,
+) -> Animation:
+    """Draw structures in motion, side by side and on one clock.
+
+    Every link is bent as its mode bends it, and its plant says how (`Plant.structure`); dashed is
+    where it would be without bending. After arrival the path of the tips is drawn. Below are the
+    joint angle and the power, with a cursor. The clock goes on until the last residual window ends.
+
+    Parameters
+    ----------
+    motions : sequence of Line, Plan or Floor
+        The motions, of any plants and durations, 6 at most; a plan alone is drawn beside the plain
+        cycloid of its task.
+    deflection_scale : float, optional
+        How many times larger than they are deflections are drawn, which the picture says; by
+        default so that the largest is up to a fifth of the structure, but never less than 1.
+    speed : float
+        Of the clock: 0.25 is slow motion, four times slower than it is.
+    frames_per_second : float
+        50 at most. A GIF holds a frame for hundredths of a second, so that 100 over a whole number
+        are exact.
+    width : int
+        Of the picture [pixels], 200 to 2000.
+    format : str
+        ``"gif"``, or ``"mp4"`` where the program ffmpeg is installed.
+    report : callable, optional
+        Is told how many frames of how many are drawn.
+
+    Returns
+    -------
+    Animation
+        To be shown in a notebook, or saved.
+
+    Raises
+    ------
+    ValueError
+        When there is no motion or too many, a number is out of range, or there is no ffmpeg.
+    """
+    check_format(format)
+    lines = lines_of(motions)
+    if len(lines) > MOST_MOTIONS:
+        raise ValueError(
+            f"{len(lines)} motions are given, where {MOST_MOTIONS} are the most that can be seen "
+            "side by side; give fewer"
+        )
+    width = whole("width", width, _LEAST_WIDTH, _MOST_WIDTH, "more pixels make a huge file")
+    clock = Clock(end_of(lines), speed, frames_per_second)
+    stage = Stage(cast_of(lines, clock, deflection_scale), clock, width)
+    pictures = _reported(stage.frames(), len(clock.times), report)
+    content = FORMATS[format].write(pictures, frames_per_second)
+    seconds = PAUSE + len(clock.times) / frames_per_second
+    return Animation(content, format, len(clock.times), seconds)
+
+
+def _reported(
+    frames: Iterator[Picture], total: int, report: Callable[[int, int], object] | None
+) -> Iterator[Picture]:
+    for done, frame in enumerate(frames, start=1):
+        if report is not None:
+            report(done, total)
+        yield frame

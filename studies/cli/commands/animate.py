@@ -1,0 +1,52 @@
+"""`quietarm animate`: plans as a picture that moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from studies.cli.options import INPUT, SHARE, STATE, plant_file_option, quiet_option
+
+
+@click.command()
+@click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
+@click.option("--output", type=STATE, required=True,
+              help="The file: .gif, or .mp4 where ffmpeg is installed.")  # fmt: skip
+@click.option("--speed", type=SHARE, default="100%", show_default=True,
+              help="Speed of the clock; 25% is slow motion.")  # fmt: skip
+@click.option("--deflection-scale", type=float,
+              help="Draw deflections so many times larger than they are. [default: the largest "
+              "becomes up to a fifth of the structure]")  # fmt: skip
+@click.option("--frames-per-second", type=float, default=25.0, show_default=True,
+              help="Frames in a second of the animation.")  # fmt: skip
+@click.option("--width", type=int, default=800, show_default=True, help="In pixels.")
+@plant_file_option(expose_value=False)
+@quiet_option
+def animate(
+    plans: tuple[Path, ...],
+    output: Path,
+    speed: float,
+    deflection_scale: float | None,
+    frames_per_second: float,
+    width: int,
+    quiet: bool,
+) -> None:
+    """Draw structures in motion, side by side and on one clock.
+
+    PLANs are files written by `quietarm plan` or `evaluate`, of any plants and durations; one alone
+    is drawn beside the plain cycloid of its move. Every link bends as its mode does; the picture
+    says how far that is exaggerated. Below are the joint angle and the power, with a cursor.
+
+    \b
+    Examples:
+      quietarm animate plan.json --output move.gif
+      quietarm animate plan.json zvd.json --speed 25% --output slowly.gif
+      quietarm animate plan.json --deflection-scale 5 --width 1200 --output move.gif
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from studies.runs.animating import run_animate
+
+    run_animate(
+        plans, output, speed=speed, deflection_scale=deflection_scale,
+        frames_per_second=frames_per_second, width=width, quiet=quiet,
+    )  # fmt: skip

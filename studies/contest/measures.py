@@ -1,0 +1,183 @@
+"""What the runs of a contest say: hypervolume missing on the way, running times, energies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metaheuristics.ensemble import Spread
+from studies.comparison.staircase import objectives, within
+from studies.contest.problems import Yardstick
+from studies.contest.runs import Key, Run
+from studies.methods import LEVELS
+
+Array = NDArray[np.float64]
+TARGETS = (1e-2, 1e-3)
+"""Shares of the exact front's hypervolume that may be missing for a target to count as reached."""
+_TIMES = 120
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """All runs of one method on one problem.
+
+    Attributes
+    ----------
+    method : str
+        Its name.
+    yardstick : Yardstick
+        The exact front.
+    runs : tuple of Run
+        One a seed, in the order of the seeds.
+    """
+
+    method: str
+    yardstick: Yardstick
+    runs: tuple[Run, ...]
+
+    @cached_property
+    def evaluations(self) -> NDArray[np.int64]:
+        """Evaluations of the marks that all runs reached, shape (marks,)."""
+        longest = min((run.marks for run in self.runs), key=len)
+        return np.array([mark.evaluations for mark in longest], dtype=np.int64)
+
+    @cached_property
+    def missing(self) -> Array:
+        """Share of the exact front's hypervolume that is missing, shape (runs, marks)."""
+        count = len(self.evaluations)
+        volumes = [[mark.hypervolume for mark in run.marks[:count]] for run in self.runs]
+        return 1.0 - np.array(volumes) / self.yardstick.hypervolume
+
+    @cached_property
+    def seconds(self) -> Array:
+        """Processor time at the marks [s], shape (runs, marks)."""
+        count = len(self.evaluations)
+        return np.array([[mark.seconds for mark in run.marks[:count]] for run in self.runs])
+
+    @property
+    def final(self) -> Array:
+        """Missing share at the end, shape (runs,)."""
+        return self.missing[:, -1]
+
+    @cached_property
+    def energies(self) -> Array:
+        """How far the least energies within `LEVELS` are above the exact ones, as a share.
+
+        Shape (runs, levels); infinite where a run has no motion within a level.
+        """
+        exact = within(objectives(self.yardstick.front), LEVELS)
+        found = [within(objectives(run.front), LEVELS, inf) for run in self.runs]
+        return np.array(found) / exact - 1
+
+    def hits(self, target: float) -> Array:
+        """Evaluations after which a target was first seen reached, shape (runs,); else infinite.
+
+        Seen at the marks: up to 5 % later than it was reached.
+        """
+        reached = self.missing <= target
+        first = self.evaluations[reached.argmax(axis=1)].astype(float)
+        return np.where(reached.any(axis=1), first, inf)
+
+    def expected_running_time(self, target: float) -> float:
+        """The expected running time to a target, as COCO defines it [evaluations].
+
+        The evaluations that all runs spent until they reached it, or in all where they did not,
+        over the number of those that did; infinite where none did [1]_.
+
+        References
+        ----------
+        .. [1] Hansen, Auger, Ros, Mersmann, Tusar and Brockhoff, Optimization Methods and Software
+           36 (2021), pp. 114-144, section 3.2.
+        """
+        hits = self.hits(target)
+        reached = np.isfinite(hits)
+        if not reached.any():
+            return inf
+        spent = np.where(reached, hits, [run.front.evaluations for run in self.runs])
+        return float(spent.sum() / reached.sum())
+
+    def after_times(self, times: Array) -> Array:
+        """Missing share after times [s], shape (runs, times); 1 before the first mark."""
+        rows = list[Array]()
+        for seconds, missing in zip(self.seconds, self.missing, strict=True):
+            count = np.searchsorted(seconds, times, side="right")
+            rows.append(np.where(count > 0, missing[np.maximum(count - 1, 0)], 1.0))
+        return np.array(rows)
+
+
+@dataclass(frozen=True, eq=False)
+class Arena:
+    """A problem with the runs of all methods on it.
+
+    Attributes
+    ----------
+    yardstick : Yardstick
+        The problem and its exact front.
+    fields : tuple of Field
+        The methods, each with one run or more.
+    """
+
+    yardstick: Yardstick
+    fields: tuple[Field, ...]
+
+    @property
+    def problem(self) -> str:
+        """Its name."""
+        return self.yardstick.problem
+
+    @cached_property
+    def times(self) -> Array:
+        """Times [s] at even distances on a logarithmic scale, from the first mark to the last."""
+        first = min(field.seconds[:, 0].min() for field in self.fields)
+        last = max(field.seconds[:, -1].max() for field in self.fields)
+        return np.geomspace(max(first, 1e-4), max(last, 2e-4), _TIMES)
+
+
+def arenas_of(runs: Mapping[Key, Run], yardsticks: Mapping[str, Yardstick]) -> tuple[Arena, ...]:
+    """The problems with runs, in the order of their names; methods in that of theirs.
+
+    Parameters
+    ----------
+    runs : mapping of Key to Run
+        As `Folder.runs` gives them.
+    yardsticks : mapping of str to Yardstick
+        By problem.
+
+    Returns
+    -------
+    tuple of Arena
+        One a problem.
+    """
+    arenas = list[Arena]()
+    for problem in dict.fromkeys(key.problem for key in runs):
+        own = [key for key in runs if key.problem == problem]
+        methods = dict.fromkeys(key.method for key in own)
+        fields = [
+            Field(m, yardsticks[problem], tuple(runs[key] for key in own if key.method == m))
+            for m in methods
+        ]
+        arenas.append(Arena(yardsticks[problem], tuple(fields)))
+    return tuple(arenas)
+
+
+def methods_in(arenas: Iterable[Arena]) -> tuple[str, ...]:
+    """Names of the methods that have runs on any problem, each once."""
+    return tuple(dict.fromkeys(field.method for arena in arenas for field in arena.fields))
+
+
+def quartiles(rows: Array) -> Array:
+    """Lower quartile, median and upper quartile over runs: shape (runs, n) gives (3, n).
+
+    Values that exist rather than means of two, so that one infinite run makes no other infinite.
+    """
+    return np.quantile(rows, [0.25, 0.5, 0.75], axis=0, method="inverted_cdf")
+
+
+def spread(values: Sequence[float] | Array) -> Spread:
+    """Quartiles of the finite values, with how many there are."""
+    return Spread.of([float(value) for value in values])

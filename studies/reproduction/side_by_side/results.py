@@ -1,0 +1,188 @@
+"""Every system on one move: what the paper compares itself with, its own, and what is used instead.
+
+A new system is one entry of `systems_of`; what it has to solve is a piece of `pieces`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from metaheuristics.ensemble import energy_at
+from ocp import Floor, Front, Motion, Plan, evaluate_coefficients, shaped_cycloid, with_errors
+from ocp.profiles.shapers import SHAPERS
+from ocp.robustness.plants import FREQUENCY
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.resimulation import resimulated
+from studies.display.words import millimetres
+from studies.methods import Method
+from studies.paper.case import Case
+from studies.paper.points import paper_plan, residual_level
+from studies.paper.printed import ROWS
+
+COMPARED_TERMS = 6
+"""Terms of the polynomial: the paper's choice."""
+FREQUENCY_ERROR = 0.1
+"""Relative error of the plant's natural frequencies."""
+CYCLOID, PAPER, IN_BOX, FREE, FLOOR = (
+    "plain cycloid", "paper", "boxed gradient", "gradient", "floor",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class System:
+    """What one system makes of a move.
+
+    Attributes
+    ----------
+    name : str
+        What tables and pictures call it.
+    parameters : int or None
+        How many numbers it chooses; None where it is not a number of them that is chosen.
+    motion : Motion or None
+        Residual, energy and peaks by CVODES; None where its motion is not known.
+    wrong_residual : float or None
+        Residual [m] of the same joint motion when all natural frequencies of the plant are
+        `FREQUENCY_ERROR` lower or higher than assumed, the larger of the two.
+    seconds : float or None
+        Time to find it [s]; None where nothing is looked for, or the time is not known.
+    printed_energy : float or None
+        The energy that is printed, of a motion that is not known [J].
+    why : str
+        Why there is no motion.
+    """
+
+    name: str
+    parameters: int | None = None
+    motion: Motion | None = None
+    wrong_residual: float | None = None
+    seconds: float | None = None
+    printed_energy: float | None = None
+    why: str = ""
+
+    @property
+    def energy(self) -> float | None:
+        """F2 [J]: of the motion, else as printed."""
+        return self.printed_energy if self.motion is None else self.motion.energy
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was solved and searched for a move.
+
+    Attributes
+    ----------
+    in_box, free : Plan
+        The polynomial by gradient, in the case's box and without one.
+    others : mapping of str to Plan
+        Other profiles by gradient, by their names.
+    fronts : mapping of Method to sequence of Front
+        The polynomial in the box by a search, one front for each seed.
+    floor : Floor
+        The least energy of any joint motion.
+    """
+
+    in_box: Plan
+    free: Plan
+    others: Mapping[str, Plan]
+    fronts: Mapping[Method, Sequence[Front]]
+    floor: Floor
+
+
+def systems_of(case: Case, found: Found) -> tuple[System, ...]:
+    """Every system on a move, always in the same order.
+
+    Parameters
+    ----------
+    case : Case
+        The move and the box.
+    found : Found
+        What was solved and searched for it.
+
+    Returns
+    -------
+    tuple of System
+        What each makes of it.
+    """
+    return (
+        _of_plan(CYCLOID, evaluate_coefficients(case.task, []), looked_for=False),
+        *(_shaped(case, shaper) for shaper in SHAPERS),
+        _paper(case),
+        *(_of_plan(name, plan) for name, plan in found.others.items()),
+        *(searched(case, method, fronts) for method, fronts in found.fronts.items()),
+        _of_plan(IN_BOX, found.in_box),
+        _of_plan(FREE, found.free),
+        _floor(found.floor),
+    )
+
+
+def _of_plan(name: str, plan: Plan, *, looked_for: bool = True) -> System:
+    joint = PiecewiseMotion.of_profile(plan.task, plan.profile, plan.coefficients)
+    return System(
+        name, plan.profile.size, plan.motion, _wrong_residual(plan, joint),
+        plan.provenance.seconds if looked_for else None,
+    )  # fmt: skip
+
+
+def _floor(floor: Floor) -> System:
+    joint = PiecewiseMotion.of_free_motion(floor.task, floor.free)
+    wrong = _wrong_residual(floor, joint)
+    return System(FLOOR, None, floor.motion, wrong, floor.provenance.seconds)
+
+
+def _wrong_residual(answer: Plan | Floor, joint: PiecewiseMotion) -> float:
+    plant = answer.task.plant
+    wrong = [
+        replace(answer.task, plant=with_errors(plant, {FREQUENCY: error}))
+        for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
+    ]
+    return max(resimulated(task, joint).motion.residual for task in wrong)
+
+
+def _shaped(case: Case, shaper: str) -> System:
+    name = shaper.upper()
+    try:
+        profile = shaped_cycloid(case.task, shaper)
+    except ValueError as too_short:
+        return System(name, why=str(too_short))
+    return _of_plan(name, evaluate_coefficients(case.task, [], profile=profile), looked_for=False)
+
+
+def _paper(case: Case) -> System:
+    plan = paper_plan(case, COMPARED_TERMS)
+    if plan is not None:
+        return _of_plan(PAPER, plan, looked_for=False)
+    energies = [r.energy for r in ROWS if (r.condition, r.terms) == (case, COMPARED_TERMS)]
+    if not energies:
+        return System(PAPER, why="the paper has no such move")
+    why = "the paper prints the energy, not the coefficients"
+    return System(PAPER, COMPARED_TERMS, printed_energy=energies[0], why=why)
+
+
+def searched(case: Case, method: Method, fronts: Sequence[Front]) -> System:
+    """What a search found.
+
+    Parameters
+    ----------
+    case : Case
+        The move.
+    method : Method
+        The search.
+    fronts : sequence of Front
+        One for each seed.
+
+    Returns
+    -------
+    System
+        The cheapest point within `residual_level`, of the seed whose energy is in the middle.
+    """
+    level = residual_level(case, COMPARED_TERMS)
+    still = [front for front in fronts if not math.isnan(energy_at(front, level))]
+    if not still:
+        why = f"no point of its front is within {millimetres(level)}"
+        return System(method.label, COMPARED_TERMS, why=why)
+    front = sorted(still, key=lambda front: energy_at(front, level))[(len(still) - 1) // 2]
+    point = front.cheapest(level)
+    plan = evaluate_coefficients(case.task, point.coefficients, profile=front.profile)
+    return replace(_of_plan(method.label, plan), seconds=front.seconds)

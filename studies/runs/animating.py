@@ -1,0 +1,69 @@
+"""What `quietarm animate` does: plans from files as a picture that moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from studies.animation import animate
+from studies.animation.clock import Clock, end_of
+from studies.animation.formats import check_format, format_of
+from studies.display.progress import count
+from studies.display.saving import finish
+from studies.display.words import print_lines
+from studies.figures import Line
+from studies.runs.loading import load_plans
+
+
+def run_animate(
+    paths: Sequence[Path],
+    output: Path,
+    *,
+    speed: float,
+    deflection_scale: float | None,
+    frames_per_second: float,
+    width: int,
+    quiet: bool,
+) -> None:
+    """Draw saved plans in motion and write the file.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        The plans; one alone is drawn beside the plain cycloid of its task.
+    output : Path
+        The file; its ending says the format.
+    speed, deflection_scale, frames_per_second, width
+        As for `studies.animation.animate`.
+    quiet : bool
+        Show no progress.
+
+    Raises
+    ------
+    FileFormatError
+        When a file is no plan.
+    ValueError
+        When there is no plan, one is given twice, a setting is out of range, or the format is
+        unknown or needs a program that is not there.
+    KeyboardInterrupt
+        When the work was interrupted; then nothing is written.
+    """
+    kind = format_of(output)
+    check_format(kind)
+    plans = load_plans(paths)
+    lines = [Line(plan, label) for label, plan in plans.items()]
+    motions = lines if len(lines) > 1 else lines[0].plan
+    frames = len(Clock(end_of(lines), speed, frames_per_second).times)
+    with count(frames, "frames", Console(stderr=True), quiet=quiet) as report:
+        film = animate(
+            motions, speed=speed, deflection_scale=deflection_scale, width=width,
+            frames_per_second=frames_per_second, format=kind, report=report,
+        )  # fmt: skip
+
+    def show(console: Console) -> None:
+        size = f"{len(film.content) / 1e3:.0f} kB"
+        print_lines(console, f"{film.frames} frames, {film.seconds:.1f} s, {size}")
+
+    finish([(output, film.save)], show)

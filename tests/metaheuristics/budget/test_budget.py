@@ -1,0 +1,161 @@
+"""Searches of exactly so many evaluations, and their record on the way."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from small_searches import BOUNDS, HALF, LIMITED, METHODS, SIXTH, SWARMS, TASKS
+
+from metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
+from metaheuristics.budget.record import CORNER, Scale, Visits, marks_of
+from metaheuristics.budget.run import search_within
+from metaheuristics.objective.population import PopulationObjective
+from ocp import CycloidPolynomial, Front, FrontPoint, reference_corner
+
+PROFILE = CycloidPolynomial(2)
+SCALES = {
+    "nsga2": Scale((0.0, 0.1), (0.015, 0.2)),
+    "vepso": Scale((0.0, 0.02), (0.05, 0.07)),
+}
+BUDGET = 130
+
+
+def run(method, task=None, evaluations=BUDGET, seed=3, **settings):
+    task = TASKS[method] if task is None else task
+    return search_within(
+        task, method, evaluations, SCALES[method], profile=PROFILE, bound=BOUNDS[method],
+        population=20, seed=seed, **settings,
+    )  # fmt: skip
+
+
+def area(points, corner):
+    """What points dominate up to a corner, by adding up rectangles between falling steps."""
+    inside = sorted((x, y) for x, y in points if x < corner[0] and y < corner[1])
+    total, height = 0.0, corner[1]
+    for x, y in inside:
+        if y < height:
+            total += (corner[0] - x) * (height - y)
+            height = y
+    return total
+
+
+@pytest.fixture
+def candidates(monkeypatch):
+    """Residual and energy of every candidate that a search evaluates, in order."""
+    evaluate, seen = PopulationObjective.__call__, []
+
+    def watched(self, coefficients):
+        values = evaluate(self, coefficients)
+        if self.steps == 24:  # those of a search
+            feasible = (values.violations <= 0).all(axis=1)
+            seen.extend(zip(values.residual, values.energy, feasible, strict=True))
+        return values
+
+    monkeypatch.setattr(PopulationObjective, "__call__", watched)
+    return seen
+
+
+@METHODS
+def test_exactly_so_many_candidates_are_evaluated_also_where_no_generation_ends(method, candidates):
+    found = run(method)
+    assert BUDGET % (20 * SWARMS[method]) != 0
+    assert len(candidates) == found.front.evaluations == BUDGET
+    assert [mark.evaluations for mark in found.marks] == list(marks_of(BUDGET))
+    assert found.marks[-1].evaluations == BUDGET
+    seconds = [mark.seconds for mark in found.marks]
+    assert seconds == sorted(seconds)
+
+
+@METHODS
+def test_every_mark_is_the_hypervolume_of_all_candidates_until_then(method, candidates):
+    scale, found = SCALES[method], run(method)
+    extent = np.array(scale.nadir) - np.array(scale.ideal)
+    points = [(np.array(pair[:2]) - scale.ideal) / extent for pair in candidates]
+    for mark in found.marks:
+        expected = area(points[: mark.evaluations], (CORNER, CORNER))
+        assert mark.hypervolume == pytest.approx(expected, rel=1e-12)
+    assert found.marks[-1].hypervolume > found.marks[0].hypervolume
+
+
+def test_candidates_beyond_a_limit_are_counted_and_not_kept(candidates):
+    found = run("nsga2", LIMITED["nsga2"])
+    assert found.front.infeasible == sum(not feasible for *_, feasible in candidates) > 0
+    visits = dataclasses.astuple(found.visits)
+    assert sum(visits) + found.front.infeasible == BUDGET
+    extent = np.array(SCALES["nsga2"].nadir) - np.array(SCALES["nsga2"].ideal)
+    kept = [(np.array(pair) - SCALES["nsga2"].ideal) / extent for *pair, ok in candidates if ok]
+    assert found.marks[-1].hypervolume == pytest.approx(area(kept, (CORNER, CORNER)), rel=1e-12)
+
+
+@METHODS
+def test_the_same_seed_finds_the_same_and_another_one_does_not(method):
+    one, again, other = run(method), run(method), run(method, seed=4)
+    assert one.front == again.front
+    assert [m.hypervolume for m in one.marks] == [m.hypervolume for m in again.marks]
+    assert one.front.points != other.front.points
+
+
+def test_a_longer_budget_begins_as_a_shorter_one():
+    short, long = run("nsga2"), run("nsga2", evaluations=2 * BUDGET)
+    known = {mark.evaluations: mark.hypervolume for mark in short.marks}
+    both = [mark for mark in long.marks if mark.evaluations in known]
+    assert len(both) > 5
+    assert all(known[mark.evaluations] == mark.hypervolume for mark in both)
+
+
+def problem(budget):
+    return BudgetProblem(PopulationObjective(SIXTH, PROFILE), 0.2, budget, SCALES["vepso"])
+
+
+def test_work_that_is_no_candidate_counts_against_the_budget():
+    counted = problem(100)
+    counted.spend(30)
+    assert (counted.spent, counted.left) == (30, 70)
+    assert [mark.hypervolume for mark in counted.marks] == [0.0] * len(counted.marks)
+    assert counted.marks[-1].evaluations <= 30
+    counted.spend(70)  # to the last
+    with pytest.raises(BudgetSpentError):
+        counted.spend(1)
+    assert counted.spent == counted.marks[-1].evaluations == 100
+
+
+def test_what_costs_more_than_is_left_is_not_given():
+    counted = problem(100)
+    with pytest.raises(BudgetSpentError):
+        counted.spend(101)
+    assert counted.spent == counted.marks[-1].evaluations == 100
+    with pytest.raises(BudgetSpentError):
+        counted.evaluate(np.zeros((1, 2)))
+
+
+@pytest.mark.parametrize("budget", [1, 7, 10, 11, 1000, 20_000])
+def test_marks_rise_by_a_twentieth_to_the_budget(budget):
+    marks = np.array(marks_of(budget))
+    assert marks[-1] == budget
+    assert (np.diff(marks) > 0).all()
+    assert (marks[1:] <= 1.05 * marks[:-1] + 1).all()
+
+
+def test_visits_are_counted_by_thirds_of_the_residual():
+    scaled = np.array([[0.0, 0.5], [0.3, 1.0], [0.4, 0.0], [0.9, 0.1], [1.05, 0.2], [0.1, 1.2]])
+    assert Visits.of(scaled) == Visits(still=2, middle=1, cheap=2, outside=1)
+    assert Visits.of(np.empty((0, 2))) == Visits()
+
+
+def test_a_front_of_one_motion_is_no_scale():
+    point = FrontPoint((0.0, 0.0), 0.01, 0.1)
+    front = Front(HALF, PROFILE, (point,), "given", {}, None, reference_corner(HALF))
+    with pytest.raises(ValueError, match="the exact front is a single motion"):
+        Scale.of(front)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"evaluations": 0}, "evaluations is 0; give a whole number from 1 up"),
+        ({"evaluations": 10**9}, "give at most 10000000"),
+    ],
+)
+def test_a_budget_out_of_range_is_refused(given, words):
+    with pytest.raises(ValueError, match=words):
+        run("nsga2", **given)

@@ -1,0 +1,111 @@
+"""How structures are drawn: the mode shape, tips where the equations have them, refusals."""
+
+import numpy as np
+import pytest
+from sound_plant import Sound
+
+from models import (
+    ArmOnFlexibleLink,
+    Body,
+    DualLinkManipulator,
+    SingleLinkManipulator,
+    flexible_link,
+    rigid_link,
+)
+from models.contract.calls import Calls
+from models.drawing import TIP_SLOPE, cantilever
+
+pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
+
+
+def tips_of(bodies):
+    return [body.points[-1] for body in bodies if body.tip]
+
+
+def test_the_mode_shape_is_that_of_a_clamped_free_beam():
+    # At k = 1.8751 of cosh(k) cos(k) = -1 a beam obeys w'''' = k^4 w, is clamped at 0 (w = w' = 0)
+    # and free at 1 (w'' = w''' = 0): by central differences, whose error is of order h^2.
+    h, k = 1e-2, 1.8751040687
+    assert np.cosh(k) * np.cos(k) == pytest.approx(-1, abs=1e-9)
+
+    def derivatives(at):
+        w = cantilever(at + h * np.arange(-2, 3))
+        second = (w[1] - 2 * w[2] + w[3]) / h**2
+        third = (-w[0] / 2 + w[1] - w[3] + w[4] / 2) / h**3
+        fourth = (w[0] - 4 * w[1] + 6 * w[2] - 4 * w[3] + w[4]) / h**4
+        return (w[3] - w[1]) / (2 * h), second, third, fourth
+
+    assert cantilever(0.0) == 0
+    assert cantilever(1.0) == pytest.approx(1)
+    assert derivatives(0.0)[0] == pytest.approx(0, abs=1e-3)
+    assert derivatives(1.0)[:3] == pytest.approx((TIP_SLOPE, 0, 0), abs=1e-3)
+    for at in (0.2, 0.5, 0.9):
+        assert derivatives(at)[3] == pytest.approx(k**4 * cantilever(at), rel=1e-3)
+    # Blevins, table 8-1: the tip of cosh - cos - 0.7341 (sinh - sin) is at 2, the middle at 0.679.
+    assert 2 * cantilever(0.5) == pytest.approx(0.679, abs=1e-3)
+
+
+@pytest.mark.parametrize("link", [flexible_link, rigid_link])
+def test_a_link_ends_at_its_length_and_displacement(link):
+    points = link(2.0, np.pi / 2, 0.3, base=(1.0, 1.0))
+    assert points[0] == pytest.approx([1, 1])
+    assert points[-1] == pytest.approx([1 - 0.3, 1 + 2])  # to the left of its direction
+
+
+def test_the_tip_of_the_single_link_moves_as_its_kinetic_energy_has_it():
+    angle, w = 0.4, 0.05
+    (tip,) = tips_of(SingleLinkManipulator().structure(angle, [w]))
+    radial, across = [np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]
+    assert tip @ radial == pytest.approx(0.475)  # the plate's length, section 3.1
+    assert tip @ across == pytest.approx(w)
+
+
+def test_the_tips_of_the_two_links_go_the_same_way_round():
+    first, second = tips_of(DualLinkManipulator().structure(0.0, [0.1, 0.2]))
+    assert first == pytest.approx([0.5, 0.1])
+    assert second == pytest.approx([-0.5, -0.2])
+
+
+def test_the_arm_turns_as_the_signs_of_its_equations_say():
+    # The coupling of eq (13), (alpha2 + alpha3 cos theta) theta'' with alpha3 > 0 and alpha2 < 0:
+    # at 0 rad a growing joint angle moves the arm towards positive w; the arm's own turning, which
+    # alpha2 and beta2 hold, is theta' less the slope's rate.
+    plant = ArmOnFlexibleLink()
+
+    def arm(angle, w):
+        _, link, arm, _ = plant.structure(angle, [w])
+        assert link.tip
+        assert arm.points[0] == pytest.approx(link.points[-1])
+        return np.diff(arm.points, axis=0)[0]
+
+    (tip,) = tips_of(plant.structure(1.0, [0.03]))
+    assert tip == pytest.approx([0.55, 0.03])
+    assert arm(1e-6, 0.0)[1] > 0
+    assert arm(np.pi / 2, 0.0) == pytest.approx([0, 0.21])
+    slope = np.arctan(TIP_SLOPE * 0.03 / 0.55)
+    assert arm(slope, 0.03) == pytest.approx(arm(0.0, 0.0))
+
+
+def test_a_plant_of_your_own_is_drawn_as_a_straight_link_of_a_metre():
+    (tip,) = tips_of(Sound().structure(np.pi / 2, [0.1]))
+    assert tip == pytest.approx([-0.1, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("structure", "message"),
+    [
+        (lambda plant, angle: [], "structure takes other arguments than it is given"),
+        (lambda plant, angle, tips: None, "structure returns None"),
+        (lambda plant, angle, tips: [], r"structure returns list \[\]"),
+        (lambda plant, angle, tips: [[0, 1]], r"structure returns a list with list \[0, 1\]"),
+        (lambda plant, angle, tips: [Body(np.zeros(3))], r"have shape \(3,\); give \(points, 2\)"),
+        (lambda plant, angle, tips: [Body(np.full((2, 2), np.nan))], "is not finite"),
+        (lambda plant, angle, tips: tips + angle, "structure fails .*TypeError"),
+    ],
+)
+def test_a_structure_that_cannot_be_drawn_is_told(structure, message):
+    plant = type("Broken", (Sound,), {"name": "broken", "structure": structure})()
+    with pytest.raises(ValueError, match=f"plant 'broken': .*{message}") as told:
+        Calls(plant, 1).structure(0.0, [0.0])
+    assert "return a list of models.Body" in str(told.value)
+    assert "casadi" not in str(told.value)

@@ -1,0 +1,186 @@
+"""An animation is a file that opens, with frames that differ as the structures do."""
+
+import io
+import math
+import stat
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from models import ArmOnFlexibleLink
+from ocp import PointToPoint, QuietarmError, evaluate_coefficients
+from studies.animation import animate
+from studies.animation.cast import cast_of
+from studies.animation.clock import Clock, end_of
+from studies.figures import Line
+from studies.figures.motion import lines_of
+
+
+def opened(content):
+    """Every frame of a GIF as red, green and blue, and for how long it stays [ms]."""
+    image, frames, holds = Image.open(io.BytesIO(content)), [], []
+    for number in range(image.n_frames):
+        image.seek(number)
+        frames.append(np.asarray(image.convert("RGB")).astype(int))
+        holds.append(image.info["duration"])
+    return np.array(frames), holds
+
+
+def test_the_gif_opens_and_takes_its_time(film):
+    frames, holds = opened(film.content)
+    # 0.8 s and a second after it, 10 frames a second, the first one; that one stays 0.5 s more
+    assert len(frames) == film.frames == 19
+    assert frames.shape[2] == 240
+    assert holds == [600, *[100] * 18]
+    assert film.seconds == pytest.approx(sum(holds) / 1e3)
+    assert Image.open(io.BytesIO(film.content)).info["loop"] == 0  # for ever
+
+
+def test_frames_differ_while_the_structure_moves_and_where_it_does(film):
+    frames, _ = opened(film.content)
+    top = frames[:, : frames.shape[1] * 6 // 10]
+    left, right = np.split(top[:, 15:], 2, axis=2)  # below the clock
+    changes = np.abs(np.diff(left, axis=0)).sum(axis=(1, 2, 3))
+    assert (changes > 0).all()  # the plain cycloid rings to the end
+    still = np.abs(np.diff(right, axis=0)).sum(axis=(1, 2, 3))
+    assert (still[:6] > 0).all()
+    # the plan has arrived: only the dot of its path gets darker
+    assert still[9:].max() < changes[9:].min() / 10
+    cursor = np.abs(np.diff(frames[:, frames.shape[1] * 7 // 10 :], axis=0)).sum(axis=(1, 2, 3))
+    assert (cursor > 0).all()
+
+
+def test_tips_are_drawn_at_the_joint_angle_and_the_displacement_of_the_plan(plan, cycloid):
+    lines = [Line(cycloid, "plain cycloid"), Line(plan, "plan")]
+    clock = Clock(end_of(lines), 1.0, 10)
+    assert clock.times == pytest.approx(np.arange(19) / 10)
+    for scale in (1.0, 4.0):
+        for actor in cast_of(lines, clock, scale):
+            exact = actor.line.plan.sampled(clock.times)
+            angle = exact.joint[:, 0]
+            radial = np.column_stack([np.cos(angle), np.sin(angle)])
+            across = np.column_stack([-np.sin(angle), np.cos(angle)])
+            expected = 0.475 * radial + scale * exact.tips * across  # section 3.1: 475 mm
+            # between samples 1.2 ms apart the tip's motion is taken for straight
+            assert actor.paths[0] == pytest.approx(expected, abs=scale * 2e-6)
+
+
+def test_small_deflections_are_drawn_larger_and_those_of_one_plant_alike(plan, cycloid):
+    arm = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), [])
+    lines = [Line(cycloid, "a"), Line(plan, "b"), Line(arm, "c")]
+    single, same, other = cast_of(lines, Clock(1.8, 1.0, 20))
+    # docs/physics.md: 77 mm of the plate's 475 mm would be above a fifth at twice its size; the
+    # arm's 15 mm of a drawing of 550 mm are not at five times
+    assert (single.scale, same.scale, other.scale) == (1, 1, 5)
+    assert np.abs(other.tips).max() * 5 <= 0.2 * 0.55 < np.abs(other.tips).max() * 10
+
+
+def test_moves_of_different_durations_share_a_clock(plan, task):
+    longer = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), 0.5, 1.4), [])
+    lines = lines_of([Line(plan, "short"), Line(longer, "long")])
+    clock = Clock(end_of(lines), 1.0, 10)
+    assert clock.times[-1] == pytest.approx(2.4)  # 1.4 s and its residual window
+    first, second = cast_of(lines, clock)
+    assert first.trajectory.time[-1] == pytest.approx(2.4)
+    assert first.tips == pytest.approx(plan.sampled(clock.times).tips, abs=2e-6)
+    assert second.trajectory is longer.trajectory
+
+
+def test_slow_motion_has_more_frames():
+    assert Clock(1.0, 0.25, 20).times == pytest.approx(np.arange(81) / 80)
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"speed": 0}, "speed is 0; give a positive number"),
+        ({"speed": 0.001}, "make 45000 frames, where 500 are the most"),
+        ({"frames_per_second": 60}, "frames per second is 60; give at most 50: browsers"),
+        ({"width": 100}, "width is 100; give a whole number from 200 up"),
+        ({"width": 5000}, "width is 5000; give at most 2000: more pixels make a huge file"),
+        ({"deflection_scale": -1}, "deflection scale is -1; give a positive number"),
+        ({"format": "avi"}, "format is 'avi'; give 'gif' or 'mp4'"),
+    ],
+)
+def test_settings_that_cannot_be_are_refused(plan, settings, message):
+    with pytest.raises(ValueError, match=message):
+        animate([Line(plan, "plan")], **settings)
+
+
+def test_as_many_motions_as_can_be_seen(plan):
+    with pytest.raises(ValueError, match="7 motions are given, where 6 are the most"):
+        animate([Line(plan, str(i)) for i in range(7)])
+    with pytest.raises(ValueError, match="give one motion or more"):
+        animate([])
+
+
+def test_a_notebook_shows_it_without_a_server(film):
+    shown = film._repr_html_()
+    assert shown.startswith('<img src="data:image/gif;base64,R0lGODlh')  # GIF89a
+    assert len(repr(film)) < 100
+
+
+def test_it_is_saved_under_a_name_of_its_format(film, tmp_path):
+    film.save(tmp_path / "move.GIF")
+    assert (tmp_path / "move.GIF").read_bytes() == film.content
+    with pytest.raises(ValueError, match=r"move.mp4 is not named .gif, as this animation is"):
+        film.save(tmp_path / "move.mp4")
+    with pytest.raises(ValueError, match=r"end its name in .gif or .mp4"):
+        film.save(tmp_path / "move.png")
+
+
+def test_labels_are_shown_as_they_are(plan):
+    animate([Line(plan, "$half of \x1b[2J a $formula^ " * 9)], width=240, frames_per_second=1)
+
+
+# -- MP4 --
+
+FAKE = """#!{python}
+import sys
+content = sys.stdin.buffer.read({read})
+with open(sys.argv[-1], "wb") as file:
+    file.write(" ".join(sys.argv[1:-1]).encode() + b"|" + str(len(content)).encode())
+print("could not", file=sys.stderr)
+sys.exit({status})
+"""
+
+
+@pytest.fixture
+def ffmpeg(tmp_path, monkeypatch):
+    """Put a program of this name in the place of the real one."""
+
+    def put(status=0, read=""):
+        program = tmp_path / "bin" / "ffmpeg"
+        program.parent.mkdir()
+        program.write_text(FAKE.format(python=sys.executable, status=status, read=read))
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        monkeypatch.setenv("PATH", str(program.parent))
+
+    return put
+
+
+def test_ffmpeg_is_given_every_pixel(plan, ffmpeg):
+    ffmpeg()
+    film = animate([Line(plan, "plan")], format="mp4", width=301, frames_per_second=4)
+    options, count = film.content.decode().split("|")
+    words = options.split()
+    width, height = map(int, words[words.index("-s") + 1].split("x"))
+    assert (width, height % 2) == (300, 0)  # the format's own rule
+    assert words[words.index("-r") + 1] == "4"
+    # 1.8 s at 4 frames a second, and the first frame for half a second more
+    assert int(count) == (8 + 2) * width * height * 3
+    assert film._repr_html_().startswith('<video controls loop src="data:video/mp4;base64,')
+
+
+def test_what_ffmpeg_complains_of_is_told(plan, ffmpeg):
+    ffmpeg(status=1, read=1)
+    with pytest.raises(QuietarmError, match="ffmpeg could not make the MP4: could not; end"):
+        animate([Line(plan, "plan")], format="mp4", width=240, frames_per_second=2)
+
+
+def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(ValueError, match="needs the program ffmpeg, which is not found here"):
+        animate([Line(plan, "plan")], format="mp4")

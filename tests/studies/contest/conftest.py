@@ -1,0 +1,37 @@
+"""What the tests of contests share: small problems, and one contest that is held once."""
+
+import pytest
+from small_contest import LINE, OTHER, TINY
+
+from studies.contest import problems
+
+
+def _small(patch):
+    patch.setattr(problems, "PROBLEMS", {"tiny": TINY, "other": OTHER})
+    patch.setattr(problems, "_POINTS", 6)
+    patch.setattr(problems, "_FILL", 500)
+
+
+@pytest.fixture(autouse=True)
+def _small_problems(monkeypatch):
+    _small(monkeypatch)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder of the test's own, and standing in it; lines are not wrapped."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "1000")
+    return tmp_path
+
+
+@pytest.fixture(scope="session")
+def held(tmp_path_factory):
+    """The folder of a small contest."""
+    from studies.cli.application import quietarm
+
+    place = tmp_path_factory.mktemp("contest") / "held"
+    with pytest.MonkeyPatch.context() as patch:
+        _small(patch)
+        quietarm.main([*LINE.split(), "--output", str(place)], standalone_mode=False)
+    return place

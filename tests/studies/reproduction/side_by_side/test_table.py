@@ -1,0 +1,92 @@
+"""The systems as tables: one for each move on the screen, everything in CSV."""
+
+import csv
+import io
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from studies.paper.printed import ARM_HALF, DUAL_LINK_HALF, SINGLE_LINK_SIXTH
+from studies.reproduction.side_by_side.table import (
+    all_systems,
+    print_systems,
+    systems_in_markdown,
+    systems_table,
+    why_not,
+)
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_every_table_is_whole_on_the_screen(reproduction, width):
+    console = Console(file=io.StringIO(), width=width)
+    print_systems(console, reproduction.systems)
+    text = console.file.getvalue()
+    assert max(map(len, text.splitlines())) <= width
+    for case, systems in reproduction.systems.items():
+        (title,) = [line for line in text.splitlines() if line.strip().endswith(case.name)]
+        below = text.split(title)[1].split("Side by side")[0]
+        for found in systems:  # a line each, in one piece
+            (line,) = [line for line in below.splitlines() if line.startswith(f"  {found.name}  ")]
+            assert line.split()[-1] == ("-" if found.seconds is None else f"{found.seconds:.2g}")
+            if found.motion is not None:
+                assert f" {found.energy:.4f} " in line
+                assert f" {found.motion.residual * 1e3:.2f} " in line
+                assert f" {found.wrong_residual * 1e3:.2f} " in line
+    joined = " ".join(text.split())
+    for systems in reproduction.systems.values():
+        for why in why_not(systems):
+            assert why in joined
+
+
+def test_csv_holds_everything_with_every_digit(reproduction):
+    rows = list(csv.DictReader(io.StringIO(all_systems(reproduction.systems).csv())))
+    every = [(case, one) for case, systems in reproduction.systems.items() for one in systems]
+    assert len(rows) == len(every) == 7 * 13
+    for row, (case, found) in zip(rows, every, strict=True):
+        assert (row["plant"], row["move"]) == (case.task.plant.name, case.label)
+        assert (row["system"], row["why"]) == (found.name, found.why)
+        motion = found.motion
+        for name, value in (
+            ("parameters", found.parameters),
+            ("energy_J", found.energy),
+            ("residual_mm", motion and motion.residual * 1e3),
+            ("residual_frequency_wrong_mm", motion and found.wrong_residual * 1e3),
+            ("peak_torque_Nm", motion and motion.peak_torque),
+            ("peak_acceleration_rad_s2", motion and motion.peak_acceleration),
+            ("seconds", found.seconds),
+        ):
+            assert (float(row[name]) if row[name] else None) == value
+
+
+def test_markdown_has_a_table_for_each_move_and_what_is_missing(reproduction):
+    text = "\n".join(systems_in_markdown(reproduction.systems))
+    for case, systems in reproduction.systems.items():
+        assert systems_table(case, systems).markdown() in text
+        for why in why_not(systems):
+            assert f"\n- {why}\n" in text
+
+
+def test_the_readme_shows_what_is_computed(reproduction):
+    readme = (Path(__file__).parents[4] / "README.md").read_text()
+    cells = {
+        line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]]
+        for line in readme.split("## Every system side by side\n")[1].split("\n## ")[0].splitlines()
+        if line.startswith("| ")
+    }
+    moves = [
+        {found.name: found for found in reproduction.systems[case]}
+        for case in (SINGLE_LINK_SIXTH, ARM_HALF, DUAL_LINK_HALF)
+    ]
+    # The others are cut short in these tests.
+    for name in ("plain cycloid", "ZV", "ZVD", "EI", "paper", "boxed gradient", "gradient"):
+        shown = [None if cell == "-" else float(cell) for cell in cells[name][1:]]
+        for energy, residual, wrong, found in zip(
+            shown[::3], shown[1::3], shown[2::3], [move[name] for move in moves], strict=True
+        ):
+            if found.motion is None:
+                assert energy is residual is wrong is None
+                continue
+            assert energy == pytest.approx(found.energy, abs=1e-4)
+            assert residual == pytest.approx(found.motion.residual * 1e3, abs=0.011)
+            assert wrong == pytest.approx(found.wrong_residual * 1e3, abs=0.011)

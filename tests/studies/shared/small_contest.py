@@ -1,0 +1,58 @@
+"""A problem that a contest runs on in a moment, and its own code for what contests report."""
+
+import csv
+import json
+import math
+
+import numpy as np
+
+from ocp import CycloidPolynomial
+from studies.contest.problems import Problem
+from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
+
+TINY = Problem("tiny", SINGLE_LINK_SIXTH.task, 0.2, CycloidPolynomial(2))
+OTHER = Problem("other", ARM_HALF.task, 0.5, CycloidPolynomial(2))
+LINE = "contest tiny --methods nsga2,vepso --runs 2 --evaluations 130 --population 20 --quiet"
+METHODS = ("nsga2", "vepso")
+
+
+def documents(folder, problem="tiny"):
+    """The runs of a contest as they stand in their files, by method and seed."""
+    found = {}
+    for path in folder.glob(f"runs/{problem}/*/seed*.json"):
+        found[path.parent.name, int(path.stem.removeprefix("seed"))] = json.loads(path.read_text())
+    return found
+
+
+def rows_of(folder, table):
+    """The rows of a table of a contest, by the names in its heading."""
+    return list(csv.DictReader((folder / f"tables/{table}.csv").read_text().splitlines()))
+
+
+def area(points):
+    """What points dominate up to (1.1, 1.1), by adding up rectangles between falling steps."""
+    total, height = 0.0, 1.1
+    for x, y in sorted(p for p in points if p[0] < 1.1 and p[1] < 1.1):
+        if y < height:
+            total += (1.1 - x) * (height - y)
+            height = y
+    return total
+
+
+def scaled(document):
+    """The points of a run's front within the extent of the exact front."""
+    (r0, e0), (r1, e1) = document["scale"]["ideal"], document["scale"]["nadir"]
+    return [
+        ((p["residual"] - r0) / (r1 - r0), (p["energy"] - e0) / (e1 - e0))
+        for p in document["front"]["points"]
+    ]
+
+
+def least_energy(points, level):
+    """Least energy of points within a residual; infinite where there is none."""
+    return min((p["energy"] for p in points if p["residual"] <= level), default=math.inf)
+
+
+def median_of(values):
+    """The middle one, or of two the lower."""
+    return float(np.sort(values)[(len(values) - 1) // 2])
