@@ -90,7 +90,7 @@ def test_the_residual_with_a_wrong_frequency_is_the_larger_of_both_sides(reprodu
     found = on(reproduction, case)["boxed gradient"]
     # 1 %: plans of nearly equal energy differ by as much, as on 0 to pi/2 in 1.1 s
     assert found.wrong_residual * 1e3 == pytest.approx(max(WRONG[case]), abs=0.06, rel=0.01)
-    assert found.motion.residual < 1e-8  # README, 'How exact'
+    assert found.motion.residual < 1e-8  # docs/accuracy.md
 
 
 def test_the_third_plants_move_is_the_documents(reproduction):

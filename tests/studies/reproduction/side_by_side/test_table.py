@@ -71,7 +71,7 @@ def test_the_readme_shows_what_is_computed(reproduction):
     readme = (Path(__file__).parents[4] / "README.md").read_text()
     cells = {
         line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]]
-        for line in readme.split("## Every system side by side\n")[1].split("\n## ")[0].splitlines()
+        for line in readme.split("## What it finds\n")[1].split("\n## ")[0].splitlines()
         if line.startswith("| ")
     }
     moves = [

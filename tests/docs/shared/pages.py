@@ -1,0 +1,28 @@
+"""The pages that a reader follows: README and docs, and the code blocks in them."""
+
+import re
+import shlex
+from pathlib import Path
+
+ROOT = Path(__file__).parents[3]
+README = (ROOT / "README.md").read_text()
+DOCS = {path.stem: path.read_text() for path in sorted((ROOT / "docs").glob("*.md"))}
+PAGES = {"README": README, **DOCS}
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """The code blocks of one language on a page, in order."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", PAGES[page], re.DOTALL | re.MULTILINE)
+
+
+TWO_COMMANDS = [block.strip() for block in blocks("README", "console")[:2]]
+NOTEBOOK = next(block.strip() for block in blocks("README", "console") if "jupyter" in block)
+COMMAND_BLOCKS = {
+    f"{page}-{number}": block.strip().splitlines()
+    for page in PAGES
+    for number, block in enumerate(blocks(page, "console"))
+    if block.strip() not in {*TWO_COMMANDS, NOTEBOOK}
+}
+"""The commands of a move of one's own, block by block."""
+
+COMMANDS = [shlex.split(line) for lines in COMMAND_BLOCKS.values() for line in lines]

@@ -1,0 +1,157 @@
+"""The examples in README and docs run as they stand, and do what the page says."""
+
+import inspect
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
+
+from ocp import Front, Plan
+from studies import figures
+
+BIN = Path(sys.executable).parent
+(MOVE,) = blocks("moves", "python")
+SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
+(ROBUSTNESS,) = blocks("robustness", "python")
+(PICTURE,) = blocks("pictures", "python")
+(CRANE,) = blocks("plants", "python")
+
+
+def run_python(code, folder):
+    (folder / "example.py").write_text(code)
+    ran = subprocess.run(
+        [sys.executable, "-W", "error", "example.py"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    return ran.stdout
+
+
+def test_the_example_in_python_plans_saves_and_exports(tmp_path):
+    printed = run_python(MOVE, tmp_path)
+    plan = Plan.load(tmp_path / "plan.json")
+    assert printed == f"{plan.energy} {plan.residual} {plan.coefficients}\n"
+    assert plan.residual < 1e-8  # docs/accuracy.md
+    assert plan.motion.peak_torque <= 0.2 * 1.001  # docs/accuracy.md
+    assert len((tmp_path / "move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
+
+
+def test_the_example_with_an_algorithm_of_pymoo_searches_and_saves(tmp_path):
+    printed = run_python(SEARCH_OF_PYMOO, tmp_path)
+    front = Front.load(tmp_path / "sms-emoa.json")
+    point = front.cheapest(10e-3)
+    assert printed == f"{front.method} {len(front.points)} {point.energy}\n"
+    assert front.method == "SMSEMOA"  # the name of its class
+
+
+def test_the_example_of_a_front_finds_and_saves_it(tmp_path):
+    printed = run_python(FRONT, tmp_path)
+    front = Front.load(tmp_path / "front.json")
+    chosen = [front.stillest(), front.knee(), front.cheapest(5e-3)]
+    assert printed == "".join(f"{point.residual} {point.energy}\n" for point in chosen)
+    assert len(front.points) == 20
+
+
+def test_the_example_of_robustness_says_what_a_wrong_plant_leaves(tmp_path):
+    printed = run_python(ROBUSTNESS, tmp_path)
+    low, high, residual = map(float, re.sub(r"[(),]", "", printed).split())
+    assert -0.1 < low < 0 < high < 0.1  # docs/physics.md, 'Robustness': a few per cent
+    # 'The published optima are not optimal': the frequency 10 % wrong leaves some 20 mm.
+    assert 10e-3 < residual < 200e-3
+
+
+def test_the_example_of_a_picture_draws_it(tmp_path):
+    more = """
+assert [ax.get_title(loc="left") for ax in (left, middle)] == [
+    "joint torque [N m]", "tip displacement [mm]"
+]
+assert all(ax.figure is figure and ax.get_lines() for ax in (left, middle, right))
+"""
+    assert run_python(PICTURE + more, tmp_path) == ""
+    assert (tmp_path / "mine.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_functions_that_draw_are_public_and_documented():
+    named = set(re.findall(r"`((?:draw_|compare_)\w+|\w+_figure)`", DOCS["pictures"]))
+    assert named <= set(figures.__all__)
+    assert {name for name in figures.__all__ if name.startswith("draw_")} <= named
+    for name in figures.__all__:
+        if name.startswith("draw_"):
+            function = getattr(figures, name)
+            given = inspect.signature(function).parameters["ax"]
+            assert (given.default, given.annotation) == (None, "Axes | None")
+            assert inspect.signature(function).return_annotation == "Axes"
+            assert len(function.__doc__) > 100
+
+
+def test_the_plant_of_your_own_is_one_file_that_everything_works_with(tmp_path):
+    crane = CRANE
+    use = """
+from ocp import PointToPoint, plan_move
+
+plan = plan_move(PointToPoint(Crane(), target=1.0, duration=3.0))
+plan.save("crane.json")
+assert type(plan).load("crane.json") == plan
+print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
+"""
+    assert run_python(crane + use, tmp_path) == "optimal True crane\n"
+
+
+def test_no_example_is_left_untested():
+    assert sum(len(blocks(page, "python")) for page in PAGES) == 6
+    languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
+    assert set(languages) == {"console", "python"}
+
+
+SEARCH = ["--population", "20", "--generations", "5"]
+SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of its own
+    "epsilon": ["--points", "5"],
+    "weighted": ["--points", "5"],
+    "study": [*SEARCH, "--runs", "1", "--points", "4"],
+    "contest": ["--runs", "1", "--evaluations", "150"],
+}
+
+
+def shortened(words):
+    """The words of a command, with fewer generations or points."""
+    quiet = (
+        ["--quiet"]
+        if words[0] in {"animate", "compare", "contest", "front", "polish", "robustness", "study"}
+        else []
+    )
+    fewer = SHORTER.get(words[0], [])
+    if words[0] == "front":
+        fewer = SHORTER.get(words[words.index("--method") + 1], SEARCH)
+    return [*words, *quiet, *fewer]
+
+
+@pytest.mark.parametrize("lines", COMMAND_BLOCKS.values(), ids=COMMAND_BLOCKS)
+def test_the_commands_run_one_after_another(tmp_path, lines):
+    asked = set()
+    for line in lines:
+        command, *words = shlex.split(line)
+        assert command == ".venv/bin/quietarm"
+        if "--plant-file" in words:  # the page says that its plant's lines are in it
+            asked.add(words[words.index("--plant-file") + 1])
+            (tmp_path / "crane.py").write_text(CRANE)
+        ran = subprocess.run(
+            [BIN / "quietarm", *shortened(words)],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=600,
+        )
+        assert (ran.returncode, ran.stdout != "") == (0, True), ran.stderr
+        said = ran.stderr.splitlines()
+        progress = ("generation ", "refining", "finding", "solving", "integrating")
+        assert [line for line in said if not line.startswith(progress)] == []
+        options = ("--output", "--csv", "--figure")
+        asked |= {words[i + 1] for i, word in enumerate(words) if word in options}
+        assert {path.name for path in tmp_path.iterdir()} == asked
