@@ -13,7 +13,7 @@ from ocp import FileFormatError, QuietarmError
 from ocp.base.interrupts import as_ctrl_c
 from ocp.base.printable import printable
 from studies.cli.streams import patient_streams
-from studies.early import ready
+from studies.early import in_the_way, ready
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
@@ -125,6 +125,11 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
         return _complain("interrupted; nothing was written", NOT_SOLVED)
+    except (ImportError, AttributeError):  # of what is loaded only where it is needed
+        told = in_the_way()
+        if told is None:
+            raise
+        return _complain(told, BAD_INPUT)
     except MemoryError:
         return _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
     except OSError as error:
