@@ -146,7 +146,8 @@ class PopulationObjective:
 
 def replace_failures(table: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Fill the rows of a table that are not finite with `UNUSABLE`; tells which these are."""
-    failed = ~(np.abs(table) < UNUSABLE).all(axis=1)  # NaN is not less, either
+    usable = np.all(np.abs(table) < UNUSABLE, axis=1)  # NaN is not less, either
+    failed = np.asarray(~usable, dtype=bool)
     table[failed] = UNUSABLE
     return failed
 
