@@ -12,8 +12,10 @@ import studies.cli.commands.floor
 import studies.cli.commands.plan
 import studies.reproduction.recompute
 import studies.runs.animating
+import studies.runs.foreign
 import studies.runs.loading
 import studies.runs.polishing
+import studies.runs.problems
 import studies.runs.robustness
 import studies.runs.searching
 import studies.study.work
@@ -81,6 +83,8 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.runs.loading, "load_front", note)
     monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
     monkeypatch.setattr(studies.runs.animating, "run_animate", note)
+    monkeypatch.setattr(studies.runs.problems, "run_problems", note)
+    monkeypatch.setattr(studies.runs.foreign, "read_found", note)
     monkeypatch.setattr(studies.runs.robustness, "run_robustness", note)
     monkeypatch.setattr(studies.study.work, "run_study", note)
     monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)
