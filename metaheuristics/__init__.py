@@ -1,7 +1,7 @@
 """The derivative-free answer: the paper's VEPSO and NSGA-II, and any other of pymoo's.
 
-`search` and `search_many` are on top; the rooms below are `objective`, `algorithms` and `runs`. It
-may import `ocp` and `models`.
+`search` and `search_many` are on top; the rooms below are `objective`, `problems` for other
+libraries, `algorithms` and `runs`. It may import `ocp` and `models`.
 """
 
 # ruff: noqa: I001  # ocp first: it finds a user's file that shadows models
@@ -21,6 +21,8 @@ from metaheuristics.algorithms.velocity import (
 )
 from metaheuristics.ensemble import LostSeedsError, Spread, search_many
 from metaheuristics.objective.population import PopulationObjective, PopulationValues
+from metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
+from metaheuristics.problems.function import MoveFunction
 from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.search import search
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from metaheuristics.algorithms.nsga2 import PaperNSGA2
     from metaheuristics.algorithms.vepso import VEPSO
     from metaheuristics.objective.problem import MoveProblem
+    from metaheuristics.problems.pymoo_problem import ExactProblem
 
 __all__ = [
     "CONSTRICTION",
@@ -35,9 +38,13 @@ __all__ = [
     "PAPER_BOX",
     "PAPER_GROUP",
     "PRESETS",
+    "PROBLEMS",
     "VEPSO",
+    "ExactProblem",
     "LostSeedsError",
+    "MoveFunction",
     "MoveProblem",
+    "NamedProblem",
     "PaperNSGA2",
     "PopulationObjective",
     "PopulationValues",
@@ -45,11 +52,13 @@ __all__ = [
     "SearchProgress",
     "Spread",
     "VelocityRule",
+    "problem_of",
     "search",
     "search_many",
 ]
 
 _OF_PYMOO = {
+    "ExactProblem": "metaheuristics.problems.pymoo_problem",
     "MoveProblem": "metaheuristics.objective.problem",
     "PaperNSGA2": "metaheuristics.algorithms.nsga2",
     "VEPSO": "metaheuristics.algorithms.vepso",

@@ -187,6 +187,11 @@ class Plant(ABC):
         """How many tip displacements the plant has."""
         return len(self.tip_displacements([0.0] * self.modes))
 
+    @property
+    def parts(self) -> Sequence[Plant]:
+        """Plants that share the joint and nothing else; their modes are this plant's, in order."""
+        return (self,)
+
     def validate(self) -> None:
         """Check the contract that the integrator and the residual rely on.
 

@@ -32,6 +32,8 @@ from ocp.profiles.spline import CycloidSpline
 from ocp.robustness.measures import Robustness, Sweep, evaluate_robustness
 from ocp.robustness.plants import with_errors
 from ocp.robustness.population import Figures
+from ocp.robustness.uncertain import UncertainPlant
+from ocp.robustness.worst import Worst
 from ocp.simulation.cvodes import Trajectory
 from ocp.simulation.objective import Motion
 from ocp.simulation.residual import residual_matrix
@@ -70,7 +72,9 @@ __all__ = [
     "SolverFailedError",
     "Sweep",
     "Trajectory",
+    "UncertainPlant",
     "Verification",
+    "Worst",
     "energy_floor",
     "epsilon_front",
     "evaluate_coefficients",

@@ -1,24 +1,32 @@
-"""Ctrl-C while the command is still being loaded, which takes a third of a second."""
+"""While the command is being loaded, a third of a second: Ctrl-C, and files that are in the way."""
 
 from __future__ import annotations
 
 import os
 import signal
 import sys
+from importlib.machinery import PathFinder
 from pathlib import Path
-from types import FrameType
+from types import FrameType, TracebackType
 
 _COMMANDS = ("quietarm", "-m")
 """Names of the running program at the time that this is loaded, where it is the command:
 `python -m studies` has not found its file yet."""
+_OURS = ("models", "ocp", "metaheuristics", "studies")
+_NEEDED = ("casadi", "click", "dask", "distributed", "matplotlib", "msgspec", "numpy", "pymoo",
+           "rich", "scipy")  # fmt: skip
 
 
 def end_in_one_line() -> None:
-    """Let Ctrl-C and SIGTERM end the command in one line until `ready`; do nothing elsewhere."""
+    """Let Ctrl-C and SIGTERM end the command in one line until `ready`; do nothing elsewhere.
+
+    So does a file that takes the place of a package that is loaded.
+    """
     if Path(next(iter(sys.argv), "")).stem in _COMMANDS:
         for number in (signal.SIGINT, signal.SIGTERM):
             if signal.getsignal(number) in (signal.default_int_handler, signal.SIG_DFL):
                 signal.signal(number, _end)
+        sys.excepthook = _name_what_is_in_the_way
 
 
 def ready() -> bool:
@@ -30,10 +38,48 @@ def ready() -> bool:
     ):
         if signal.getsignal(number) is _end:
             signal.signal(number, usual)
+    if sys.excepthook is _name_what_is_in_the_way:
+        sys.excepthook = sys.__excepthook__
     return was
+
+
+def in_the_way() -> str | None:
+    """What to say of a user's file that takes the place of a package; None where there is none."""
+    for package in (*_OURS, *_NEEDED):
+        spec = PathFinder.find_spec(package)
+        if spec is None or spec.origin is None or _home(package) is None:
+            continue
+        if _home(package) not in Path(spec.origin).resolve().parents:
+            return (
+                f"{spec.origin} takes the place of the package {package!r}; rename that file, or "
+                "take its folder out of PYTHONPATH"
+            )
+    return None
+
+
+def _home(package: str) -> Path | None:
+    """The folder that a package is installed in; None where it is not."""
+    if package in _OURS:
+        return Path(__file__).resolve().parents[1]
+    from importlib.metadata import PackageNotFoundError, distribution  # only after a failure
+
+    try:
+        return Path(str(distribution(package).locate_file(""))).resolve()
+    except PackageNotFoundError:
+        return None
 
 
 def _end(number: int, frame: FrameType | None) -> None:
     # An exception would pass through what is half loaded, and be shown with its traceback.
     os.write(2, b"quietarm: interrupted; nothing was written\n")
     os._exit(1)
+
+
+def _name_what_is_in_the_way(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
+    told = in_the_way() if issubclass(kind, ImportError | AttributeError) else None
+    if told is None:
+        sys.__excepthook__(kind, error, trace)
+    else:
+        print(f"quietarm: {told}", file=sys.stderr)

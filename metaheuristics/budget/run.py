@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from enum import Enum
+from typing import TYPE_CHECKING, Any
 
-from metaheuristics.algorithms.presets import preset_of
+import numpy as np
+from numpy.typing import NDArray
+
+from metaheuristics.algorithms.presets import PRESETS
 from metaheuristics.budget.record import Mark, Scale, Visits
 from metaheuristics.runs.settings import search_versions
 from ocp import Front, JointProfile, PointToPoint, reference_corner
 from ocp.base.checks import whole
+from ocp.base.names import nearest
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -18,6 +23,54 @@ if TYPE_CHECKING:
     from metaheuristics.budget.problem import BudgetProblem
 
 MOST_EVALUATIONS = 10_000_000
+_OF_THE_SEARCH = 0.5
+"""Share of the evaluations that the search has before its front is polished."""
+_NO_SEEDS = np.empty((0, 0))
+
+
+class Help(Enum):
+    """What the gradient does in a search."""
+
+    NONE = ""
+    POLISH = "polish"
+    SEEDS = "seeds"
+
+
+MULTISTART = "multistart"
+"""The gradient alone, from random starts."""
+
+
+def parts_of(method: str) -> tuple[str, Help]:
+    """The search and the gradient's part of a method's name, as ``"nsga2+polish"``.
+
+    Parameters
+    ----------
+    method : str
+        A name of `PRESETS`, alone or with ``+polish`` or ``+seeds``; or ``multistart``.
+
+    Returns
+    -------
+    tuple of str and Help
+        Both parts.
+
+    Raises
+    ------
+    ValueError
+        When one of them is unknown; the nearest name is suggested.
+    """
+    if method == MULTISTART:
+        return method, Help.NONE
+    search, plus, part = method.partition("+")
+    helps = [one.value for one in Help if one.value]
+    if plus and part not in helps:
+        raise ValueError(f"unknown method {method!r}; give {search}+{f' or {search}+'.join(helps)}")
+    if search not in PRESETS:
+        hint = nearest(search, [*PRESETS, MULTISTART])
+        raise ValueError(
+            f"unknown method {method!r}; {hint}(known: {', '.join([*PRESETS, MULTISTART])}, and "
+            f"with +{' or +'.join(helps)} behind it)"
+        )
+    return search, Help(part)
 
 
 @dataclass(frozen=True)
@@ -63,9 +116,10 @@ def search_within(
     task : PointToPoint
         The move; its limits become constraints.
     method : str
-        A name of `PRESETS`.
+        A name as `parts_of` takes it.
     evaluations : int
-        Candidates that are evaluated; of the last generation only as many as are left.
+        Candidates that are evaluated; of the last generation only as many as are left. An iteration
+        of the gradient counts as `Gradient` says.
     scale : Scale
         Extent of the exact front, in which hypervolumes are measured.
     profile : JointProfile
@@ -88,21 +142,25 @@ def search_within(
         When an argument is out of range, or the method cannot search this task.
     """
     # Not at the top: pymoo takes longer to load than all of quietarm.
-    from metaheuristics.algorithms.provenance import flat, settings_of
+    from metaheuristics.budget.gradient import Gradient
     from metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
     from metaheuristics.objective.population import PopulationObjective
     from metaheuristics.runs.front import verified_points
-    from metaheuristics.runs.settings import SearchSettings
 
-    preset = preset_of(method)
-    population = preset.population if population is None else population
-    SearchSettings(bound, population, preset.generations)  # refuses what is out of range
-    algorithm = preset.build(population)
-    settings = {"bound": bound, **dict(flat(settings_of(algorithm)))}
+    search, helped = parts_of(method)
     budget = number_of_evaluations(evaluations)
+    algorithm, settings = _built(search, population, bound)
     problem = BudgetProblem(PopulationObjective(task, profile), bound, budget, scale)
+    gradient = Gradient(problem, bound, seed)
     with suppress(BudgetSpentError):
-        _run(algorithm, problem, seed)
+        if algorithm is None:
+            gradient.multistart()
+        else:
+            first = gradient.seeds() if helped is Help.SEEDS else _NO_SEEDS
+            until = round(_OF_THE_SEARCH * budget) if helped is Help.POLISH else budget
+            _run(algorithm, problem, seed, until, first)
+        if helped is Help.POLISH:
+            gradient.polish()
     front = Front(
         task=task,
         profile=profile,
@@ -112,6 +170,7 @@ def search_within(
         seed=seed,
         reference=reference_corner(task),
         evaluations=problem.spent,
+        iterations=gradient.iterations,
         failed=problem.failed,
         infeasible=problem.infeasible,
         versions=search_versions(),
@@ -120,13 +179,41 @@ def search_within(
     return BudgetRun(front, tuple(problem.marks), problem.visits)
 
 
-def _run(algorithm: Algorithm, problem: BudgetProblem, seed: int) -> None:
+def _built(
+    search: str, population: int | None, bound: float
+) -> tuple[Algorithm | None, dict[str, Any]]:
+    """The algorithm of a search, none where the gradient is alone, and its settings."""
+    from metaheuristics.algorithms.provenance import flat, settings_of
+    from metaheuristics.runs.settings import SearchSettings
+
+    if search == MULTISTART:
+        return None, {"bound": bound}
+    preset = PRESETS[search]
+    population = preset.population if population is None else population
+    SearchSettings(bound, population, preset.generations)  # refuses what is out of range
+    algorithm = preset.build(population)
+    return algorithm, {"bound": bound, **dict(flat(settings_of(algorithm)))}
+
+
+def _run(
+    algorithm: Algorithm, problem: BudgetProblem, seed: int, until: int, first: NDArray[np.float64]
+) -> None:
+    """Search until so many evaluations are spent, with these rows in the first population."""
     from pymoo.termination.max_eval import MaximumFunctionCallTermination
 
-    termination = MaximumFunctionCallTermination(problem.budget)
+    termination = MaximumFunctionCallTermination(until)
     try:
         algorithm.setup(problem, termination=termination, seed=seed)
     except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
         raise ValueError(f"{type(algorithm).__name__} cannot search this task: {error}") from None
-    while algorithm.has_next():
-        algorithm.next()
+    machinery: Any = algorithm  # for the type checker: pymoo declares much as optional
+    while problem.spent < until and algorithm.has_next():  # as `Algorithm.next`, with the rows
+        infills: Any = algorithm.infill()
+        if infills is None:
+            algorithm.advance()
+            continue
+        for individual, row in zip(infills, first, strict=False):
+            individual.X = row.copy()
+        first = first[:0]
+        machinery.evaluator.eval(problem, infills, algorithm=algorithm)
+        algorithm.advance(infills=infills)

@@ -30,6 +30,9 @@ CANDIDATE_STEPS = 24
 W at arrival within 1e-6 m."""
 BLOCK = 100
 """Candidates a call: their intermediate values fit the processor's cache."""
+UNUSABLE = 1e30
+"""A figure from here up counts as not finite. This value replaces it, because algorithms can sort
+it: it comes last."""
 
 
 @dataclass(frozen=True)
@@ -139,6 +142,14 @@ class PopulationObjective:
 
     def __getstate__(self) -> dict[str, object]:
         return {**self.__dict__, "_idle": []}  # casadi's buffers can be neither copied nor pickled
+
+
+def replace_failures(table: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Fill the rows of a table that are not finite with `UNUSABLE`; tells which these are."""
+    usable = np.all(np.abs(table) < UNUSABLE, axis=1)  # NaN is not less, either
+    failed = np.asarray(~usable, dtype=bool)
+    table[failed] = UNUSABLE
+    return failed
 
 
 class _Workspace:

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 
-from metaheuristics.objective.population import PopulationObjective
+from metaheuristics.objective.population import (
+    UNUSABLE,
+    PopulationObjective,
+    replace_failures,
+)
 
-UNUSABLE = 1e30
-"""A figure from here up counts as not finite. This value replaces it, because pymoo can sort it: it
-comes last."""
+__all__ = ["UNUSABLE", "MoveProblem"]
 
 
 class MoveProblem(Problem):
@@ -47,10 +49,9 @@ class MoveProblem(Problem):
     def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
         values = self.objective(x)
         table = np.column_stack([values.residual, values.energy, values.violations])
-        bad = ~(np.abs(table) < UNUSABLE).all(axis=1)  # NaN is not less, either
-        self.failed += int(bad.sum())
-        self.infeasible += int((values.violations[~bad] > 0).any(axis=1).sum())
-        table[bad] = UNUSABLE
+        failed = replace_failures(table)
+        self.failed += int(failed.sum())
+        self.infeasible += int((values.violations[~failed] > 0).any(axis=1).sum())
         out["F"] = table[:, :2]
         if table.shape[1] > 2:
             out["G"] = table[:, 2:]

@@ -17,9 +17,17 @@ import msgspec
 import numpy as np
 
 from models import Plant, known_plants
-from ocp.answers.plants import PLANT_FILE, file_entry, without_file
+from ocp.answers.plants import (
+    PLANT_FILE,
+    UNCERTAIN,
+    Uncertainty,
+    file_entry,
+    without_file,
+    without_uncertainty,
+)
 from ocp.base.printable import has_control_characters
 from ocp.profiles.joint_profile import JointProfile, known_profiles
+from ocp.robustness.uncertain import UncertainPlant
 
 T = TypeVar("T")
 
@@ -31,7 +39,8 @@ def plain(value: Any) -> Any:
     ----------
     value : Any
         A dataclass, a container or a number. Of a plant or profile its name is written, too, and
-        the file that a plant was loaded from.
+        the file that a plant was loaded from; of an uncertain plant the assumed one, and how far
+        it may be wrong.
 
     Returns
     -------
@@ -43,6 +52,8 @@ def plain(value: Any) -> Any:
     ValueError
         When the class of a plant or profile could not be found by its name.
     """
+    if isinstance(value, UncertainPlant):
+        return {**plain(value.assumed), UNCERTAIN: _entries(value, "ranges", "samples")}
     if isinstance(value, Plant):
         return {"name": _name_of(value), **file_entry(value), **_entries(value)}
     if isinstance(value, JointProfile):
@@ -94,12 +105,9 @@ def typed(document: Any, kind: type[T], name: str = "") -> T:
     return value
 
 
-def _entries(value: Any) -> dict[str, Any]:
-    return {
-        entry.name: plain(getattr(value, entry.name))
-        for entry in dataclasses.fields(value)
-        if entry.init
-    }
+def _entries(value: Any, *only: str) -> dict[str, Any]:
+    names = only or [entry.name for entry in dataclasses.fields(value) if entry.init]
+    return {name: plain(getattr(value, name)) for name in names}
 
 
 def _name_of(value: Plant | JointProfile) -> str:
@@ -116,7 +124,11 @@ def _name_of(value: Plant | JointProfile) -> str:
 def _named_or_array(kind: Any, entry: Any) -> Any:
     """What msgspec does not know: plants and profiles by their name, arrays."""
     if kind is Plant:
-        return _named("plant", without_file(entry), known_plants())
+        assumed, uncertain = without_uncertainty(entry)
+        plant = _named("plant", without_file(assumed), known_plants())
+        if uncertain is None:
+            return plant
+        return UncertainPlant(plant, **vars(typed(uncertain, Uncertainty, UNCERTAIN)))
     if kind is JointProfile:
         return _named("profile", entry, known_profiles())
     try:

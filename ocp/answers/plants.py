@@ -1,16 +1,39 @@
-"""What documents say of the file that a user's plant was loaded from."""
+"""What documents say of a plant: the file it was loaded from, and how far it may be wrong."""
 
 from __future__ import annotations
 
 import reprlib
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from msgspec import Meta
 
 from models import Plant, file_of_plant, known_plants
 
 PLANT_FILE = "plant_file"
 """The entry of a plant that tells of its file."""
+UNCERTAIN = "uncertain"
+"""The entry of a plant that tells how far it may be wrong."""
 _SHOWN = 12
 """Digits of a digest that a message shows."""
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """The entry of an uncertain plant beside those of the assumed one; see `UncertainPlant`."""
+
+    ranges: Mapping[str, float]
+    samples: Annotated[tuple[tuple[float, ...], ...], Meta(min_length=1)]
+
+
+def without_uncertainty(entry: Any) -> tuple[Any, Any]:
+    """The entry of the assumed plant, and how far it may be wrong; None where it may not be."""
+    if not isinstance(entry, dict) or UNCERTAIN not in entry:
+        return entry, None
+    rest = dict(entry)
+    uncertainty = rest.pop(UNCERTAIN)
+    return rest, uncertainty
 
 
 def file_entry(plant: Plant) -> dict[str, dict[str, str]]:

@@ -77,8 +77,8 @@ def energy_floor(
     Returns
     -------
     Floor
-        The motion, with the figures of an independent integrator. After Ctrl-C on the third grid
-        or later that of the grids until then, and not ``complete``.
+        The motion, with the figures of an independent integrator. After Ctrl-C that of the grids
+        until then, on the first two that of the best start so far; not ``complete``.
 
     Raises
     ------
@@ -89,33 +89,32 @@ def energy_floor(
     SolverFailedError
         When no start ended at an optimum for another reason.
     KeyboardInterrupt
-        After Ctrl-C before there were two grids.
+        After Ctrl-C before a start was solved.
     """
     refuse_other_kinds(task)
     settings = FloorSettings(smooth, starts, seed, tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)
     fractions = first_grid(_first_steps(task))
-    tried = [
-        program.solve(program.along(path, fractions), task.limits)
-        for path in _paths(task, settings)
-    ]
-    tried, least = rescued(
-        tried,
-        task.limits,
-        [found.free for found in tried[:2]],
-        program.solve,
-        lambda found: program.solve(found.free, task.limits),
-    )
-    solved = [found for found in tried if found.status.solved]
-    if not solved:
-        raise unmet("motion at all", task.limits, tried, least, "a longer duration")
-    improved = _refined_once(program, solved)
+    tried, stopped = list[FreeSolution](), None
+    try:
+        for path in _paths(task, settings):
+            tried.append(program.solve(program.along(path, fractions), task.limits))
+        solved = _solved(program, tried)
+        improved = _refined_once(program, solved)
+    except KeyboardInterrupt:
+        solved = [found for found in tried if found.status.solved]
+        if not solved:
+            raise
+        with note_interrupts():  # the second grid tells what the first leaves
+            improved = _refined_once(program, [min(solved, key=_energy)])
+        stopped = f"{len(tried)} of {settings.starts} starts"
     grids = [min(solved, key=_energy), min(improved, key=_energy)]
-    stopped = None
     try:
         while (
-            not _settled(grids, settings.tolerance) and 2 * grids[-1].free.steps <= MOST_INTERVALS
+            stopped is None
+            and not _settled(grids, settings.tolerance)
+            and 2 * grids[-1].free.steps <= MOST_INTERVALS
         ):
             following = _refined(program, grids[-1])
             if not following.status.solved:
@@ -123,7 +122,7 @@ def energy_floor(
             grids.append(following)
         best, simulation = _least_verified(program, grids)
     except KeyboardInterrupt:
-        stopped = f"{len(grids)} grids"
+        stopped = stopped or f"{len(grids)} grids"
         with note_interrupts():
             best, simulation = _least_verified(program, grids)
     return Floor(
@@ -169,6 +168,22 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
                     raise KeyboardInterrupt
                 coefficients = np.array(plan.coefficients)
         yield profile.path(coefficients, *task.move)
+
+
+def _solved(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSolution]:
+    """The starts that were solved; InfeasibleTaskError or SolverFailedError where none was."""
+    limits = program.task.limits
+    again, least = rescued(
+        tried,
+        limits,
+        [found.free for found in tried[:2]],
+        program.solve,
+        lambda found: program.solve(found.free, limits),
+    )
+    solved = [found for found in again if found.status.solved]
+    if not solved:
+        raise unmet("motion at all", limits, again, least, "a longer duration")
+    return solved
 
 
 def _energy(found: FreeSolution) -> float:

@@ -24,6 +24,7 @@ from ocp.base.status import SolveStatus
 from ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
 from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.robustness.worst import Worst, worst_of
 from ocp.simulation.cvodes import Trajectory
 from ocp.simulation.objective import Motion
 from ocp.simulation.resimulation import resimulate, sample_trajectory
@@ -55,6 +56,9 @@ class Plan(MotionAnswer):
         Distance between the two integrators.
     provenance : Provenance
         Method, settings, versions, time.
+    worst : Worst or None
+        Of a plant that is uncertain, the errors within its ranges at which the motion leaves most,
+        between the samples as well; else None.
     """
 
     kind: ClassVar[str] = "plan"
@@ -68,10 +72,22 @@ class Plan(MotionAnswer):
     status: SolveStatus
     verification: Verification
     provenance: Provenance[SolveSettings | None]
+    worst: Worst | None = None
 
     def __post_init__(self) -> None:
         self._check_entries("task", "profile", "coefficients")
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
+
+    @property
+    def excess(self) -> float | None:
+        """Share by which `worst` passes the residual limit, negative where it keeps it.
+
+        None where the plant is not uncertain, or the gradient was not asked for a limit.
+        """
+        settings = self.provenance.settings
+        if self.worst is None or settings is None or settings.residual_limit == 0:
+            return None
+        return self.worst.residual / settings.residual_limit - 1
 
     @property
     def path(self) -> JointPath:
@@ -172,6 +188,7 @@ def evaluate_coefficients(
             fixed.steps, fixed.motion.energy, fixed.motion.residual, motion
         ),
         provenance=Provenance(method, None, settings or {}, seconds=time.perf_counter() - began),
+        worst=worst_of(task, profile, checked),
     )
 
 

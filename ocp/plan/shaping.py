@@ -8,6 +8,7 @@ import numpy as np
 
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.profiles.shaped_cycloid import ShapedCycloid
+from ocp.robustness.uncertain import on_assumed
 from ocp.simulation.residual import vibrations
 from ocp.task.point_to_point import PointToPoint
 
@@ -23,7 +24,7 @@ def shaped_cycloid(
     Parameters
     ----------
     task : PointToPoint
-        The move.
+        The move; of an uncertain plant the assumed one counts.
     shaper : str
         ``"zv"``, ``"zvd"`` or ``"ei"``.
     at : str, optional
@@ -44,6 +45,7 @@ def shaped_cycloid(
     """
     if at not in ("target", "average"):
         raise ValueError(f"at is {at!r}; give 'target' or 'average'")
+    task = on_assumed(task)
     angles = [task.target] if at == "target" else _along(task)
     modes = [vibrations(task.plant, angle) for angle in angles]
     if not modes[0] or len({len(each) for each in modes}) > 1:

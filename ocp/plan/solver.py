@@ -15,6 +15,7 @@ from ocp.base.interrupts import note_interrupts
 from ocp.plan.answer import Plan
 from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
+from ocp.plan.robust import held_between, limit_of
 from ocp.plan.verification import HURRIED, MOST_SOLVER_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.kinds import refuse_other_kinds
@@ -23,6 +24,7 @@ from ocp.program.problem import Problem
 from ocp.program.solution import Solution, same_minimum
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
+from ocp.robustness.uncertain import UncertainPlant
 from ocp.simulation.objective import Motion
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
@@ -38,7 +40,7 @@ def plan_move(
     task: PointToPoint,
     profile: JointProfile | None = None,
     *,
-    residual_limit: float = 0.0,
+    residual_limit: float | None = None,
     bound: float | None = None,
     starts: int = 4,
     seed: int = 0,
@@ -54,8 +56,10 @@ def plan_move(
     profile : JointProfile, optional
         How the joint moves; by default the cycloid of a polynomial of six terms. The only motion
         of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
-    residual_limit : float
-        Largest F1 [m]; 0 asks for rest on arrival, where there are coefficients to choose.
+    residual_limit : float, optional
+        Largest F1 [m]; 0 asks for rest on arrival, where there are coefficients to choose. By
+        default 0; of an `UncertainPlant`, which hardly ever arrives at rest whatever its errors,
+        5 % of what the plain cycloid of the same duration leaves on the assumed plant.
     bound : float, optional
         Largest absolute coefficient; none by default.
     starts : int
@@ -72,7 +76,9 @@ def plan_move(
     -------
     Plan
         The coefficients, with the figures of an independent integrator. After Ctrl-C the best of
-        the starts that were solved until then, and not ``complete``.
+        the starts that were solved until then, and not ``complete``. Of an uncertain plant the
+        residual limit holds between the samples as well, as its ``worst`` states; its task has the
+        samples that this took.
 
     Raises
     ------
@@ -89,13 +95,23 @@ def plan_move(
     refuse_other_kinds(task, profile)
     if guess is not None:
         guess = profile.checked(guess)
-    settings = SolveSettings(residual_limit, bound, starts, seed, steps, guess)
+    least = 0.0 if residual_limit is None else residual_limit
+    settings = SolveSettings(least, bound, starts, seed, steps, guess)
     if profile.size == 0:
-        return only_motion(task, profile, residual_limit)
+        return only_motion(task, profile, settings.residual_limit)
+    settings = replace(settings, residual_limit=limit_of(task, residual_limit))
+    found = _solved(task, profile, settings)
+    uncertain = isinstance(task.plant, UncertainPlant)
+    return held_between(found, settings, _solved) if uncertain else found
+
+
+def _solved(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:
+    """The plan of a task whose residual limit holds at the plant's samples, if it has any."""
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
     guesses = start_coefficients(profile, settings)
-    problem = Problem(program, {RESIDUAL: residual_limit, **task.limits}, bound, guesses)
+    limits = {RESIDUAL: settings.residual_limit, **task.limits}
+    problem = Problem(program, limits, settings.bound, guesses)
     solved, stopped = list[Solution](), None
     try:
         best, motion, steps_used = verified(problem, least_energy(problem, solved))

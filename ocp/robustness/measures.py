@@ -15,6 +15,7 @@ from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.robustness.plants import checked_ranges
 from ocp.robustness.population import ErrorPopulation, Figures
+from ocp.robustness.uncertain import on_assumed
 from ocp.simulation.resimulation import resimulate
 from ocp.task.point_to_point import PointToPoint
 
@@ -131,6 +132,14 @@ class Robustness:
         return float(np.percentile(values[figure], share))
 
 
+def tolerated_residual(task: PointToPoint) -> float:
+    """`TOLERATED` of what the plain cycloid of the same duration leaves on the assumed plant [m].
+
+    A motion is insensitive to errors within which it leaves no more.
+    """
+    return TOLERATED * resimulate(on_assumed(task), CycloidPolynomial(0), []).residual
+
+
 def evaluate_robustness(
     task: PointToPoint,
     profile: JointProfile,
@@ -146,7 +155,7 @@ def evaluate_robustness(
     Parameters
     ----------
     task : PointToPoint
-        The move, of the assumed plant.
+        The move; of an uncertain plant the assumed one counts.
     profile : JointProfile
         How the joint moves.
     coefficients : array_like, shape (profile.size,)
@@ -173,6 +182,7 @@ def evaluate_robustness(
         its contract, or the coefficients or the duration do not fit the profile.
     """
     refuse_other_kinds(task, profile)
+    task = on_assumed(task)
     ranges = checked_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)

@@ -120,8 +120,28 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     Returns
     -------
     ModalSystem
-        g, K and D.
+        g, K and D; of a plant of several parts, 0.0 between modes of different ones.
     """
+    parts = [_system_of(part, joint) for part in plant.parts]
+    if len(parts) == 1:
+        return parts[0]
+    return ModalSystem(
+        [force for part in parts for force in part.g],
+        K=_on_diagonal([part.K for part in parts]),
+        D=_on_diagonal([part.D for part in parts]),
+    )
+
+
+def _on_diagonal(blocks: Sequence[list[list[Expression]]]) -> list[list[Expression]]:
+    size, rows, before = sum(map(len, blocks)), list[list[Expression]](), 0
+    for block in blocks:
+        after = size - before - len(block)
+        rows += [[*[0.0] * before, *row, *[0.0] * after] for row in block]
+        before += len(block)
+    return rows
+
+
+def _system_of(plant: Plant, joint: JointMotion) -> ModalSystem:
     modes, zero = range(plant.modes), [0.0] * plant.modes
     g = list(plant.modal_accelerations(joint, zero, zero))
 
@@ -169,7 +189,7 @@ class Step:
         """W'' at the nodes for the state before the step: a list over nodes of lists over modes."""
         state = [*W, *dW]
         flat = [
-            row[0] + sum(row[1 + k] * value for k, value in enumerate(state))
+            row[0] + sum(row[1 + k] * x for k, x in enumerate(state) if not is_zero(row[1 + k]))
             for row in self.response
         ]
         return [flat[j * self.modes : (j + 1) * self.modes] for j in range(NODES)]
@@ -180,18 +200,25 @@ class Step:
         """State after the step, from the state before it and W'' at its nodes."""
         h, modes = self.h, range(self.modes)
         return (
-            [W[i] + h * dW[i] + h * h * _combine(_TWICE[NODES], ddW, i) for i in modes],
-            [dW[i] + h * _combine(GAUSS_WEIGHTS, ddW, i) for i in modes],
+            [
+                W[i] + _times(h, dW[i]) + _times(h * h, _combine(_TWICE[NODES], ddW, i))
+                for i in modes
+            ],
+            [dW[i] + _times(h, _combine(GAUSS_WEIGHTS, ddW, i)) for i in modes],
         )
 
     def transition(self) -> tuple[list[Expression], list[list[Expression]]]:
-        """The step as state = constant + sum over columns: (constant, columns), by unit states."""
+        """The step as state = constant + sum over columns: (constant, columns), by unit states.
+
+        Entries of `columns` for modes that do not act on each other are the number 0.0.
+        """
         size = 2 * self.modes
 
         def after(state: list[float], constant: bool) -> list[Expression]:
             W, dW = state[: self.modes], state[self.modes :]
             moved = [
-                row[0] * constant + sum(row[1 + k] for k, value in enumerate(state) if value)
+                (row[0] if constant else 0.0)
+                + sum(row[1 + k] for k, value in enumerate(state) if value)
                 for row in self.response
             ]
             ddW = [moved[j * self.modes : (j + 1) * self.modes] for j in range(NODES)]
@@ -241,17 +268,33 @@ def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
         system = modal_system(plant, joint)
         for i in modes:
             K, D = system.K[i], system.D[i]
+            acts = [not (is_zero(K[mode]) and is_zero(D[mode])) for mode in modes]
             matrix.append(
                 [
                     float(j == node and i == mode)
-                    + h * (_ONCE[j][node] * D[mode] + _TWICE[j][node] * h * K[mode])
+                    + (
+                        h * (_ONCE[j][node] * D[mode] + _TWICE[j][node] * h * K[mode])
+                        if acts[mode]
+                        else 0.0
+                    )
                     for node in range(NODES)
                     for mode in modes
                 ]
             )
-            by_rate = [-D[mode] - GAUSS_NODES[j] * h * K[mode] for mode in modes]
+            by_rate = [
+                -D[mode] - GAUSS_NODES[j] * h * K[mode] if acts[mode] else 0.0 for mode in modes
+            ]
             right.append([system.g[i], *(-K[mode] for mode in modes), *by_rate])
     return Step(h, eliminate(matrix, right), plant.modes)
+
+
+def _times(factor: Expression, entry: Expression) -> Expression:
+    return entry if is_zero(entry) else factor * entry
+
+
+def is_zero(entry: Expression) -> bool:
+    """Whether an entry is nothing whatever the symbols are: modes that do not act on each other."""
+    return isinstance(entry, float) and entry == 0.0
 
 
 def _combine(
@@ -282,12 +325,18 @@ def eliminate(
     size = len(matrix)
     for i in range(size):
         for k in range(i + 1, size):
-            factor = matrix[k][i] / matrix[i][i]
-            matrix[k] = [a - factor * b for a, b in zip(matrix[k], matrix[i], strict=True)]
-            right[k] = [a - factor * b for a, b in zip(right[k], right[i], strict=True)]
+            if not is_zero(matrix[k][i]):
+                factor = matrix[k][i] / matrix[i][i]
+                matrix[k] = _less(matrix[k], factor, matrix[i])
+                right[k] = _less(right[k], factor, right[i])
     for i in reversed(range(size)):
         for k in range(i + 1, size):
-            factor = matrix[i][k]
-            right[i] = [a - factor * b for a, b in zip(right[i], right[k], strict=True)]
-        right[i] = [a / matrix[i][i] for a in right[i]]
+            if not is_zero(matrix[i][k]):
+                right[i] = _less(right[i], matrix[i][k], right[k])
+        right[i] = [a if is_zero(a) else a / matrix[i][i] for a in right[i]]
     return right
+
+
+def _less(row: list[Expression], factor: Expression, other: list[Expression]) -> list[Expression]:
+    """The row less a multiple of another; entries that are nothing cost nothing."""
+    return [a if is_zero(b) else a - factor * b for a, b in zip(row, other, strict=True)]

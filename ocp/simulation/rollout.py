@@ -21,6 +21,7 @@ from ocp.simulation.collocation import (
     NodeState,
     Step,
     end_to_end,
+    is_zero,
     mesh,
     step,
 )
@@ -189,14 +190,18 @@ def _march(
     modes, size = batch.modes, 2 * batch.modes
     constant, columns = batch.transition()
     offsets = [ca.horzsplit(row, 1) for row in constant]
-    gains = [[ca.horzsplit(entry, 1) for entry in column] for column in columns]
+    by_row = [
+        {c: ca.horzsplit(column[row], 1) for c, column in enumerate(columns)
+         if not is_zero(column[row])}
+        for row in range(size)
+    ]  # fmt: skip
     state: list[Expression] = [ca.DM.zeros(candidates, 1)] * size
     before: list[list[Expression]] = [[] for _ in range(size)]
     for k in range(steps):
         for row in range(size):
             before[row].append(state[row])
         state = [
-            offsets[row][k] + sum(gains[column][row][k] * state[column] for column in range(size))
+            offsets[row][k] + sum(gain[k] * state[column] for column, gain in by_row[row].items())
             for row in range(size)
         ]
     rows = [ca.horzcat(*entry) for entry in before]

@@ -6,6 +6,7 @@ import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from keyword import iskeyword
 
 import click
 
@@ -13,7 +14,7 @@ from ocp import FileFormatError, QuietarmError
 from ocp.base.interrupts import as_ctrl_c
 from ocp.base.printable import printable
 from studies.cli.streams import patient_streams
-from studies.early import ready
+from studies.early import in_the_way, ready
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
@@ -21,16 +22,19 @@ COMMANDS = {
     "plan": "Find the still move of least energy.",
     "evaluate": "Compute the figures of given coefficients.",
     "front": "Find the trade-off of residual and energy.",
+    "import": "Make a front of coefficients that another program found.",
     "polish": "Improve a front by the gradient.",
     "compare": "Compare fronts of one task.",
     "floor": "Find the least energy over all joint motions.",
     "robustness": "Show what plans leave when the plant is not the assumed one.",
+    "problems": "List named problems with their exact fronts.",
     "animate": "Draw plans in motion, as a GIF or an MP4.",
     "study": "Run every method on a task, and write one report.",
     "contest": "Hold methods with equal evaluations against exact fronts.",
     "reproduce": "Recompute the paper.",
 }
-"""What each command does; `NAME` is the function `NAME` of `studies.cli.commands.NAME`."""
+"""What each command does; `NAME` is the function `NAME` of `studies.cli.commands.NAME`, with an
+underscore behind it where NAME is a word of Python's."""
 
 
 class LazyGroup(click.Group):
@@ -42,7 +46,8 @@ class LazyGroup(click.Group):
         """The name and the command that was asked for, and the other words."""
         name, command, others = super().resolve_command(ctx, args)
         if name is not None:
-            command = getattr(import_module(f"studies.cli.commands.{name}"), name)
+            own = f"{name}_" if iskeyword(name) else name
+            command = getattr(import_module(f"studies.cli.commands.{own}"), own)
         return name, command, others
 
 
@@ -124,6 +129,11 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
         return _complain("interrupted; nothing was written", NOT_SOLVED)
+    except (ImportError, AttributeError):  # of what is loaded only where it is needed
+        told = in_the_way()
+        if told is None:
+            raise
+        return _complain(told, BAD_INPUT)
     except MemoryError:
         return _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
     except OSError as error:

@@ -13,7 +13,7 @@ from click.core import ParameterSource
 from ocp import Plan, PointToPoint
 from ocp.plan.answer import ticks_of_move
 from studies.cli.options import bare_angles
-from studies.cli.plants import chosen_plant
+from studies.cli.plants import chosen_plant, uncertain
 from studies.display.saving import File, drawing
 from studies.runs.files import refuse_same_file
 
@@ -38,6 +38,7 @@ def split_options(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
 def task_of(rest: dict[str, Any]) -> PointToPoint:
     """The task of the options that `task_options` adds; ValueError where it is none."""
     plant = chosen_plant(rest.pop("plant"), rest.pop("plant_file"), rest.pop("set"))
+    plant = uncertain(plant, rest.pop("robust", ()))
     task = PointToPoint(plant, **rest)
     _ask_for_degrees(task)
     return task

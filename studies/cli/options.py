@@ -13,7 +13,7 @@ from models import Plant, load_plant_file
 from ocp.base.files import check_writable
 from ocp.base.names import nearest
 from ocp.task.quantities import QUANTITIES, Quantity
-from studies.cli.plants import parse_plant, parse_setting
+from studies.cli.plants import parse_error, parse_plant, parse_setting
 from studies.cli.quantities import (
     is_number,
     literal,
@@ -128,6 +128,7 @@ SETTING = Parsed("parameter=value", partial(parse_setting, what="a parameter", e
 METHOD_SETTING = Parsed(
     "name=value", partial(parse_setting, what="a setting", example="mutation=1")
 )
+ERROR = Parsed("name=share", parse_error)
 ANGLE = _Angle("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
@@ -264,6 +265,11 @@ _WORKERS_OPTIONS = (
 )  # fmt: skip
 
 
+robust_option = click.option(
+    "--robust", type=ERROR, multiple=True, metavar="NAME=SHARE",
+    help="Count as the residual the largest one while the frequency, the damping or a parameter of "
+    "the plant is wrong by up to this, as frequency=10%; may be repeated.",
+)  # fmt: skip
 quiet_option = click.option("--quiet", is_flag=True, help="Show no progress.")
 
 

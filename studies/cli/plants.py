@@ -7,7 +7,9 @@ from dataclasses import MISSING, Field, fields, is_dataclass
 from typing import Any
 
 from models import Plant, known_plants
+from ocp import UncertainPlant
 from ocp.base.names import nearest
+from studies.cli.quantities import parse_share
 
 
 def parse_plant(name: str) -> type[Plant]:
@@ -28,6 +30,24 @@ def parse_setting(text: str, what: str, example: str) -> tuple[str, str]:
     if not (equals and name.strip() and value.strip()):
         raise ValueError(f"{text!r} sets nothing; give {what} and its value, as {example}")
     return name.strip(), value.strip()
+
+
+def parse_error(text: str) -> tuple[str, float]:
+    """Read how far a parameter may be wrong, ``frequency=10%``; ValueError when it is none."""
+    name, equals, share = (part.strip() for part in text.partition("="))
+    if not (equals and name and share):
+        raise ValueError(f"{text!r} is no error; give a name and its share, as frequency=10%")
+    return name.replace("-", "_"), parse_share(share)
+
+
+def uncertain(plant: Plant, errors: Iterable[tuple[str, float]]) -> Plant:
+    """The plant that may be wrong by these errors; ValueError where it cannot be."""
+    ranges: dict[str, float] = {}
+    for name, share in errors:
+        if name in ranges:
+            raise ValueError(f"--robust {name} is given twice; give it once")
+        ranges[name] = share
+    return UncertainPlant(plant, ranges) if ranges else plant
 
 
 def chosen_plant(

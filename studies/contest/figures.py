@@ -10,7 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
-from studies.contest.measures import TARGETS, Arena, quartiles
+from studies.comparison.staircase import objectives, within
+from studies.contest.measures import TARGETS, Arena, Field, quartiles
+from studies.contest.statistics import Ranking
 from studies.contest.tables import label_of
 from studies.figures.axes import axes_or_new, new_figure
 from studies.figures.looks import Look, look
@@ -18,6 +20,7 @@ from studies.figures.looks import Look, look
 Array = NDArray[np.float64]
 _LEAST = 1e-4
 """Shares below are drawn here: the exact front's own hypervolume is no better known."""
+_GRID = 240
 
 
 def looks_of(methods: Sequence[str]) -> dict[str, Look]:
@@ -88,3 +91,152 @@ def _finished(ax: Axes) -> None:
     ax.set_ylim(top=110)
     ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     ax.set_ylabel("hypervolume missing [% of the exact front's]")
+
+
+def attainment_figure(arena: Arena, looks: dict[str, Look]) -> Figure:
+    """Median attainment surfaces over each other, and the best method's less each other's."""
+    best, *others = sorted(arena.fields, key=lambda field: float(np.median(field.final)))
+    panels = 1 + len(others)
+    columns = min(panels, 3)
+    rows = -(-panels // columns)
+    figure = new_figure(3.9 * columns, 3.6 * rows)
+    axes = list(figure.subplots(rows, columns, squeeze=False).flat)
+    draw_surfaces(arena, looks, axes[0])
+    for other, ax in zip(others, axes[1:], strict=False):
+        draw_difference(arena, best, other, ax)
+    for ax in axes[panels:]:
+        ax.axis("off")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4,
+                  frameon=False)  # fmt: skip
+    return figure
+
+
+def draw_surfaces(arena: Arena, looks: dict[str, Look], ax: Axes | None = None) -> Axes:
+    """Draw what half of the runs of each method attain, and the exact front.
+
+    Parameters, and what is returned, are those of `draw_evaluations`.
+    """
+    ax, (residuals, _) = axes_or_new(ax), _grid(arena)
+    for field in arena.fields:
+        own = looks[field.method]
+        ax.plot(1e3 * residuals, np.median(_stairs(field, residuals), axis=0), color=own.colour,
+                linestyle=own.dash, label=label_of(field.method))  # fmt: skip
+    _draw_exact(arena, ax)
+    _of_a_front(ax, arena)
+    ax.set_title("what half of the runs attain", loc="left", fontsize=10)
+    return ax
+
+
+def draw_difference(arena: Arena, one: Field, other: Field, ax: Axes | None = None) -> Axes:
+    """Draw where more runs of one method than of another attain residual and energy.
+
+    Parameters
+    ----------
+    arena : Arena
+        The problem.
+    one, other : Field
+        Two methods on it.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes: blue where more runs of the first attain it, red where more of the second.
+    """
+    ax, (residuals, energies) = axes_or_new(ax), _grid(arena)
+    attained = [
+        (_stairs(field, residuals)[:, :, None] <= energies).mean(axis=0) for field in (one, other)
+    ]
+    shares = (attained[0] - attained[1]).T
+    mesh = ax.pcolormesh(1e3 * residuals, energies, shares, cmap="RdBu", vmin=-1, vmax=1,
+                         rasterized=True, shading="nearest")  # fmt: skip
+    _draw_exact(arena, ax)
+    _of_a_front(ax, arena)
+    figure = ax.figure
+    figure.colorbar(mesh, ax=ax, ticks=(-1, 0, 1), shrink=0.8)
+    ax.set_title(
+        f"{label_of(one.method)} (blue)\n{label_of(other.method)} (red)", loc="left", fontsize=9
+    )
+    return ax
+
+
+def _draw_exact(arena: Arena, ax: Axes) -> None:
+    """Draw the exact front: motions between its points are on the lines that join them."""
+    front = arena.yardstick.front
+    ax.plot(1e3 * front.residuals, front.energies, color="black", linewidth=0.9, label="exact")
+
+
+def _grid(arena: Arena) -> tuple[Array, Array]:
+    """Residuals [m] and energies [J] over the exact front's extent and a little more."""
+    (least, cheapest), (most, dearest) = arena.yardstick.scale.ideal, arena.yardstick.scale.nadir
+    height = dearest - cheapest
+    return (
+        np.linspace(least, most, _GRID),
+        np.linspace(cheapest - 0.02 * height, dearest + 0.3 * height, _GRID),
+    )
+
+
+def _stairs(field: Field, residuals: Array) -> Array:
+    """Least energy [J] of every run within residuals, shape (runs, residuals)."""
+    return np.array([within(objectives(run.front), residuals, np.inf) for run in field.runs])
+
+
+def _of_a_front(ax: Axes, arena: Arena) -> None:
+    residuals, energies = _grid(arena)
+    ax.set_xlim(1e3 * residuals[0], 1e3 * residuals[-1])
+    ax.set_ylim(energies[0], energies[-1])
+    ax.set_xlabel("residual F1 [mm]")
+    ax.set_ylabel("energy F2 [J]")
+
+
+def ranks_figure(found: Ranking, title: str) -> Figure:
+    """The critical-difference diagram alone."""
+    figure = new_figure(7.2, 1.3 + 0.26 * len(found.methods))
+    draw_ranks(found, figure.subplots())
+    figure.suptitle(title, fontsize=10)
+    return figure
+
+
+def draw_ranks(found: Ranking, ax: Axes | None = None) -> Axes:
+    """Draw mean ranks on a line; bars join methods that the tests do not tell apart.
+
+    Parameters
+    ----------
+    found : Ranking
+        The ranks.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; new axes by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    ax = axes_or_new(ax)
+    ax.grid(False)
+    count = len(found.methods)
+    bars, half = found.alike, (count + 1) // 2
+    first = 0.5 + 0.35 * len(bars)
+    for place, (method, rank) in enumerate(zip(found.methods, found.ranks, strict=True)):
+        left = place < half
+        depth = first + (place if left else count - 1 - place) + 0.5
+        edge = 1 - 0.25 if left else count + 0.25
+        ax.plot([rank, rank, edge], [0, depth, depth], color="0.35", linewidth=0.9)
+        ax.text(edge, depth, f" {label_of(method)} ({rank:.2f}) ", va="center",
+                ha="right" if left else "left", fontsize=9)  # fmt: skip
+    for number, (begin, end) in enumerate(bars):
+        depth = 0.35 * (number + 1)
+        ax.plot([found.ranks[begin] - 0.04, found.ranks[end] + 0.04], [depth, depth],
+                color="black", linewidth=3.5, solid_capstyle="butt")  # fmt: skip
+    ax.plot([1, 1 + found.critical], [-1.0, -1.0], "|-", color="black", linewidth=1.2)
+    ax.text(1 + found.critical, -1.0, f"  critical difference {found.critical:.2f}", va="center",
+            fontsize=8)  # fmt: skip
+    ax.set_xlim(1 - 0.25, count + 0.25)
+    ax.set_ylim(first + half + 0.4, -1.5)
+    ax.xaxis.tick_top()
+    ax.set_xticks(range(1, count + 1))
+    ax.yaxis.set_visible(False)
+    ax.spines[["left", "right", "bottom"]].set_visible(False)
+    ax.spines["top"].set_position(("data", 0.0))
+    return ax

@@ -2,37 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ocp.base.files import write_whole
-from studies.contest.figures import anytime_figure, looks_of
+from studies.contest.citations import bibtex
+from studies.contest.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
 from studies.contest.measures import Arena, methods_in
 from studies.contest.page import contest_page
-from studies.contest.tables import anytime_table, runs_table
+from studies.contest.statistics import Ranking, pairs_on, ranking_on, ranking_over, why_none
+from studies.contest.tables import anytime_table, pairs_table, ranks_table, runs_table
 from studies.display.saving import File, drawing, inside
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 PAGE = "contest.html"
+_OVERALL = "all problems"
+_KINDS = ("png", "pdf")
 
 
 def report_files(arenas: Sequence[Arena], folder: Path) -> list[File]:
     """Every table as CSV, every picture as PNG and PDF, and the page; and what writes each."""
     page: File = folder / PAGE, lambda path: write_whole(path, contest_page(arenas))
-    return [page, *_tables(arenas, folder / "tables"), *_pictures(arenas, folder / "figures")]
+    tests = not why_none(arenas)
+    references = bibtex(methods_in(arenas), statistics=tests)
+    return [
+        page,
+        (folder / "references.bib", lambda path: write_whole(path, references)),
+        *inside(folder / "tables", _tables(arenas, tests)),
+        *inside(folder / "figures", _pictures(arenas, tests)),
+    ]
 
 
-def _tables(arenas: Sequence[Arena], folder: Path) -> list[File]:
+def _tables(arenas: Sequence[Arena], tests: bool) -> dict[str, Callable[[Path], object]]:
     tables = {"runs": runs_table(arenas), "anytime": anytime_table(arenas)}
-    return inside(folder, {f"{name}.csv": table.save_csv for name, table in tables.items()})
+    if tests:
+        tables["pairs"] = pairs_table([pair for arena in arenas for pair in pairs_on(arena)])
+        tables["ranks"] = ranks_table(_rankings(arenas))
+    return {f"{name}.csv": table.save_csv for name, table in tables.items()}
 
 
-def _pictures(arenas: Sequence[Arena], folder: Path) -> list[File]:
+def _rankings(arenas: Sequence[Arena]) -> list[tuple[str, Ranking]]:
+    found = [*((arena.problem, ranking_on(arena)) for arena in arenas),
+             (_OVERALL, ranking_over(arenas))]  # fmt: skip
+    return [(where, one) for where, one in found if one is not None]
+
+
+def _pictures(arenas: Sequence[Arena], tests: bool) -> dict[str, Callable[[Path], object]]:
     looks = looks_of(methods_in(arenas))
-    pictures = {
-        f"anytime-{arena.problem}": (lambda arena=arena: anytime_figure(arena, looks))
-        for arena in arenas
-    }
-    return inside(folder, {
-        f"{name}.{kind}": drawing(draw)
-        for name, draw in pictures.items() for kind in ("png", "pdf")
-    })  # fmt: skip
+    draws: dict[str, Callable[[], Figure]] = {}
+    for arena in arenas:
+        draws[f"anytime-{arena.problem}"] = partial(anytime_figure, arena, looks)
+        draws[f"attainment-{arena.problem}"] = partial(attainment_figure, arena, looks)
+    for where, found in _rankings(arenas) if tests else ():
+        draws[f"ranks-{where.replace(' ', '-')}"] = partial(ranks_figure, found, where)
+    return {f"{name}.{kind}": drawing(draw) for name, draw in draws.items() for kind in _KINDS}

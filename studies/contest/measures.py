@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from math import inf
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metaheuristics.budget.record import CORNER
 from metaheuristics.ensemble import Spread
 from studies.comparison.staircase import objectives, within
+from studies.contest.landscape import Landscape
 from studies.contest.problems import Yardstick
 from studies.contest.runs import Key, Run
 from studies.methods import LEVELS
@@ -20,6 +23,7 @@ Array = NDArray[np.float64]
 TARGETS = (1e-2, 1e-3)
 """Shares of the exact front's hypervolume that may be missing for a target to count as reached."""
 _TIMES = 120
+_PLACES = 3000
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +78,23 @@ class Field:
         found = [within(objectives(run.front), LEVELS, inf) for run in self.runs]
         return np.array(found) / exact - 1
 
+    @cached_property
+    def visited(self) -> Array:
+        """Share of the feasible candidates in each third and beyond, shape (runs, 4)."""
+        counts = np.array([astuple(run.visits) for run in self.runs], dtype=float)
+        return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
+
+    @cached_property
+    def missing_by_thirds(self) -> Array:
+        """Share of the exact hypervolume over each third of the residuals that is missing.
+
+        Shape (runs, 3): still, middle, cheap. Both hypervolumes are up to the corner in the energy.
+        """
+        scale = self.yardstick.scale
+        exact = _over_thirds(scale.scaled(objectives(self.yardstick.front)))
+        found = [_over_thirds(scale.scaled(objectives(run.front))) for run in self.runs]
+        return 1.0 - np.array(found) / exact
+
     def hits(self, target: float) -> Array:
         """Evaluations after which a target was first seen reached, shape (runs,); else infinite.
 
@@ -120,10 +141,13 @@ class Arena:
         The problem and its exact front.
     fields : tuple of Field
         The methods, each with one run or more.
+    landscape : Landscape or None
+        Its local minima, where they were looked for.
     """
 
     yardstick: Yardstick
     fields: tuple[Field, ...]
+    landscape: Landscape | None = None
 
     @property
     def problem(self) -> str:
@@ -138,7 +162,11 @@ class Arena:
         return np.geomspace(max(first, 1e-4), max(last, 2e-4), _TIMES)
 
 
-def arenas_of(runs: Mapping[Key, Run], yardsticks: Mapping[str, Yardstick]) -> tuple[Arena, ...]:
+def arenas_of(
+    runs: Mapping[Key, Run],
+    yardsticks: Mapping[str, Yardstick],
+    landscapes: Mapping[str, Landscape] = MappingProxyType({}),
+) -> tuple[Arena, ...]:
     """The problems with runs, in the order of their names; methods in that of theirs.
 
     Parameters
@@ -147,6 +175,8 @@ def arenas_of(runs: Mapping[Key, Run], yardsticks: Mapping[str, Yardstick]) -> t
         As `Folder.runs` gives them.
     yardsticks : mapping of str to Yardstick
         By problem.
+    landscapes : mapping of str to Landscape
+        By problem, where they are known.
 
     Returns
     -------
@@ -161,8 +191,16 @@ def arenas_of(runs: Mapping[Key, Run], yardsticks: Mapping[str, Yardstick]) -> t
             Field(m, yardsticks[problem], tuple(runs[key] for key in own if key.method == m))
             for m in methods
         ]
-        arenas.append(Arena(yardsticks[problem], tuple(fields)))
+        arenas.append(Arena(yardsticks[problem], tuple(fields), landscapes.get(problem)))
     return tuple(arenas)
+
+
+def _over_thirds(scaled: Array) -> Array:
+    """Area between a front and the corner's energy over each third of the residuals, shape (3,)."""
+    ordered = scaled[np.argsort(scaled[:, 0])]
+    places = np.linspace(0.0, 1.0, _PLACES, endpoint=False) + 0.5 / _PLACES
+    height = np.maximum(CORNER - within(ordered, places, CORNER), 0.0)
+    return height.reshape(3, -1).mean(axis=1)
 
 
 def methods_in(arenas: Iterable[Arena]) -> tuple[str, ...]:

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from studies.contest.figures import anytime_figure, looks_of
+from metaheuristics.budget.run import MULTISTART, Help, parts_of
+from studies.contest.citations import bibtex
+from studies.contest.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from studies.contest.measures import Arena, methods_in
-from studies.contest.tables import label_of, summary_table
+from studies.contest.statistics import ALPHA, Ranking, pairs_on, ranking_on, ranking_over, why_none
+from studies.contest.tables import effects_table, label_of, summary_table, visits_table
 from studies.display.html_page import Markup, bullets, element, page, picture, table_element
-from studies.display.words import counted, title_of
+from studies.display.words import counted, millimetres, title_of
+
+_ANYTIME = (
+    "Share of the exact front's hypervolume that is missing, over evaluations and over time: "
+    "medians over the seeds in bands of the quartiles; dotted the targets of 1 % and 0.1 %."
+)
+_ATTAINMENT = (
+    "What half of the runs of each method attain, with the exact front in black; and where more "
+    "runs of the best method (blue) or of another (red) attain residual and energy."
+)
+_RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell apart."
 
 
 def contest_page(arenas: Sequence[Arena]) -> str:
@@ -27,28 +41,112 @@ def contest_page(arenas: Sequence[Arena]) -> str:
     methods = methods_in(arenas)
     title = f"{counted(len(methods), 'method')} against the exact front"
     sections = [_section(arena, methods) for arena in arenas]
-    return page(title, element("h1", title), *sections, _methods(arenas))
+    return page(title, element("h1", title), _findings(arenas), *sections, _methods(arenas))
+
+
+def _findings(arenas: Sequence[Arena]) -> Markup:
+    none, lines = why_none(arenas), list[str]()
+    for arena in arenas:
+        best = min(arena.fields, key=lambda field: sorted(field.final)[len(field.final) // 2])
+        middle = sorted(best.final)[len(best.final) // 2]
+        lines.append(
+            f"{arena.problem}: {label_of(best.method)} ends nearest to the exact front, with "
+            f"{100 * middle:.2g} % of its hypervolume missing in the middle run of "
+            f"{len(best.runs)}."
+        )
+    lines += [f"{none}."] if none else []
+    over = None if none else ranking_over(arenas)
+    parts = [bullets([*lines, *_unequal(arenas)])]
+    found = element("div", *parts, class_="findings")
+    if over is None:
+        return found
+    words = f"{_RANKS} Over {over.blocks} problems, by medians. {_verdict(over)}"
+    return element("div", found, picture(ranks_figure(over, "all problems"), words, words))
+
+
+def _unequal(arenas: Sequence[Arena]) -> list[str]:
+    """What is to be known of methods whose runs are not as many, or not as long, as others'."""
+    lines = list[str]()
+    for arena in arenas:
+        counts = {len(field.runs) for field in arena.fields}
+        if len(counts) > 1:
+            stated = ", ".join(f"{label_of(f.method)} {len(f.runs)}" for f in arena.fields)
+            lines.append(f"{arena.problem}: the methods have unequal numbers of runs: {stated}.")
+        short = [f for f in arena.fields for run in f.runs if run.front.evaluations < run.budget]
+        lines += [
+            f"{arena.problem}: {label_of(field.method)} ended before its evaluations were spent."
+            for field in dict.fromkeys(short)
+        ]
+    return lines
+
+
+def _verdict(found: Ranking) -> str:
+    says = "the methods differ" if found.differ else "no difference is shown"
+    return (
+        f"Friedman's test: chi2 = {found.statistic:.3g}, p = {found.p_value:.2g}, {says} at "
+        f"{100 * ALPHA:g} %; Nemenyi's critical difference is {found.critical:.2f}."
+    )
 
 
 def _section(arena: Arena, methods: Sequence[str]) -> Markup:
-    title = title_of(arena.yardstick.front.task)
-    words = (
-        "Share of the exact front's hypervolume that is missing, over evaluations and over time: "
-        "medians over the seeds in bands of the quartiles; dotted the targets of 1 % and 0.1 %."
-    )
-    return element(
-        "section",
+    title, looks = title_of(arena.yardstick.front.task), looks_of(methods)
+    parts = [
         element("h2", arena.problem),
         element("p", title, class_="soft"),
-        picture(anytime_figure(arena, looks_of(methods)), f"{words} On {title}.", words),
+        picture(anytime_figure(arena, looks), f"{_ANYTIME} On {title}.", _ANYTIME),
         table_element(summary_table(arena)),
-        id=arena.problem,
-    )
+        picture(attainment_figure(arena, looks), f"{_ATTAINMENT} On {title}.", _ATTAINMENT),
+        *_statistics(arena),
+        table_element(visits_table(arena)),
+        *([bullets(explanation(arena.landscape))] if arena.landscape else []),
+    ]
+    return element("section", *parts, id=arena.problem)
+
+
+def explanation(found: Landscape) -> list[str]:
+    """What makes a problem hard, in sentences."""
+    level = millimetres(LEVEL)
+    lines = [
+        f"Of {found.starts} random starts in the box, the gradient ended at a minimum of the "
+        f"energy within {level} from {found.solved:.0%}, and at the best of these from "
+        f"{found.best:.0%}; of the minima, {found.minima} differ by more than 0.1 % in energy.",
+        f"Over {CANDIDATES} random candidates, energy and distance to the cheapest motion "
+        f"correlate by {found.candidates:.2f} (1 where better candidates lie nearer to it).",
+    ]
+    if found.correlation is not None:
+        lines.append(
+            f"Over the minima found, energy and distance to the best one correlate by "
+            f"{found.correlation:.2f}."
+        )
+    for share, ratio in found.boxes:
+        of = f"With a box {share:g} times as large the least energy within {level} is"
+        lines.append(
+            f"{of} not found." if ratio is None else f"{of} {ratio:.4g} times that in this one."
+        )
+    return lines
+
+
+def _statistics(arena: Arena) -> list[Markup]:
+    none = why_none([arena])
+    if none:
+        return [element("p", f"{none[0].upper()}{none[1:]}.")]
+    parts, found = list[Markup](), ranking_on(arena)
+    if found is not None:
+        words = f"{_RANKS} Over {found.blocks} seeds. {_verdict(found)}"
+        parts.append(picture(ranks_figure(found, arena.problem), words, words))
+    return [*parts, table_element(effects_table(arena, pairs_on(arena)))]
 
 
 def _methods(arenas: Sequence[Arena]) -> Markup:
-    return element("section", element("h2", "Methods"), element("p", methods_paragraph(arenas)),
-                   bullets(settings_lines(arenas)))  # fmt: skip
+    references = bibtex(methods_in(arenas), statistics=not why_none(arenas))
+    return element(
+        "section",
+        element("h2", "Methods"),
+        element("p", methods_paragraph(arenas)),
+        bullets(settings_lines(arenas)),
+        element("h3", "References"),
+        element("pre", references, class_="soft"),
+    )
 
 
 def methods_paragraph(arenas: Sequence[Arena]) -> str:
@@ -58,16 +156,48 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
     budgets = sorted({run.budget for run in runs})
     versions = {name: version for run in runs for name, version in run.front.versions.items()}
     names = ", ".join(label_of(method) for method in methods_in(arenas))
+    helped = _of_the_gradient(methods_in(arenas))
+    tests = (
+        ""
+        if why_none(arenas)
+        else (
+            f"Differences are tested at {100 * ALPHA:g} %: by Friedman's test and Nemenyi's "
+            "critical difference over seeds on each problem and over the problems' medians, and in "
+            "pairs by the Mann-Whitney test with Holm's correction; the effect size is Vargha and "
+            "Delaney's A. "
+        )
+    )
     return (
         f"{names}: {counted(len(arenas), 'problem')}, seeds {seeds[0]} to {seeds[-1]}, "
         f"{' or '.join(map(str, budgets))} evaluations a run, the last generation cut short where "
         "the budget does not suffice for it. Every feasible candidate that no other dominates is "
         "kept, whatever the method itself keeps. Hypervolumes are measured from a tenth beyond the "
         "worst of the exact front in each objective, both scaled to its extent; that of the exact "
-        "front counts the motions between its points. Time is processor time of the search, "
-        "without that of the record. Computed with "
+        "front counts the motions between its points. The expected running time is COCO's: the "
+        "evaluations that all runs spent until they reached a target, or in all, over the number "
+        f"that reached it, seen at marks 5 % apart. {helped}{tests}Time is processor "
+        "time of the search, without that of the record. Computed with "
         f"{', '.join(f'{name} {version}' for name, version in versions.items())}."
     )
+
+
+def _of_the_gradient(methods: Sequence[str]) -> str:
+    """How the gradient's work is counted, where it has a part."""
+    parts = [parts_of(method) for method in methods]
+    words = list[str]()
+    if any(helped is not Help.NONE or search == MULTISTART for search, helped in parts):
+        words.append(
+            "An iteration of IPOPT counts as the 1 + n + n (n + 1) / 2 evaluations that "
+            "differences would take for its first and second derivatives of n coefficients. "
+        )
+    if any(helped is Help.POLISH for _, helped in parts):
+        words.append("What is polished is searched with half of the evaluations first. ")
+    if any(helped is Help.SEEDS for _, helped in parts):
+        words.append(
+            "Gradient seeds are five motions in the first population, each solved from a random "
+            "start: at rest, with any residual, and at a quarter, half and three quarters of that. "
+        )
+    return "".join(words)
 
 
 def settings_lines(arenas: Sequence[Arena]) -> list[str]:

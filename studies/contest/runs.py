@@ -12,9 +12,10 @@ from metaheuristics.budget.run import BudgetRun
 from ocp import FileFormatError, Front
 from ocp.answers.saved import Saved
 from ocp.base.ranges import CountFromOne
+from studies.contest.landscape import Landscape
 from studies.contest.problems import Yardstick
 
-_YARDSTICKS, _RUNS = "exact", "runs"
+_YARDSTICKS, _RUNS, _LANDSCAPES = "exact", "runs", "landscape"
 _Kind = TypeVar("_Kind", bound=Saved)
 
 
@@ -125,6 +126,15 @@ class Folder:
         paths = sorted(self.path.glob(f"{_YARDSTICKS}/*.json"))
         found = [_loaded(Yardstick, path) for path in paths]
         return {one.problem: one for one in found}
+
+    def save_landscape(self, landscape: Landscape) -> None:
+        """Write a landscape, whole or not at all."""
+        self._save(landscape, self.path / _LANDSCAPES / f"{landscape.problem}.json")
+
+    def landscapes(self) -> dict[str, Landscape]:
+        """Every landscape in the folder, by its problem; errors as for `runs`."""
+        paths = sorted(self.path.glob(f"{_LANDSCAPES}/*.json"))
+        return {one.problem: one for one in (_loaded(Landscape, path) for path in paths)}
 
     def _run_path(self, key: Key) -> Path:
         return self.path / _RUNS / key.problem / key.method / f"seed{key.seed}.json"

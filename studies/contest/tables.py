@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite
 
+from metaheuristics.budget.run import MULTISTART, Help, parts_of
 from studies.contest.measures import TARGETS, Arena, Field, quartiles, spread
+from studies.contest.statistics import ALPHA, Pair, Ranking
 from studies.display.tables import Cell, Column, Table
 from studies.display.words import millimetres
 from studies.methods import LEVELS, method_of
@@ -13,9 +15,14 @@ from studies.methods import LEVELS, method_of
 _PERCENT = "{:.3g} %".format
 
 
+_HELPED = {Help.NONE: "", Help.POLISH: ", then polished", Help.SEEDS: " from gradient seeds"}
+
+
 def label_of(method: str) -> str:
     """What a method is called in tables and pictures."""
-    return method_of(method).label
+    search, helped = parts_of(method)
+    label = "gradient, random starts" if search == MULTISTART else method_of(search).label
+    return f"{label}{_HELPED[helped]}"
 
 
 def runs_table(arenas: Sequence[Arena]) -> Table:
@@ -70,6 +77,66 @@ def summary_table(arena: Arena) -> Table:
             Column(f"  runs that have a motion at {millimetres(level)}"))),
     ]  # fmt: skip
     return Table("What the methods ended with", columns, [_summary(f) for f in arena.fields])
+
+
+def ranks_table(rankings: Sequence[tuple[str, Ranking]]) -> Table:
+    """Mean ranks of every method, by what was ranked on: one row a method and ranking."""
+    names = ("on", "blocks", "method", "mean_rank", "friedman_statistic", "friedman_p",
+             "critical_difference")  # fmt: skip
+    rows: list[list[Cell]] = [
+        [where, f"{found.blocks} {found.what}", method, rank, found.statistic, found.p_value,
+         found.critical]
+        for where, found in rankings
+        for method, rank in zip(found.methods, found.ranks, strict=True)
+    ]  # fmt: skip
+    return Table("Mean ranks", [Column(name) for name in names], rows)
+
+
+def pairs_table(pairs: Sequence[Pair]) -> Table:
+    """Every pair of methods: how likely the first misses less, and whether by chance."""
+    names = ("problem", "method", "other", "probability_that_it_misses_less", "mann_whitney_p",
+             "p_after_holm")  # fmt: skip
+    rows: list[list[Cell]] = [
+        [pair.problem, pair.one, pair.other, pair.effect, pair.p_value, pair.adjusted]
+        for pair in pairs
+    ]
+    return Table("Pairs", [Column(name) for name in names], rows)
+
+
+def effects_table(arena: Arena, pairs: Sequence[Pair]) -> Table:
+    """The pairs on a problem as a square: how likely the line's method misses less."""
+    methods = [field.method for field in arena.fields]
+    known = {(pair.one, pair.other): (pair.effect, pair.adjusted) for pair in pairs}
+    known |= {(pair.other, pair.one): (1 - pair.effect, pair.adjusted) for pair in pairs}
+    rows: list[list[Cell]] = []
+    for other in methods:
+        row: list[Cell] = [f"than {label_of(other)}"]
+        for method in methods:
+            effect, p_value = known.get((method, other), (None, 1.0))
+            sure = "*" if p_value < ALPHA else ""
+            row.append(None if effect is None else f"{effect:.2f}{sure}")
+        rows.append(row)
+    columns = [Column("misses less"), *(Column(label_of(method)) for method in methods)]
+    return Table("How likely a run misses less (* after Holm, at 5 %)", columns, rows)
+
+
+def visits_table(arena: Arena) -> Table:
+    """Where the candidates of the methods lie: one column a method, medians over the seeds."""
+    columns = [
+        Column("method"),
+        *(Column(f"candidates in the {third} third", _PERCENT)
+          for third in ("still", "middle", "cheap")),
+        Column("  beyond the exact front's extent", _PERCENT),
+        *(Column(f"hypervolume missing in the {third} third", _PERCENT)
+          for third in ("still", "middle", "cheap")),
+    ]  # fmt: skip
+    rows: list[list[Cell]] = []
+    for field in arena.fields:
+        shares = quartiles(field.visited)[1]
+        missing = quartiles(field.missing_by_thirds)[1]
+        percent = [100 * float(share) for share in [*shares, *missing]]
+        rows.append([label_of(field.method), *percent])
+    return Table("Where the candidates lie, by the residual", columns, rows)
 
 
 def _summary(field: Field) -> list[Cell]:

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from metaheuristics.algorithms.presets import preset_of
-from metaheuristics.budget.run import number_of_evaluations, search_within
+from metaheuristics import PRESETS
+from metaheuristics.budget.run import number_of_evaluations, parts_of, search_within
 from metaheuristics.ensemble import seeds_of
 from metaheuristics.runs.settings import number_of_individuals
 from metaheuristics.sharing.pieces import Done, Listener, NotTriedError, Piece, Say, to_the_end
@@ -15,6 +15,7 @@ from metaheuristics.sharing.running import run_pieces
 from metaheuristics.sharing.workers import HERE, Workers
 from ocp import QuietarmError
 from ocp.base.interrupts import note_interrupts
+from studies.contest.landscape import Landscape, landscape_of
 from studies.contest.problems import Problem, Yardstick, exact_front
 from studies.contest.runs import Folder, Key, Run, check_alike
 
@@ -37,6 +38,8 @@ class Contest:
         First seed.
     population : int, optional
         Individuals of every method; each method's own by default.
+    explain : bool
+        Whether the local minima of the problems are looked for as well.
     workers : Workers
         Where the runs are done.
 
@@ -52,15 +55,16 @@ class Contest:
     evaluations: int = 20_000
     seed: int = 0
     population: int | None = None
+    explain: bool = False
     workers: Workers = HERE
 
     def __post_init__(self) -> None:
         for name in self.methods:
-            preset = preset_of(name)
+            search, _ = parts_of(name)
             limited = [problem.name for problem in self.problems if problem.task.limits]
-            if limited and not preset.keeps_limits:
+            if limited and search in PRESETS and not PRESETS[search].keeps_limits:
                 raise ValueError(
-                    f"{name} cannot search {limited[0]}, which has limits; leave it out"
+                    f"{name} cannot search {limited[0]}, which has limits; leave one of them out"
                 )
         object.__setattr__(self, "methods", tuple(dict.fromkeys(self.methods)))
         seeds_of(self.seed, self.runs)
@@ -95,7 +99,7 @@ def pieces_of(contest: Contest, folder: Folder) -> list[Piece]:
     Returns
     -------
     list of Piece
-        Exact fronts and runs that are not in the folder.
+        Exact fronts, local minima and runs that are not in the folder.
 
     Raises
     ------
@@ -104,7 +108,7 @@ def pieces_of(contest: Contest, folder: Folder) -> list[Piece]:
     FileFormatError
         When a file in the folder is broken.
     """
-    there, yardsticks = folder.runs(), folder.yardsticks()
+    there, yardsticks, landscapes = folder.runs(), folder.yardsticks(), folder.landscapes()
     check_alike(there.values(), yardsticks, contest.evaluations, contest.population, folder.path)
     pieces = list[Piece]()
     for problem in contest.problems:
@@ -113,6 +117,10 @@ def pieces_of(contest: Contest, folder: Folder) -> list[Piece]:
         if known is None:
             name = f"{problem.name}: exact front"
             pieces.append(Piece(problem.name, name, partial(_yardstick, problem)))
+        if contest.explain and problem.name not in landscapes:
+            name = f"{problem.name}: local minima"
+            work = partial(_landscape, problem, contest.seed)
+            pieces.append(Piece((problem.name, "landscape"), name, work))
         for key in wanted:
             name = f"{problem.name}: {key.method}, seed {key.seed}"
             work = partial(_run, contest, problem, key, known)
@@ -142,10 +150,12 @@ def run_contest(
         What became of the pieces.
     """
 
-    def keep(key: object, answer: Run | Yardstick) -> None:
+    def keep(key: object, answer: Run | Yardstick | Landscape) -> None:
         with note_interrupts():
             if isinstance(answer, Run):
                 folder.save_run(answer)
+            elif isinstance(answer, Landscape):
+                folder.save_landscape(answer)
             else:
                 folder.save_yardstick(answer)
 
@@ -154,6 +164,10 @@ def run_contest(
 
 def _yardstick(problem: Problem, earlier: Done, say: Say) -> Yardstick:
     return Yardstick.of(problem, to_the_end(exact_front(problem)))
+
+
+def _landscape(problem: Problem, seed: int, earlier: Done, say: Say) -> Landscape:
+    return landscape_of(problem, seed)
 
 
 def _run(

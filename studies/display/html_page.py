@@ -26,6 +26,7 @@ h2 { font-size: 1.3rem; line-height: 1.25; margin: 2.5rem 0 .5rem; padding-top: 
 h3 { font-size: 1rem; margin: 1.5rem 0 .25rem; }
 p, li { max-width: 46rem; }
 a { color: var(--accent); }
+pre { overflow-x: auto; background: var(--card); padding: .75rem 1rem; }
 .soft { color: var(--soft); font-size: .875rem; }
 .findings { background: var(--card); border-left: 4px solid var(--accent); padding: .75rem 1rem;
   margin: 1rem 0; max-width: 50rem; }

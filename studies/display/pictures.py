@@ -39,5 +39,12 @@ def save_figure(figure: Figure, path: str | Path) -> None:
     """
     target = check_figure(path)
     content = io.BytesIO()
-    figure.savefig(content, format=target.suffix[1:].lower(), dpi=150)
+    try:
+        figure.savefig(content, format=target.suffix[1:].lower(), dpi=150)
+    except (RuntimeError, ValueError, ImportError) as error:  # by the user's settings alone
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        raise ValueError(
+            f"{target} cannot be drawn ({reason}); check matplotlib's settings: matplotlibrc, "
+            "MPLBACKEND, SOURCE_DATE_EPOCH"
+        ) from error
     write_whole(target, content.getvalue())

@@ -8,7 +8,7 @@ from math import degrees
 from rich.console import Console
 
 from models import Plant
-from ocp import PointToPoint
+from ocp import PointToPoint, UncertainPlant
 from ocp.base.printable import printable
 from ocp.task.quantities import QUANTITIES
 
@@ -30,13 +30,21 @@ def millimetres(length: float) -> str:
 
 
 def plant_words(plant: Plant) -> str:
-    """A plant's name, with the parameters that differ from those of its class."""
+    """A plant's name, with the parameters that differ from those of its class, and its errors."""
+    if isinstance(plant, UncertainPlant):
+        return f"{plant_words(plant.assumed)}, {error_words(plant)}"
     changed: list[str] = []
     for entry in fields(plant):
         value, unit = plant.parameters[entry.name], entry.metadata.get("unit", "-")
         if value != entry.default:
             changed.append(f"{entry.name} = {value:.6g}{'' if unit == '-' else f' {unit}'}")
     return f"{plant.name} with {', '.join(changed)}" if changed else plant.name
+
+
+def error_words(plant: Plant) -> str:
+    """How far an uncertain plant may be wrong: "frequency +-10 %"; nothing for others."""
+    ranges = plant.ranges if isinstance(plant, UncertainPlant) else {}
+    return ", ".join(f"{name} +-{100 * size:g} %" for name, size in ranges.items())
 
 
 def move_of(task: PointToPoint) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,8 +12,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ocp import Floor, Plan, Trajectory, evaluate_coefficients
+from ocp.robustness.uncertain import assumed_plant
 from ocp.task.quantities import QUANTITIES
-from studies.display.words import title_of
+from studies.display.words import error_words, title_of
 from studies.figures.axes import TITLE, axes_or_new, legend_of, new_figure
 from studies.figures.looks import BLUE, GREY, RED, Dash, look
 
@@ -89,11 +91,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     for line in lines:
         sampled = line.plan.trajectory
         for i, column in enumerate(_values(quantity, sampled).T):
-            label = line.label if i == 0 else f"{line.label}, tip {i + 1}"
-            ax.plot(
-                sampled.time, column, color=line.colour, linestyle=_style(line.style, i),
-                linewidth=1.6, label=label,
-            )  # fmt: skip
+            ax.plot(sampled.time, column, color=line.colour, **_looks(line, i))
     ax.axvline(lines[0].plan.task.duration, color="0.6", linewidth=0.8, linestyle="--")
     words = [f"{name} [{unit}]", *_draw_limits(ax, quantity, scale, lines)]
     words += _leave_out_jolts(ax, quantity, lines)
@@ -218,10 +216,17 @@ def _values(quantity: str, sampled: Trajectory) -> NDArray[np.float64]:
     return scale * np.column_stack(columns)
 
 
-def _style(of_line: Dash, tip: int) -> Dash:
-    """The line's own style for its first tip, others for its other tips."""
-    others = [style for style in (":", "-.", "--") if style != of_line]
-    return of_line if tip == 0 else others[(tip - 1) % len(others)]
+def _looks(line: Line, tip: int) -> dict[str, Any]:
+    """Label and style of a tip: the line's own for its first one, thin for those of samples."""
+    plant, others = line.plan.task.plant, [s for s in (":", "-.", "--") if s != line.style]
+    own = assumed_plant(plant).tips
+    if tip >= own:
+        label = f"{line.label}, {error_words(plant)}" if tip == own else "_"
+        return {"label": label, "linestyle": line.style, "linewidth": 0.6, "alpha": 0.6}
+    if tip == 0:
+        return {"label": line.label, "linestyle": line.style, "linewidth": 1.6}
+    style = others[(tip - 1) % len(others)]
+    return {"label": f"{line.label}, tip {tip + 1}", "linestyle": style, "linewidth": 1.6}
 
 
 def _draw_limits(ax: Axes, quantity: str, scale: float, lines: Sequence[Line]) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isclose
 
-from ocp import PointToPoint
+from ocp import PointToPoint, UncertainPlant
 from ocp.task.quantities import QUANTITIES
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
@@ -31,13 +31,17 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
     mine, theirs = _quantities(one), _quantities(other)
     words: list[str] = []
     for name, (value, unit) in mine.items():
-        wanted = theirs[name][0]
+        wanted = theirs[name][0] if name in theirs else None
         if value is None or wanted is None:
             same = value is wanted
         else:
             same = isclose(value, wanted, rel_tol=_SAME)
         if not same:
             words.append(f"{name} is {_words(value, unit)}, not {_words(wanted, unit)}")
+    others = [name for name in theirs if name not in mine]
+    words += [f"{name} is none, not {_words(*theirs[name])}" for name in others]
+    if not words and _samples(one) != _samples(other):
+        words.append("its samples within the errors are others")
     return ", ".join(words)
 
 
@@ -45,6 +49,8 @@ def _quantities(task: PointToPoint) -> dict[str, tuple[float | None, str]]:
     table: dict[str, tuple[float | None, str]] = {
         f"plant parameter {name}": (value, "") for name, value in task.plant.parameters.items()
     }
+    if isinstance(task.plant, UncertainPlant):
+        table |= {f"error of {name}": (size, "") for name, size in task.plant.ranges.items()}
     for name in ("start", "target"):
         table[name] = (getattr(task, name), "rad")
     for name in ("duration", "residual_window"):
@@ -52,6 +58,10 @@ def _quantities(task: PointToPoint) -> dict[str, tuple[float | None, str]]:
     for name, quantity in QUANTITIES.items():
         table[f"{name} limit"] = (getattr(task, quantity.limit), quantity.unit)
     return table
+
+
+def _samples(task: PointToPoint) -> tuple[tuple[float, ...], ...]:
+    return task.plant.samples if isinstance(task.plant, UncertainPlant) else ()
 
 
 def _words(value: float | None, unit: str) -> str:

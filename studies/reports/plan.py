@@ -8,6 +8,7 @@ from rich.console import Console
 
 from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Verification
 from ocp.answers.provenance import AGREEMENT
+from ocp.robustness.uncertain import assumed_plant
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
 from studies.display.words import millimetres, move_of, plant_words
@@ -31,11 +32,24 @@ def print_plan(console: Console, plan: Plan) -> None:
         _choice(plan),
         ("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
+        *_worst_rows(plan),
         ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
         verified_row(plan.verification),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
     print_rows(console, rows)
+
+
+def _worst_rows(plan: Plan) -> list[Row]:
+    """Where within the errors of its plant a plan leaves most; none where it has no errors."""
+    if plan.worst is None:
+        return []
+    errors = ", ".join(f"{name} {100 * error:+.3g} %" for name, error in plan.worst.errors.items())
+    words = f"{millimetres(plan.worst.residual)} with {errors}"
+    if plan.excess is not None:
+        side = "above" if plan.excess > 0 else "below"
+        words += f", {abs(plan.excess):.1%} {side} the limit"
+    return [("at worst", words)]
 
 
 def stopped_words(after: str | None) -> str:
@@ -111,8 +125,11 @@ def _choice(plan: Plan) -> tuple[str, str]:
 
 
 def _tip(task: PointToPoint) -> str:
-    tips = task.plant.tips
-    return "tip" if tips == 1 else f"worst of {tips} tips"
+    tips = assumed_plant(task.plant).tips
+    words = "tip" if tips == 1 else f"worst of {tips} tips"
+    return (
+        words if tips == task.plant.tips else f"{words}, worst of {task.plant.tips // tips} samples"
+    )
 
 
 def _quantity(name: str, value: float) -> str:

@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
+from dataclasses import replace
 from functools import partial
 from itertools import product
 
 from metaheuristics.ensemble import number_of_runs, one_seed
 from metaheuristics.sharing.pieces import Done, Piece, Say, to_the_end
-from ocp import CycloidPolynomial, Floor, Plan, energy_floor, plan_move
+from ocp import (
+    CycloidPolynomial,
+    Floor,
+    Plan,
+    SolverFailedError,
+    UncertainPlant,
+    energy_floor,
+    plan_move,
+)
+from ocp.robustness.plants import FREQUENCY
 from studies.methods import Method
 from studies.paper.case import Case
 from studies.paper.printed import (
@@ -20,7 +30,14 @@ from studies.paper.printed import (
     SINGLE_LINK_SIXTH,
 )
 from studies.profiles import OTHERS
-from studies.reproduction.side_by_side.results import COMPARED_TERMS, Found, System, systems_of
+from studies.reproduction.side_by_side.results import (
+    COMPARED_TERMS,
+    FREQUENCY_ERROR,
+    ROBUST,
+    Found,
+    System,
+    systems_of,
+)
 
 CASES = (*CONDITIONS, DUAL_LINK_HALF)
 """The moves on which all systems stand side by side."""
@@ -43,6 +60,8 @@ SEARCHED = tuple(
 STARTS = {"network": 2, "Gaussians": 6, "spline": 2}
 """Starts of the solver for profiles other than the polynomial; docs/physics.md, 'Other inputs of
 the cycloid', says how many of them end at the best."""
+ROBUST_STARTS = 2
+"""Starts of the solver for robust plans, each of which takes several solves."""
 SYSTEMS = "side by side"
 
 
@@ -58,8 +77,8 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
     -------
     list of Piece
         Solves under (case, terms, whether in the box), those with another profile under
-        (case, its name), floors under their case, searches under (method, case, terms, seed), and
-        what stands side by side under (case, `SYSTEMS`).
+        (case, its name), robust ones under (case, `ROBUST`), floors under their case, searches
+        under (method, case, terms, seed), and what stands side by side under (case, `SYSTEMS`).
 
     Raises
     ------
@@ -74,6 +93,10 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
     for case, profile in product(CASES, OTHERS):
         name = f"gradient: {case.name}, {profile}"
         work.append(Piece((case, profile), name, partial(_solved_with, case, profile)))
+    work += [
+        Piece((case, ROBUST), f"gradient: {case.name}, robust", partial(_solved_robustly, case))
+        for case in CASES
+    ]
     work += [Piece(case, f"floor: {case.name}", partial(_floor, case)) for case in CASES]
     for method in SEARCHES:
         for case, terms in SEARCHED:
@@ -102,6 +125,16 @@ def _solved_with(case: Case, profile: str, earlier: Done, say: Say) -> Plan:
     return to_the_end(plan_move(case.task, OTHERS[profile], starts=STARTS[profile]))
 
 
+def _solved_robustly(case: Case, earlier: Done, say: Say) -> Plan | str:
+    """Within 5 % of the plain cycloid's residual whatever the frequency; or why that cannot be."""
+    plant = UncertainPlant(case.task.plant, {FREQUENCY: FREQUENCY_ERROR})
+    profile = CycloidPolynomial(COMPARED_TERMS)
+    try:
+        return to_the_end(plan_move(replace(case.task, plant=plant), profile, starts=ROBUST_STARTS))
+    except SolverFailedError as none:
+        return str(none)
+
+
 def _floor(case: Case, earlier: Done, say: Say) -> Floor:
     return to_the_end(energy_floor(case.task))
 
@@ -111,7 +144,7 @@ def _needed(case: Case, seeds: int) -> list[Hashable]:
     searches = [
         key for method in SEARCHES for key in searches_of(method, case, COMPARED_TERMS, seeds)
     ]
-    return [*solves, *((case, profile) for profile in OTHERS), *searches, case]
+    return [*solves, *((case, profile) for profile in (*OTHERS, ROBUST)), *searches, case]
 
 
 def _systems(case: Case, seeds: int, earlier: Done, say: Say) -> tuple[System, ...]:
@@ -119,6 +152,7 @@ def _systems(case: Case, seeds: int, earlier: Done, say: Say) -> tuple[System, .
     found = Found(
         in_box=answers[case, COMPARED_TERMS, True],
         free=answers[case, COMPARED_TERMS, False],
+        robust=answers[case, ROBUST],
         others={profile: answers[case, profile] for profile in OTHERS},
         fronts={
             method: [answers[key] for key in searches_of(method, case, COMPARED_TERMS, seeds)]

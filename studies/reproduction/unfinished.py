@@ -26,8 +26,8 @@ def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
     Returns
     -------
     Table
-        Of a search the cheapest point within `SEARCH_RESIDUAL`, where it has one; no figures of
-        what only puts others side by side.
+        Of a search the cheapest point within `SEARCH_RESIDUAL`, where it has one; no figures
+        where there is no plan, and of what only puts others side by side.
     """
     columns = [
         Column("piece of work", key="piece"),
@@ -42,8 +42,8 @@ def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
     return Table("What was done before the interruption", columns, rows)
 
 
-def _figures(answer: Plan | Floor | Front | tuple[System, ...]) -> list[Cell]:
-    if isinstance(answer, tuple):
+def _figures(answer: Plan | Floor | Front | tuple[System, ...] | str) -> list[Cell]:
+    if isinstance(answer, tuple | str):
         return [None, None]
     if not isinstance(answer, Front):
         return [answer.energy, 1e3 * answer.motion.residual]

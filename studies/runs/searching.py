@@ -25,6 +25,7 @@ from ocp import (
 )
 from ocp.base.files import check_writable
 from ocp.base.interrupts import note_interrupts
+from ocp.plan.robust import limit_of
 from studies.display.saving import STDOUT, File, drawing, finish
 from studies.display.search_progress import search_display
 from studies.methods import Method
@@ -40,7 +41,7 @@ def plan_by_search(
     method: Method,
     profile: JointProfile,
     bound: float | None,
-    residual_limit: float,
+    residual_limit: float | None,
     seed: int,
     polish: bool,
     quiet: bool = False,
@@ -58,8 +59,9 @@ def plan_by_search(
         How the joint moves.
     bound : float or None
         Largest absolute coefficient; required, None gives the error that says so.
-    residual_limit : float
-        Largest residual [m]; 0 stands for `SEARCH_RESIDUAL`, since no search arrives quite at rest.
+    residual_limit : float or None
+        Largest residual [m], None for the default of `plan_move`; 0 stands for `SEARCH_RESIDUAL`,
+        since no search arrives quite at rest.
     seed : int
         Seed of the search.
     polish : bool
@@ -74,7 +76,8 @@ def plan_by_search(
     Plan
         The plan, verified by CVODES.
     """
-    SolveSettings(residual_limit=residual_limit, seed=seed)  # refused before the search, not after
+    limit = limit_of(task, residual_limit) or SEARCH_RESIDUAL
+    SolveSettings(residual_limit=limit, seed=seed)  # refused before the search, not after
     with search_display(Console(stderr=True), quiet=quiet) as report:
         front = search(
             task, method.name, profile=profile, bound=bound, settings=settings, seed=seed,
@@ -86,10 +89,10 @@ def plan_by_search(
             "keeps what a search has found until Ctrl-C"
         )
     try:
-        point = front.cheapest(residual_limit or SEARCH_RESIDUAL)
+        point = front.cheapest(limit)
     except ValueError as error:
         raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
-    used = {**front.settings, "seed": seed, "residual_limit": residual_limit or SEARCH_RESIDUAL}
+    used = {**front.settings, "seed": seed, "residual_limit": limit}
     stopped = None
     if polish:
         try:

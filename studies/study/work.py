@@ -120,6 +120,9 @@ def run_study(
     with note_interrupts():  # what was found is put together to the end
         for case in cases:
             found += _case_study(case, settings, done)
+    floors = [words for case in cases for words in _floor_words(case, done)]
+    if not found and floors:
+        raise QuietarmError(f"{done.stopped} before there was a front; {'; '.join(floors)}")
     if not found and done.stopped == INTERRUPTED:
         raise KeyboardInterrupt
     if not found:
@@ -137,7 +140,8 @@ def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStu
         return []
     if len(fronts) < 2 and not done.stopped:
         where = title_of(case.task)
-        raise SolverFailedError(f"{where}: no two fronts to compare; {'; '.join(failures)}")
+        why = "; ".join([*failures, *_floor_words(case, done)])
+        raise SolverFailedError(f"{where}: no two fronts to compare; {why}")
     floor = _found(Key(case, FLOOR), done)
     polishes = {
         m.name: done.answers.get(Key(case, m.then_polished().name)) for m in METHODS.values()
@@ -151,6 +155,12 @@ def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStu
         failures=tuple(failures),
     )
     return [study]
+
+
+def _floor_words(case: Case, done: Done) -> list[str]:
+    """The floor of a case in words, where it was found: without a front there is no page for it."""
+    floor = _found(Key(case, FLOOR), done)
+    return [] if floor is None else [f"floor of {title_of(case.task)}: {floor.energy:.6g} J"]
 
 
 def _found(key: Hashable, done: Done) -> Any:

@@ -16,7 +16,7 @@ from studies import figures
 BIN = Path(sys.executable).parent
 (MOVE,) = blocks("moves", "python")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
-(ROBUSTNESS,) = blocks("robustness", "python")
+ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
 (CRANE,) = blocks("plants", "python")
 
@@ -65,6 +65,13 @@ def test_the_example_of_robustness_says_what_a_wrong_plant_leaves(tmp_path):
     assert -0.1 < low < 0 < high < 0.1  # docs/physics.md, 'Robustness': a few per cent
     # 'The published optima are not optimal': the frequency 10 % wrong leaves some 20 mm.
     assert 10e-3 < residual < 200e-3
+
+
+def test_the_example_of_a_robust_plan_holds_its_limit(tmp_path):
+    energy, residual, _ = run_python(ROBUST, tmp_path).split(maxsplit=2)
+    # docs/physics.md, 'Robust plans': 5 % of what the cycloid leaves, here 77 mm
+    assert 0 < float(residual) <= 0.05 * 77.2e-3
+    assert 0.02 < float(energy) < 0.03
 
 
 def test_the_example_of_a_picture_draws_it(tmp_path):
@@ -123,7 +130,8 @@ def shortened(words):
     """The words of a command, with fewer generations or points."""
     quiet = (
         ["--quiet"]
-        if words[0] in {"animate", "compare", "contest", "front", "polish", "robustness", "study"}
+        if words[0]
+        in {"animate", "compare", "contest", "front", "plan", "polish", "robustness", "study"}
         else []
     )
     fewer = SHORTER.get(words[0], [])

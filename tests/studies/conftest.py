@@ -18,7 +18,9 @@ from ocp import (
     CycloidPolynomial,
     Front,
     FrontPoint,
+    InfeasibleTaskError,
     PointToPoint,
+    UncertainPlant,
     evaluate_coefficients,
     non_dominated,
     plan_move,
@@ -43,15 +45,23 @@ def reproduction(begun):
     where they are.
     """
     search, generations = ensemble.search, {"vepso": 60, "nsga2": 5}
-    floor = pieces.energy_floor
+    floor, plan = pieces.energy_floor, pieces.plan_move
 
     def short(task, method, **settings):
         return search(task, method, generations=generations[method], **settings)
+
+    def robust_once(task, *given, **settings):
+        if isinstance(task.plant, UncertainPlant):
+            settings["starts"] = 1
+            if (task.target, task.duration) != (math.pi / 6, 0.8):
+                raise InfeasibleTaskError("left out in these tests")
+        return plan(task, *given, **settings)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensemble, "search", short)
         patch.setattr(pieces, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.02))
         patch.setattr(pieces, "STARTS", dict.fromkeys(pieces.STARTS, 1))
+        patch.setattr(pieces, "plan_move", robust_once)
         return recompute.recompute_paper(begun.append)
 
 

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 @click.argument("problems", nargs=-1, metavar="[PROBLEM]...")
 @click.option(
     "--methods", default="nsga2,vepso", show_default=True, metavar="NAME,NAME,...",
-    help="Methods, with commas between them.",
+    help="Methods, with commas between them: those of quietarm front, as they are or with the "
+    "gradient's help (nsga2+polish, nsga2+seeds); multistart is the gradient alone.",
 )  # fmt: skip
 @click.option("--runs", type=int, default=31, show_default=True, help="Seeds of each method.")
 @click.option(
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
 )
 @click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
 @click.option("--population", type=int, help="Of every method; each method's own by default.")
+@click.option(
+    "--explain", is_flag=True,
+    help="Look for the local minima of each problem as well, and say what the box costs.",
+)  # fmt: skip
 @click.option(
     "--output", type=FOLDER, required=True,
     help="Folder for the runs and what they say; runs that are there are not done again.",
@@ -39,6 +44,7 @@ def contest(
     evaluations: int,
     seed: int,
     population: int | None,
+    explain: bool,
     output: Path,
     workers: int,
     scheduler: str | None,
@@ -61,6 +67,7 @@ def contest(
     from studies.contest.measures import arenas_of
     from studies.contest.problems import problems_of
     from studies.contest.runs import Folder
+    from studies.contest.statistics import why_none
     from studies.contest.tables import summary_table
     from studies.contest.work import Contest, pieces_of, run_contest
     from studies.display.progress import progress
@@ -71,14 +78,14 @@ def contest(
 
     asked = Contest(
         problems_of(problems), tuple(name.strip() for name in methods.split(",")), runs,
-        evaluations, seed, population, Workers(workers, scheduler),
+        evaluations, seed, population, explain, Workers(workers, scheduler),
     )  # fmt: skip
     folder, errors = Folder(output), Console(stderr=True)
     pieces = pieces_of(asked, folder)
     warn_of_workers(errors, workers, len(pieces))
     with progress(len(pieces), errors, quiet=quiet) as begin:
         done = run_contest(pieces, folder, asked.workers, begin)
-    arenas = arenas_of(folder.runs(), folder.yardsticks())
+    arenas = arenas_of(folder.runs(), folder.yardsticks(), folder.landscapes())
     if not arenas:
         raise QuietarmError(_why_not_whole(done, len(pieces)) or "no run was done")
 
@@ -86,6 +93,9 @@ def contest(
         for arena in arenas:
             print_lines(console, arena.problem)
             print_table(console, summary_table(arena))
+        none = why_none(arenas)
+        if none:
+            print_lines(console, none)
 
     trouble = _why_not_whole(done, len(pieces))
     page, *others = report_files(arenas, output)

@@ -15,6 +15,7 @@ from studies.cli.options import (
     output_options,
     profile_option,
     quiet_option,
+    robust_option,
     task_options,
 )
 from studies.display.progress import working
@@ -31,6 +32,7 @@ from studies.reports.plan import print_plan
     help="a_1 to a_N of the polynomial, or those of another profile in the order of its "
     "documentation, separated by commas, as --coefficients=-0.0019,-0.14.",
 )  # fmt: skip
+@robust_option
 @quiet_option
 @output_options
 @click.pass_context

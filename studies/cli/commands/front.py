@@ -19,6 +19,7 @@ from studies.cli.options import (
     family_option,
     method_settings_option,
     quiet_option,
+    robust_option,
     settings_given,
     task_options,
     terms_option,
@@ -100,6 +101,7 @@ _ONLY_FOR = {
 @click.option(
     "--figure", type=PICTURE, help="Draw the fronts, all in one picture (.png, .pdf or .svg)."
 )
+@robust_option
 @quiet_option
 @click.pass_context
 def front(

@@ -16,6 +16,7 @@ from studies.cli.options import (
     output_options,
     profile_option,
     quiet_option,
+    robust_option,
     settings_given,
     task_options,
     terms_option,
@@ -39,8 +40,9 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @terms_option
 @click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
 @click.option(
-    "--residual-limit", type=LENGTH, default=0.0, show_default=True,
-    help="Largest tip displacement after arrival; 0 is at rest.",
+    "--residual-limit", type=LENGTH,
+    help="Largest tip displacement after arrival; 0, the default, is at rest. With --robust the "
+    "default is 5 % of what the plain cycloid leaves.",
 )  # fmt: skip
 @click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random starts.")
@@ -51,6 +53,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 )  # fmt: skip
 @method_settings_option("as in --setting crossover=0.7")
 @click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
+@robust_option
 @quiet_option
 @output_options
 @click.pass_context
@@ -59,7 +62,7 @@ def plan(
     profile: str,
     terms: int | None,
     bound: float | None,
-    residual_limit: float,
+    residual_limit: float | None,
     starts: int,
     seed: int,
     method: str,
@@ -103,7 +106,8 @@ def plan(
 
     def show(console: Console) -> None:
         print_plan(console, found)
-        if method != IPOPT and residual_limit == 0 and not polish:
+        at_rest = not residual_limit and found.worst is None
+        if method != IPOPT and at_rest and not polish:
             print_lines(
                 console,
                 "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; "

@@ -25,8 +25,8 @@ COMPARED_TERMS = 6
 """Terms of the polynomial: the paper's choice."""
 FREQUENCY_ERROR = 0.1
 """Relative error of the plant's natural frequencies."""
-CYCLOID, PAPER, IN_BOX, FREE, FLOOR = (
-    "plain cycloid", "paper", "boxed gradient", "gradient", "floor",
+CYCLOID, PAPER, IN_BOX, FREE, ROBUST, FLOOR = (
+    "plain cycloid", "paper", "boxed gradient", "gradient", "robust plan", "floor",
 )  # fmt: skip
 
 
@@ -75,6 +75,9 @@ class Found:
     ----------
     in_box, free : Plan
         The polynomial by gradient, in the case's box and without one.
+    robust : Plan or str
+        The polynomial without a box by gradient, for a plant whose frequencies may be
+        `FREQUENCY_ERROR` off; or why there is none.
     others : mapping of str to Plan
         Other profiles by gradient, by their names.
     fronts : mapping of Method to sequence of Front
@@ -85,6 +88,7 @@ class Found:
 
     in_box: Plan
     free: Plan
+    robust: Plan | str
     others: Mapping[str, Plan]
     fronts: Mapping[Method, Sequence[Front]]
     floor: Floor
@@ -113,6 +117,7 @@ def systems_of(case: Case, found: Found) -> tuple[System, ...]:
         *(searched(case, method, fronts) for method, fronts in found.fronts.items()),
         _of_plan(IN_BOX, found.in_box),
         _of_plan(FREE, found.free),
+        _robust(case, found.robust),
         _floor(found.floor),
     )
 
@@ -123,6 +128,14 @@ def _of_plan(name: str, plan: Plan, *, looked_for: bool = True) -> System:
         name, plan.profile.size, plan.motion, _wrong_residual(plan, joint),
         plan.provenance.seconds if looked_for else None,
     )  # fmt: skip
+
+
+def _robust(case: Case, plan: Plan | str) -> System:
+    """On the assumed plant, as all others are."""
+    if isinstance(plan, str):
+        return System(ROBUST, COMPARED_TERMS, why=plan)
+    assumed = evaluate_coefficients(case.task, plan.coefficients, profile=plan.profile)
+    return replace(_of_plan(ROBUST, assumed), seconds=plan.provenance.seconds)
 
 
 def _floor(floor: Floor) -> System:

@@ -8,7 +8,7 @@ from small_searches import BOUNDS, HALF, LIMITED, METHODS, SIXTH, SWARMS, TASKS
 
 from metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
 from metaheuristics.budget.record import CORNER, Scale, Visits, marks_of
-from metaheuristics.budget.run import search_within
+from metaheuristics.budget.run import parts_of, search_within
 from metaheuristics.objective.population import PopulationObjective
 from ocp import CycloidPolynomial, Front, FrontPoint, reference_corner
 
@@ -159,3 +159,41 @@ def test_a_front_of_one_motion_is_no_scale():
 def test_a_budget_out_of_range_is_refused(given, words):
     with pytest.raises(ValueError, match=words):
         run("nsga2", **given)
+
+
+@pytest.mark.parametrize("method", ["nsga2+polish", "nsga2+seeds", "multistart"])
+def test_the_gradients_iterations_count_against_the_same_budget(method, candidates):
+    found = search_within(
+        HALF, method, 700, SCALES["nsga2"], profile=PROFILE, bound=0.5, population=20, seed=1
+    )
+    assert found.front.evaluations == found.marks[-1].evaluations == 700
+    assert 0 < len(candidates) < 700
+    assert found.front.iterations > 0
+    # 1 + 2 + 3 evaluations an iteration; the last solve may have had more than were left
+    spent = len(candidates) + 6 * found.front.iterations
+    assert 700 <= spent < 700 + 6 * 100
+    assert found.front.method == method
+
+
+def test_gradient_seeds_are_in_the_first_population(candidates):
+    found = search_within(
+        HALF, "nsga2+seeds", 700, SCALES["nsga2"], profile=PROFILE, bound=0.5, population=20
+    )
+    alone = search_within(
+        HALF, "nsga2", 700, SCALES["nsga2"], profile=PROFILE, bound=0.5, population=20
+    )
+    # the seeds arrive at rest; a search of so few evaluations does not
+    assert found.front.residuals[0] < 1e-4 < alone.front.residuals[0]
+
+
+@pytest.mark.parametrize(
+    ("method", "words"),
+    [
+        ("nsga", "unknown method 'nsga'; did you mean 'nsga2'?"),
+        ("nsga2+", "give nsga2\\+polish or nsga2\\+seeds"),
+        ("multistart+polish", "unknown method 'multistart\\+polish'"),
+    ],
+)
+def test_an_unknown_method_is_refused_with_the_nearest(method, words):
+    with pytest.raises(ValueError, match=words):
+        parts_of(method)

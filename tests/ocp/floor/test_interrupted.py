@@ -1,4 +1,4 @@
-"""Ctrl-C while a floor's grid is refined: the coarser grids are not lost."""
+"""Ctrl-C while a floor is found: the starts and grids that were solved are not lost."""
 
 import signal
 from dataclasses import replace
@@ -45,15 +45,26 @@ def test_the_verification_does_not_lose_them(tasks, ctrl_c_in):
     assert floor.provenance.stopped == f"{len(floor.levels)} grids"
 
 
-def test_before_there_are_two_grids_there_is_nothing_to_keep(tasks, ctrl_c_in):
+def test_on_the_first_two_grids_the_best_start_is_kept(tasks, ctrl_c_in, tmp_path):
     ctrl_c_in("_refined", 1)
+    floor = energy_floor(tasks["arm"], starts=1)
+    assert floor.provenance.stopped == "1 of 1 starts"
+    assert len(floor.levels) == 2
+    assert floor.levels[1].energy < floor.levels[0].energy
+    floor.save(tmp_path / "floor.json")
+    assert Floor.load(tmp_path / "floor.json") == floor
+
+
+def test_before_a_start_is_solved_there_is_nothing_to_keep(tasks, ctrl_c_in):
+    ctrl_c_in("_paths", 1)
     with pytest.raises(KeyboardInterrupt):
         energy_floor(tasks["arm"], starts=1)
 
 
-def test_ctrl_c_in_the_plan_that_it_starts_from_is_not_swallowed(tasks, monkeypatch, solved):
+def test_ctrl_c_in_the_plan_that_it_starts_from_keeps_the_start_before(tasks, monkeypatch, solved):
     whole = solved(tasks["arm"], 6)
     part = replace(whole, provenance=replace(whole.provenance, stopped="1 of 1 starts"))
     monkeypatch.setattr(search, "plan_move", lambda *given, **settings: part)
-    with pytest.raises(KeyboardInterrupt):
-        energy_floor(tasks["arm"], starts=2)
+    floor = energy_floor(tasks["arm"], starts=2)
+    assert floor.provenance.stopped == "1 of 2 starts"
+    assert len(floor.starts) == 1

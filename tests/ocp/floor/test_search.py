@@ -259,7 +259,7 @@ def test_ctrl_c_ends_it_on_the_first_grid():
         "import math; from ocp import *; from models import *\n"
         "task = PointToPoint(SingleLinkManipulator(), math.pi / 2, 1.0)\n"
         "print('begun', flush=True)\n"
-        "energy_floor(task, starts=1000)\n"
+        "print(energy_floor(task, starts=1000).complete)\n"
     )
     process = subprocess.Popen(
         [sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -267,6 +267,6 @@ def test_ctrl_c_ends_it_on_the_first_grid():
     assert process.stdout.readline()
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=GUARD)
-    assert process.returncode != 0
-    assert b"KeyboardInterrupt" in errors
+    output, errors = process.communicate(timeout=GUARD)
+    # the first start that was solved is kept, if one was
+    assert output == b"False\n" or b"KeyboardInterrupt" in errors

@@ -12,8 +12,11 @@ import studies.cli.commands.floor
 import studies.cli.commands.plan
 import studies.reproduction.recompute
 import studies.runs.animating
+import studies.runs.foreign
 import studies.runs.loading
 import studies.runs.polishing
+import studies.runs.problems
+import studies.runs.robustness
 import studies.runs.searching
 import studies.study.work
 from models import __version__
@@ -43,7 +46,7 @@ def test_help_names_every_option(call):
     _, out, _ = call("plan --help")
     options = (
         "start target duration terms bound residual-limit torque-limit speed-limit jerk-limit "
-        "acceleration-limit deflection-limit starts seed output csv figure"
+        "acceleration-limit deflection-limit starts seed output csv figure robust"
     )
     for option in options.split():
         assert f"--{option}" in out
@@ -80,6 +83,9 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.runs.loading, "load_front", note)
     monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
     monkeypatch.setattr(studies.runs.animating, "run_animate", note)
+    monkeypatch.setattr(studies.runs.problems, "run_problems", note)
+    monkeypatch.setattr(studies.runs.foreign, "read_found", note)
+    monkeypatch.setattr(studies.runs.robustness, "run_robustness", note)
     monkeypatch.setattr(studies.study.work, "run_study", note)
     monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)
     for name in ("epsilon", "weighted"):

@@ -17,7 +17,7 @@ from studies.display.html_page import element
 def _no_pictures(monkeypatch):
     """The pictures of the contest that is held once are enough: they take long to draw."""
     monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, folder: [])
+    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
 
 
 @pytest.fixture
@@ -112,6 +112,7 @@ def test_a_stop_before_the_first_run_says_so(call, folder, monkeypatch):
     [
         (LINE.replace("tiny", "tinny"), "unknown problem 'tinny'; did you mean 'tiny'?"),
         (LINE.replace("vepso", "vespo"), "unknown method 'vespo'; did you mean 'vepso'?"),
+        (LINE.replace("vepso", "vepso+polsh"), "give vepso+polish or vepso+seeds"),
         (LINE.replace("--runs 2", "--runs 0"), "runs is 0"),
         (LINE.replace("130", "0"), "evaluations is 0"),
         (LINE.replace("--population 20", "--population 1"), "population is 1"),

@@ -68,8 +68,8 @@ def test_every_problem_is_solved_once_and_announced(reproduction, begun):
     kinds = Counter(name.partition(": ")[0] for name in begun)
     assert kinds == {
         # conditions, N = 2 to 10, with and without the box; the third plant's move with N = 6;
-        # network, Gaussians and spline on all moves
-        "gradient": 6 * 5 * 2 + 2 + 7 * 3,
+        # network, Gaussians, spline and robust plans on all moves
+        "gradient": 6 * 5 * 2 + 2 + 7 * (3 + 1),
         "floor": 7,  # moves
         "vepso": 2 * 3 + 4 + 1,  # Tables 2 and 5; what 3 and 6 have beyond them; the third plant
         "nsga2": 2 * 3 + 4 + 1,

@@ -5,17 +5,19 @@ from dataclasses import replace
 
 import pytest
 from small_study import CASES, METHODS, QUICK
+from small_study import FLOOR as FLOOR_FOUND
 
 import metaheuristics.ensemble as ensemble
 import studies.study.pieces as study_pieces
 import studies.study.work as study_module
-from ocp import InfeasibleTaskError, PointToPoint, SolverFailedError
+from metaheuristics.sharing.pieces import INTERRUPTED, Done
+from ocp import InfeasibleTaskError, PointToPoint, QuietarmError, SolverFailedError
 from studies.comparison.measures import compare_fronts
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
 from studies.study.findings import case_findings
 from studies.study.page import study_page
-from studies.study.pieces import StudySettings
+from studies.study.pieces import FLOOR, Key, StudySettings
 from studies.study.work import Study, amount_of_work, run_study
 
 # What is run
@@ -187,6 +189,18 @@ def test_a_study_that_found_nothing_before_ctrl_c_is_none(let_sweep):
     let_sweep("epsilon", stopped)
     with pytest.raises(KeyboardInterrupt):
         run_study(CASES[:1], QUICK)
+
+
+@pytest.mark.parametrize(
+    ("stopped", "error"), [(INTERRUPTED, "interrupted"), ("", "no two fronts")]
+)
+def test_a_floor_is_told_where_no_front_was_found(monkeypatch, stopped, error):
+    # as where workers share the work, and the floor is done first
+    case, found = CASES[0], FLOOR_FOUND
+    done = Done({Key(case, FLOOR): found}, stopped=stopped)
+    monkeypatch.setattr(study_module, "run_pieces", lambda *given, **settings: done)
+    with pytest.raises(QuietarmError, match=f"{error}.*; .*floor of .*: {found.energy:.6g} J"):
+        run_study([case], QUICK)
 
 
 def test_epsilon_has_a_point_at_every_residual_that_energies_are_compared_at(small):

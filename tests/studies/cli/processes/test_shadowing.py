@@ -1,10 +1,11 @@
 """A user's own models.py is named as what is in the way."""
 
+import os
 import subprocess
 import sys
 
 import pytest
-from lines import run
+from lines import MOVE, run
 
 
 @pytest.mark.parametrize("package", ["ocp", "studies"])
@@ -33,3 +34,27 @@ def test_the_command_does_not_mind_a_users_own_models(folder):
     (folder / "models.py").write_text("raise RuntimeError('not this one')\n")
     ran = run("--version")
     assert (ran.returncode, ran.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("package", "line"),
+    [
+        ("numpy", f"evaluate {MOVE} --coefficients=0"),  # while the command is loaded
+        ("models", f"evaluate {MOVE} --coefficients=0"),
+        ("matplotlib", f"evaluate {MOVE} --coefficients=0 --output o.json --figure o.png"),
+    ],
+)
+def test_a_file_on_the_path_with_the_name_of_a_package_is_told_in_one_line(folder, package, line):
+    shadow = folder / f"{package}.py"
+    shadow.write_text("x = 1\n")
+    path = os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
+    ran = subprocess.run(
+        [sys.executable, "-P", "-m", "studies", *line.split(), "--quiet"],
+        capture_output=True, text=True, timeout=60, env={**os.environ, "PYTHONPATH": path},
+    )  # fmt: skip
+    assert ran.returncode in (1, 2)
+    assert ran.stderr == (
+        f"quietarm: {shadow} takes the place of the package '{package}'; rename that file, or take "
+        "its folder out of PYTHONPATH\n"
+    )
+    assert (folder / "o.json").exists() == ("o.json" in line)  # what was found is kept

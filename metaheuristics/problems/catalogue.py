@@ -1,0 +1,185 @@
+"""Named problems, each with its exact front.
+
+The fronts are files beside this one; ``quietarm problems --again`` computes them anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from math import pi
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metaheuristics.problems.finding import exact_front
+from metaheuristics.problems.function import MoveFunction
+from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
+from ocp.base.names import nearest
+
+if TYPE_CHECKING:
+    from metaheuristics.problems.pymoo_problem import ExactProblem
+
+FRONTS = Path(__file__).parent / "fronts"
+"""The folder of the exact fronts."""
+
+
+@dataclass(frozen=True)
+class NamedProblem:
+    """A move, a profile and a box, by name.
+
+    Attributes
+    ----------
+    name : str
+        What it is called.
+    task : PointToPoint
+        The move and its limits.
+    profile : JointProfile
+        How the joint moves.
+    bound : float
+        Largest absolute coefficient.
+    peak : str
+        Quantity whose peak is the third objective; empty where there are two.
+    peaks : tuple of float
+        Limits on that peak under which the exact fronts of the other two were found.
+    """
+
+    name: str
+    task: PointToPoint
+    profile: JointProfile
+    bound: float
+    peak: str = ""
+    peaks: tuple[float, ...] = ()
+
+    def function(self, **settings: Any) -> MoveFunction:
+        """It as a function of arrays; settings as for `MoveFunction`: steps and threads."""
+        peaks = (self.peak,) if self.peak else ()
+        return MoveFunction(self.task, self.profile, bound=self.bound, peaks=peaks, **settings)
+
+    def pymoo(self, **settings: Any) -> ExactProblem:
+        """It as a pymoo problem with its exact front; settings as for `function`."""
+        from metaheuristics.problems.pymoo_problem import ExactProblem
+
+        return ExactProblem(self.function(**settings), *self.exact())
+
+    def tasks(self) -> dict[str, PointToPoint]:
+        """The tasks of the exact fronts by the names of their files.
+
+        The problem's own; for a third objective the same under each limit of its peak.
+        """
+        if not self.peak:
+            return {self.name: self.task}
+        limit = f"{self.peak}_limit"
+        limited: Any = [(most, {limit: most}) for most in self.peaks]
+        return {f"{self.name}-{most:g}": replace(self.task, **given) for most, given in limited}
+
+    def fronts(self) -> tuple[Front, ...]:
+        """The exact fronts from their files: one, or for a third objective one for each limit."""
+        return tuple(_loaded(FRONTS / f"{name}.json") for name in self.tasks())
+
+    def exact(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Coefficients and objectives of the exact front.
+
+        Returns
+        -------
+        pareto_set : ndarray, shape (points, variables)
+            Coefficients; none of the motions dominates another.
+        pareto_front : ndarray, shape (points, objectives)
+            Residual [m], energy [J] and the third objective.
+        """
+        import moocore  # not at the top: it takes long to load
+
+        points = [point for front in self.fronts() for point in front.points]
+        X = np.array([point.coefficients for point in points])
+        F = np.array([(point.residual, point.energy) for point in points])
+        if self.peak:
+            objectives, _ = self.function()(X)
+            F = np.column_stack([F, objectives[:, 2:]])
+        kept = moocore.is_nondominated(F)
+        return X[kept], F[kept]
+
+    def find_again(self, report: Callable[[str], None] = lambda name: None) -> dict[str, Front]:
+        """Find the exact fronts anew, by the gradient.
+
+        Parameters
+        ----------
+        report : callable, optional
+            Called with the name of each when it begins.
+
+        Returns
+        -------
+        dict of str to Front
+            By the names of their files.
+        """
+        found: dict[str, Front] = {}
+        for name, task in self.tasks().items():
+            report(name)
+            found[name] = exact_front(task, self.profile, self.bound)
+        return found
+
+
+@cache
+def _loaded(path: Path) -> Front:
+    return Front.load(path)
+
+
+def problem_of(name: str) -> NamedProblem:
+    """A named problem; ValueError suggests the nearest one."""
+    if name not in PROBLEMS:
+        hint = nearest(name, PROBLEMS)
+        raise ValueError(f"unknown problem {name!r}; {hint}(known: {', '.join(PROBLEMS)})")
+    return PROBLEMS[name]
+
+
+_LINK, _ARM, _DUAL = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
+_LINK_BOX, _ARM_BOX = 0.2, 0.5  # eqs (12) and (17)
+_LINK_SIXTH = PointToPoint(_LINK, pi / 6, 0.8)
+_ARM_HALF = PointToPoint(_ARM, pi / 2, 0.8)
+
+
+def _problem(
+    name: str, task: PointToPoint, bound: float, terms: int = 6, **others: Any
+) -> NamedProblem:
+    return NamedProblem(name, task, CycloidPolynomial(terms), bound, **others)
+
+
+_ALL = (
+    _problem("single-link-30deg-0.8s", _LINK_SIXTH, _LINK_BOX),
+    _problem("single-link-90deg-1s", PointToPoint(_LINK, pi / 2, 1.0), _LINK_BOX),
+    _problem("single-link-90deg-1.1s", PointToPoint(_LINK, pi / 2, 1.1), _LINK_BOX),
+    _problem("arm-on-flexible-link-90deg-0.8s", _ARM_HALF, _ARM_BOX),
+    _problem(
+        "arm-on-flexible-link-135deg-1s", PointToPoint(_ARM, pi / 4, 1.0, -pi / 2), _ARM_BOX
+    ),
+    _problem(
+        "arm-on-flexible-link-180deg-1.2s", PointToPoint(_ARM, pi / 2, 1.2, -pi / 2), _ARM_BOX
+    ),
+    _problem("dual-link-90deg-0.9s", PointToPoint(_DUAL, pi / 2, 0.9), _ARM_BOX),
+    _problem("single-link-30deg-0.8s-2-terms", _LINK_SIXTH, _LINK_BOX, 2),
+    _problem("single-link-30deg-0.8s-4-terms", _LINK_SIXTH, _LINK_BOX, 4),
+    _problem("single-link-30deg-0.8s-10-terms", _LINK_SIXTH, _LINK_BOX, 10),
+    _problem("single-link-30deg-0.8s-20-terms", _LINK_SIXTH, _LINK_BOX, 20),
+    _problem("arm-on-flexible-link-90deg-0.8s-2-terms", _ARM_HALF, _ARM_BOX, 2),
+    _problem("arm-on-flexible-link-90deg-0.8s-12-terms", _ARM_HALF, _ARM_BOX, 12),
+    _problem(
+        "single-link-30deg-0.8s-limits",
+        replace(_LINK_SIXTH, torque_limit=0.16, speed_limit=0.99, deflection_limit=0.03),
+        _LINK_BOX,
+    ),
+    _problem(
+        "arm-on-flexible-link-90deg-0.8s-limits",
+        replace(_ARM_HALF, torque_limit=0.3, acceleration_limit=75.0),
+        _ARM_BOX,
+    ),
+    _problem(
+        "single-link-30deg-0.8s-torque", _LINK_SIXTH, _LINK_BOX,
+        peak="torque", peaks=(0.1, 0.115, 0.13, 0.145, 0.16, 0.18),
+    ),
+)  # fmt: skip
+
+PROBLEMS: Mapping[str, NamedProblem] = {problem.name: problem for problem in _ALL}
+"""By name: plant, angle and duration; six terms and no limits where nothing else is said."""

@@ -1,0 +1,91 @@
+"""Find an exact front: the gradient's sweep, then random starts at every point."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ocp import (
+    Front,
+    FrontPoint,
+    JointProfile,
+    PointToPoint,
+    QuietarmError,
+    epsilon_front,
+    non_dominated,
+    plan_move,
+)
+
+POINTS = 25
+"""Points of an exact front, beside those at `LEVELS`."""
+LEVELS = (1e-4, 1e-3, 5e-3)
+"""Residuals [m] at which each has a point where it can."""
+STARTS = 12
+"""Starts of the ends of a front."""
+COLD_STARTS = 3
+"""Random starts of every point between: with ten terms and more, a sweep may follow a branch of
+minima that another one passes below."""
+SEED = 1000
+"""Of these: others than the sweep's."""
+_BETTER = 1e-6
+"""Share of the energy by which a motion must be better to count, and of the residual that it may be
+above."""
+
+
+def exact_front(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
+    """The least energy at one residual after another.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    bound : float
+        Largest absolute coefficient.
+
+    Returns
+    -------
+    Front
+        Method ``"epsilon"``. After Ctrl-C in the sweep it is not complete.
+
+    Raises
+    ------
+    QuietarmError
+        When an end could not be found.
+    KeyboardInterrupt
+        When it was interrupted after the sweep.
+    """
+    front = epsilon_front(task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS)
+    if not front.complete:
+        return front
+    points = list(front.points)
+    for i in range(1, len(points) - 1):
+        points[i] = _better(front, points[i], bound, starts=COLD_STARTS)
+    # a better branch is followed to both sides
+    for order in (range(1, len(points) - 1), range(len(points) - 2, 0, -1)):
+        step = order.step
+        for i in order:
+            if points[i - step] is not front.points[i - step]:
+                points[i] = _better(front, points[i], bound, guess=points[i - step])
+    settings = {**front.settings, "cold_starts": COLD_STARTS}
+    return replace(front, points=non_dominated(points), settings=settings)
+
+
+def _better(
+    front: Front,
+    point: FrontPoint,
+    bound: float,
+    starts: int = 1,
+    guess: FrontPoint | None = None,
+) -> FrontPoint:
+    """The best motion of a point's residual from some starts, or the point itself."""
+    try:
+        plan = plan_move(
+            front.task, front.profile, residual_limit=point.residual, bound=bound,
+            starts=starts, seed=SEED, guess=None if guess is None else guess.coefficients,
+        )  # fmt: skip
+    except QuietarmError:
+        return point
+    found = FrontPoint(plan.coefficients, plan.residual, plan.energy)
+    within = found.residual <= point.residual * (1 + _BETTER)
+    return found if within and found.energy < point.energy * (1 - _BETTER) else point

@@ -1,0 +1,129 @@
+"""A move as a plain function of arrays, for any optimisation library."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from metaheuristics.objective.population import PopulationObjective, replace_failures
+from ocp import CycloidPolynomial, JointProfile, PointToPoint
+from ocp.answers.provenance import coefficient_bound
+from ocp.base.names import nearest
+from ocp.simulation.rollout import default_steps
+from ocp.task.quantities import QUANTITIES
+
+Array = NDArray[np.float64]
+
+
+class MoveFunction:
+    """The objectives and the violations of a move, for many candidates at once.
+
+    All objectives are minimised; a candidate keeps the limits where no violation is positive.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move; its limits become constraints.
+    profile : JointProfile, optional
+        How the joint moves; the cycloid of a polynomial of six terms by default.
+    bound : float, optional
+        Largest absolute coefficient; required, unless the profile has a `default_bound`.
+    peaks : sequence of str
+        Quantities whose largest absolute value on the way is an objective, too, as ``"torque"``.
+    steps : int, optional
+        Steps of the simulation; as many as fronts are verified with by default.
+    threads : int
+        Blocks of candidates that are evaluated at the same time.
+
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (variables,)
+        The box of the coefficients; they have no unit.
+    variables, objectives, constraints : tuple of str
+        Names, in the order of the columns.
+    units : tuple of str
+        SI units of the objectives. Violations are shares of the limit, without a unit.
+
+    Raises
+    ------
+    ValueError
+        When there is no bound, a quantity is not known, or a number is out of range.
+    """
+
+    def __init__(
+        self,
+        task: PointToPoint,
+        profile: JointProfile | None = None,
+        *,
+        bound: float | None = None,
+        peaks: Sequence[str] = (),
+        steps: int | None = None,
+        threads: int = 1,
+    ) -> None:
+        profile = CycloidPolynomial() if profile is None else profile
+        bound = profile.default_bound if bound is None else bound
+        if bound is None:
+            raise ValueError("give a bound on the coefficients: the box that is searched")
+        bound = coefficient_bound(bound)
+        if profile.size == 0:
+            raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+        self.task, self.profile, self.bound = task, profile, bound
+        self.peaks = tuple(_known(name) for name in peaks)
+        self.lower, self.upper = (np.array(side, dtype=float) for side in profile.box(bound))
+        self.variables = tuple(f"a_{i + 1}" for i in range(profile.size))
+        self.objectives = ("residual", "energy", *(f"peak_{name}" for name in self.peaks))
+        self.units = ("m", "J", *(QUANTITIES[name].unit for name in self.peaks))
+        self.constraints = tuple(QUANTITIES[name].limit for name in task.limits)
+        # a peak is read from its violation of a limit; one that has no limit gets 1
+        limits = {QUANTITIES[name].limit: 1.0 for name in self.peaks if name not in task.limits}
+        measured: Any = replace(task, **limits)
+        self._objective = PopulationObjective(
+            measured, profile, steps=default_steps(task) if steps is None else steps,
+            threads=threads,
+        )  # fmt: skip
+        measures = list(measured.limits)
+        self._limited = [measures.index(name) for name in task.limits]
+        self._peaked = [measures.index(name) for name in self.peaks]
+        self._sizes = np.array([measured.limits[name] for name in self.peaks])
+
+    def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
+        """Evaluate candidates.
+
+        Parameters
+        ----------
+        candidates : array_like, shape (candidates, variables)
+            Coefficients, one candidate a row.
+
+        Returns
+        -------
+        objectives : ndarray, shape (candidates, objectives)
+            Residual [m], energy [J], then the peaks, each in its SI unit. A candidate whose motion
+            overflows has 1e30 everywhere, so that it comes last.
+        violations : ndarray, shape (candidates, constraints)
+            Each limited peak over its limit, less 1: positive where the limit is broken.
+
+        Raises
+        ------
+        ValueError
+            When the shape is another.
+        """
+        with np.errstate(all="ignore"):  # coefficients of any size
+            values = self._objective(candidates)
+        peaks = (values.violations[:, self._peaked] + 1) * self._sizes
+        table = np.column_stack(
+            [values.residual, values.energy, peaks, values.violations[:, self._limited]]
+        )
+        replace_failures(table)
+        count = len(self.objectives)
+        return table[:, :count], table[:, count:]
+
+
+def _known(name: str) -> str:
+    if name not in QUANTITIES:
+        hint = nearest(str(name), QUANTITIES)
+        raise ValueError(f"unknown quantity {name!r}; {hint}(known: {', '.join(QUANTITIES)})")
+    return name

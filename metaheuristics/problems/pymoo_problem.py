@@ -1,0 +1,54 @@
+"""A move as a pymoo problem that knows its exact front."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pymoo.core.problem import Problem
+
+from metaheuristics.problems.function import MoveFunction
+
+
+class ExactProblem(Problem):
+    """A move for any algorithm or indicator of pymoo.
+
+    ``pareto_front()`` and ``pareto_set()`` give the exact front where one is known, else None.
+
+    Parameters
+    ----------
+    function : MoveFunction
+        What is minimised.
+    pareto_set : ndarray, shape (points, variables), optional
+        Coefficients of the exact front.
+    pareto_front : ndarray, shape (points, objectives), optional
+        Its objectives.
+    """
+
+    def __init__(
+        self,
+        function: MoveFunction,
+        pareto_set: NDArray[np.float64] | None = None,
+        pareto_front: NDArray[np.float64] | None = None,
+    ) -> None:
+        super().__init__(
+            n_var=len(function.variables),
+            n_obj=len(function.objectives),
+            n_ieq_constr=len(function.constraints),
+            xl=function.lower,
+            xu=function.upper,
+        )
+        self.function, self._set, self._front = function, pareto_set, pareto_front
+
+    def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
+        objectives, violations = self.function(x)
+        out["F"] = objectives
+        if violations.shape[1]:
+            out["G"] = violations
+
+    def _calc_pareto_front(self, *args: Any, **kwargs: Any) -> Any:
+        return self._front
+
+    def _calc_pareto_set(self, *args: Any, **kwargs: Any) -> Any:
+        return self._set

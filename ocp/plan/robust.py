@@ -1,0 +1,138 @@
+"""Hold a residual limit between the samples of an uncertain plant, not only at them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.answers.provenance import SolveSettings
+from ocp.base.errors import SolverFailedError
+from ocp.plan.answer import Plan
+from ocp.plan.verification import OVERRUN
+from ocp.profiles.joint_profile import JointProfile
+from ocp.robustness.measures import tolerated_residual
+from ocp.robustness.uncertain import UncertainPlant, with_samples
+from ocp.robustness.worst import peaks_between
+from ocp.task.point_to_point import PointToPoint
+
+EXCESS = 0.05
+"""Share of the limit by which the residual between samples may pass it before more are added."""
+_ROUNDS, _ADDED = 6, 4
+"""Most rounds of added samples, and most samples that one adds."""
+_TIGHTENINGS = 4
+"""How often at most what is left of the excess is taken off the limit."""
+
+Solve = Callable[[PointToPoint, JointProfile, SolveSettings], Plan]
+
+
+def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
+    """The residual limit that counts where one is given, or none is.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    residual_limit : float or None
+        Largest F1 [m].
+
+    Returns
+    -------
+    float
+        The same; where it is None 0, of an uncertain plant `tolerated_residual`.
+
+    Raises
+    ------
+    ValueError
+        When it is 0 and the plant uncertain.
+    """
+    if not isinstance(task.plant, UncertainPlant):
+        return 0.0 if residual_limit is None else residual_limit
+    if residual_limit is None:
+        return tolerated_residual(task)
+    if residual_limit == 0:
+        raise ValueError(
+            "residual limit is 0, but no motion arrives at rest whatever the errors of its plant; "
+            "leave it out (5 % of the plain cycloid's residual) or give one above 0"
+        )
+    return residual_limit
+
+
+def held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
+    """Hold the residual limit of a plan between the samples of its uncertain plant as well.
+
+    Where the residual passes the limit by more than `EXCESS`, its peaks become samples, and the
+    solver goes on from the plan. What is left of the excess is then taken off the limit.
+
+    Parameters
+    ----------
+    plan : Plan
+        A plan of an uncertain plant, within its residual limit at the samples.
+    settings : SolveSettings
+        What was asked for.
+    solve : callable
+        Gives the plan of a task, a profile and settings.
+
+    Returns
+    -------
+    Plan
+        The plan with its `worst`, which is above the limit where no tighter one could be kept.
+        After Ctrl-C the last, and not ``complete``.
+
+    Raises
+    ------
+    SolverFailedError
+        When no motion keeps the limit at the samples that were added.
+    """
+    began = time.perf_counter() - plan.provenance.seconds
+    stopped = plan.provenance.stopped
+    try:
+        for better in _held(plan, settings, solve):
+            plan, stopped = better, better.provenance.stopped
+            if stopped:
+                break
+    except KeyboardInterrupt:
+        stopped = "some rounds, before the residual was held between the samples"
+    seconds = time.perf_counter() - began
+    provenance = replace(plan.provenance, settings=settings, seconds=seconds, stopped=stopped)
+    return replace(plan, provenance=provenance)
+
+
+def _held(plan: Plan, settings: SolveSettings, solve: Solve) -> Iterator[Plan]:
+    """The plan with its worst, then with more samples, then with tighter limits."""
+    limit = used = settings.residual_limit
+    plan, peaks = _checked(plan)
+    yield plan
+    for _ in range(_ROUNDS):
+        if _excess(plan, limit) <= EXCESS:
+            break
+        task = with_samples(plan.task, peaks[peaks[:, 0] > limit, 1:].tolist())
+        plan, peaks = _checked(solve(task, plan.profile, _from(plan, settings)))
+        yield plan
+    for _ in range(_TIGHTENINGS):
+        if _excess(plan, limit) <= 0:
+            break
+        used /= (1 + _excess(plan, limit)) * (1 + OVERRUN)
+        tighter = replace(_from(plan, settings), residual_limit=used)
+        try:
+            plan, _ = _checked(solve(plan.task, plan.profile, tighter))
+        except SolverFailedError:
+            break
+        yield plan
+
+
+def _checked(plan: Plan) -> tuple[Plan, NDArray[np.float64]]:
+    worst, peaks = peaks_between(plan.task, plan.profile, plan.coefficients, _ADDED)
+    return replace(plan, worst=worst), peaks
+
+
+def _excess(plan: Plan, limit: float) -> float:
+    return -1.0 if plan.worst is None else plan.worst.residual / limit - 1
+
+
+def _from(plan: Plan, settings: SolveSettings) -> SolveSettings:
+    steps = plan.verification.steps
+    return replace(settings, starts=1, guess=plan.coefficients, steps=steps)

@@ -1,0 +1,126 @@
+"""Where between its samples an uncertain plant leaves most."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ocp.base.ranges import NotNegative
+from ocp.base.readonly import ReadOnlyDict
+from ocp.profiles.joint_profile import JointProfile
+from ocp.robustness.plants import with_errors
+from ocp.robustness.population import ErrorPopulation
+from ocp.robustness.uncertain import UncertainPlant, on_assumed
+from ocp.simulation.resimulation import resimulate
+from ocp.task.point_to_point import PointToPoint
+
+_ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
+"""Errors along each side of the grid, by the number of ranges."""
+_ZOOMS, _BESIDE = 3, (-1.0, -0.5, 0.0, 0.5, 1.0)
+"""How often the grid around a peak is made finer, and its errors in steps of the one before."""
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The errors within an uncertain plant's ranges at which a motion leaves most.
+
+    Attributes
+    ----------
+    errors : dict of str to float
+        Relative errors by name.
+    residual : float
+        F1 there [m], by CVODES.
+    """
+
+    errors: Mapping[str, float]
+    residual: NotNegative
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "errors", ReadOnlyDict(self.errors))
+
+
+def peaks_between(
+    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, most: int = 1
+) -> tuple[Worst, NDArray[np.float64]]:
+    """Find the errors within the ranges of an uncertain plant at which a motion leaves most.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        A move of an `UncertainPlant`.
+    profile : JointProfile
+        How the joint moves.
+    coefficients : array_like, shape (profile.size,)
+        The profile's coefficients.
+    most : int
+        How many peaks of the residual are looked for.
+
+    Returns
+    -------
+    Worst
+        The largest.
+    ndarray, shape (peaks, 1 + ranges)
+        Residual [m] by fixed steps, and errors of each peak, the largest first.
+
+    Raises
+    ------
+    ValueError
+        When the plant is not uncertain, or coefficients or duration do not fit the profile.
+    SolverFailedError
+        When CVODES cannot follow the motion.
+    """
+    plant = task.plant
+    if not isinstance(plant, UncertainPlant):
+        raise ValueError(f"plant {plant.name!r} is not uncertain; give an UncertainPlant")
+    assumed, largest = on_assumed(task), np.array(list(plant.ranges.values()))
+    population = ErrorPopulation(assumed, profile, coefficients, dict(plant.ranges))
+    along = _ALONG[len(largest)]
+    shares = _grid(np.linspace(-1, 1, along), len(largest))
+    residuals = population(shares * largest).residual
+    tops = np.flatnonzero(_is_peak(residuals.reshape([along] * len(largest))))
+    tops = tops[np.argsort(-residuals[tops])][:most]
+    table = np.array([_zoomed(population, largest, shares[i], 2 / (along - 1)) for i in tops])
+    table = table[np.argsort(-table[:, 0])]
+    errors = dict(zip(plant.ranges, table[0, 1:].tolist(), strict=True))
+    there = replace(assumed, plant=with_errors(plant.assumed, errors))
+    return Worst(errors, resimulate(there, profile, coefficients).residual), table
+
+
+def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:
+    """The largest of `peaks_between`; None where the plant is not uncertain."""
+    if not isinstance(task.plant, UncertainPlant):
+        return None
+    return peaks_between(task, profile, coefficients)[0]
+
+
+def _grid(along: ArrayLike, ranges: int) -> NDArray[np.float64]:
+    return np.stack(np.meshgrid(*[np.asarray(along)] * ranges), axis=-1).reshape(-1, ranges)
+
+
+def _is_peak(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which values of a grid no neighbour along a side exceeds."""
+    peak = np.ones(values.shape, dtype=bool)
+    for axis in range(values.ndim):
+        rows, of = np.moveaxis(values, axis, 0), np.moveaxis(peak, axis, 0)
+        of[1:] &= rows[1:] >= rows[:-1]
+        of[:-1] &= rows[:-1] >= rows[1:]
+    return peak
+
+
+def _zoomed(
+    population: ErrorPopulation,
+    largest: NDArray[np.float64],
+    peak: NDArray[np.float64],
+    step: float,
+) -> NDArray[np.float64]:
+    """Residual and errors of the largest residual beside a point of a grid."""
+    residual = 0.0
+    for zoom in range(_ZOOMS):
+        around = np.clip(peak + step / 2**zoom * _grid(_BESIDE, len(peak)), -1, 1)
+        residuals = population(around * largest).residual
+        at = int(np.argmax(residuals))
+        peak, residual = around[at], residuals[at]
+    return np.array([residual, *(peak * largest)])

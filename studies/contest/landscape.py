@@ -1,0 +1,141 @@
+"""What makes a problem hard: its local minima, how they lie, and what the box costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metaheuristics import PopulationObjective
+from ocp import QuietarmError, plan_move
+from ocp.answers.provenance import SolveSettings
+from ocp.answers.saved import Saved
+from ocp.base.ranges import CountFromOne, Positive, Share
+from ocp.front.sweep import Sweep
+from studies.contest.problems import Problem
+
+LEVEL = 1e-3
+"""Residual [m] within which the energy is minimised."""
+STARTS = 40
+"""Random starts in the box; the share of those that end at the best is then known to 8 %."""
+CANDIDATES = 1000
+"""Random candidates in the box whose energies are held against their distance."""
+BOXES = (0.5, 2.0, 4.0)
+"""Boxes that are tried, as multiples of the problem's own."""
+_SAME = 1e-3
+"""Minima whose energies differ by less than this share are one."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Landscape(Saved):
+    """The local minima of a problem: least energies within `LEVEL`, from random starts in its box.
+
+    Attributes
+    ----------
+    problem : str
+        Its name.
+    starts : int
+        How many starts.
+    solved : float
+        Share of the starts from which the gradient ended at a minimum.
+    best : float
+        Share that ended at the best of these minima.
+    minima : int
+        How many minima of different energy there are among them.
+    correlation : float or None
+        Of energy and distance to the best minimum, over the minima that were found; near 1 where
+        better ones are nearer to it. None where all are one.
+    candidates : float
+        Of energy and distance to the cheapest motion, over random candidates.
+    boxes : tuple of (float, float or None)
+        Multiples of the box, and the least energy within it as a multiple of that in the problem's
+        own; None where nothing was found.
+    """
+
+    kind: ClassVar[str] = "landscape"
+    version: ClassVar[int] = 1
+
+    problem: str
+    starts: CountFromOne
+    solved: Share
+    best: Share
+    minima: int
+    correlation: float | None
+    candidates: float
+    boxes: tuple[tuple[Positive, float | None], ...]
+
+
+def landscape_of(problem: Problem, seed: int = 0) -> Landscape:
+    """Look for the local minima of a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+        Which.
+    seed : int
+        Seed of the random starts.
+
+    Returns
+    -------
+    Landscape
+        What there is.
+
+    Raises
+    ------
+    QuietarmError
+        When no start ended at a minimum.
+    """
+    settings = SolveSettings(bound=problem.bound, starts=1)
+    sweep, random = Sweep(problem.task, problem.profile, settings), np.random.default_rng(seed)
+    box = problem.profile.box(problem.bound)
+    starts = random.uniform(*box, (STARTS, problem.profile.size))
+    solved = [one for one in (sweep.solve(start, LEVEL) for start in starts) if one.status.solved]
+    if not solved:
+        raise QuietarmError(f"none of {STARTS} random starts ended at a minimum")
+    energies = np.array([one.energy for one in solved])
+    places = np.array([one.coefficients for one in solved])
+    lowest, width = energies.min(), box[1] - box[0]
+    cheapest = sweep.solve(places[energies.argmin()]).coefficients
+    drawn = random.uniform(*box, (CANDIDATES, problem.profile.size))
+    costs = PopulationObjective(problem.task, problem.profile)(drawn).energy
+    return Landscape(
+        problem=problem.name,
+        starts=STARTS,
+        solved=len(energies) / STARTS,
+        best=float((energies <= lowest * (1 + _SAME)).sum()) / STARTS,
+        minima=_different(energies),
+        correlation=_correlation(energies, (places - places[energies.argmin()]) / width),
+        candidates=float(np.corrcoef(costs, _length((drawn - cheapest) / width))[0, 1]),
+        boxes=tuple((share, _in_box(problem, share, float(lowest))) for share in BOXES),
+    )
+
+
+def _different(energies: Array) -> int:
+    """How many of the energies are none of the others', to `_SAME`."""
+    ordered = np.sort(energies)
+    return 1 + int((np.diff(ordered) > _SAME * ordered[:-1]).sum())
+
+
+def _length(steps: Array) -> Array:
+    return np.linalg.norm(steps, axis=1)
+
+
+def _correlation(energies: Array, steps: Array) -> float | None:
+    """Of energies and lengths of the steps to the best; None where all are one minimum."""
+    if _different(energies) == 1:
+        return None
+    return float(np.corrcoef(energies, _length(steps))[0, 1])
+
+
+def _in_box(problem: Problem, share: float, own: float) -> float | None:
+    try:
+        plan = plan_move(
+            problem.task, problem.profile, residual_limit=LEVEL, bound=share * problem.bound
+        )
+    except QuietarmError:
+        return None
+    return plan.energy / own

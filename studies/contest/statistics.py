@@ -1,0 +1,213 @@
+"""Which differences between methods are more than chance: ranks, tests, effect sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.contest.measures import Arena, methods_in
+
+Array = NDArray[np.float64]
+LEAST_RUNS = 5
+"""With fewer seeds, or fewer problems, no test could find anything."""
+ALPHA = 0.05
+_EXTRA = "statistics need scipy: pip install 'quietarm[contest]'; they are left out"
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Mean ranks of methods, and how far apart they must be to tell them apart.
+
+    Attributes
+    ----------
+    what : str
+        What was ranked on, in the plural: seeds or problems.
+    blocks : int
+        How many of these.
+    methods : tuple of str
+        The best first.
+    ranks : tuple of float
+        Mean ranks in the same order; 1 is the best.
+    statistic, p_value : float
+        Friedman's test that all methods are alike.
+    critical : float
+        Nemenyi's critical difference of two mean ranks.
+    """
+
+    what: str
+    blocks: int
+    methods: tuple[str, ...]
+    ranks: tuple[float, ...]
+    statistic: float
+    p_value: float
+    critical: float
+
+    @property
+    def differ(self) -> bool:
+        """Whether Friedman's test says that the methods are not all alike."""
+        return self.p_value < ALPHA
+
+    @property
+    def alike(self) -> list[tuple[int, int]]:
+        """First and last place of every longest group that the tests do not tell apart."""
+        last = len(self.ranks) - 1
+        if not self.differ:
+            return [(0, last)]
+        ends = [
+            max(j for j in range(i, last + 1) if self.ranks[j] - self.ranks[i] <= self.critical)
+            for i in range(last + 1)
+        ]
+        return [(i, end) for i, end in enumerate(ends) if end > i and end not in ends[:i]]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two methods on one problem.
+
+    Attributes
+    ----------
+    problem, one, other : str
+        Their names.
+    effect : float
+        Vargha and Delaney's A: how likely a run of `one` misses less than a run of `other`; 0.5
+        where neither is better.
+    p_value : float
+        Of the Mann-Whitney test.
+    adjusted : float
+        The same after Holm's correction for all pairs on the problem.
+    """
+
+    problem: str
+    one: str
+    other: str
+    effect: float
+    p_value: float
+    adjusted: float
+
+
+def why_none(arenas: Sequence[Arena]) -> str:
+    """Why there are no statistics at all, in a line; empty where there are some."""
+    if find_spec("scipy") is None:
+        return _EXTRA
+    if len(methods_in(arenas)) < 2:
+        return "one method alone is not compared: statistics are left out"
+    if not any(len(_common_seeds(arena)) >= LEAST_RUNS for arena in arenas):
+        return f"fewer than {LEAST_RUNS} runs of each method: statistics are left out"
+    return ""
+
+
+def ranking(values: Array, methods: Sequence[str], what: str) -> Ranking:
+    """Rank methods within each block, and test whether they differ.
+
+    Friedman's test, and Nemenyi's critical difference as Demsar has it [1]_.
+
+    Parameters
+    ----------
+    values : ndarray, shape (blocks, methods)
+        What is the better the less it is.
+    methods : sequence of str
+        Names of the columns, three or more.
+    what : str
+        What the blocks are, in the plural.
+
+    Returns
+    -------
+    Ranking
+        The methods, the best first.
+
+    References
+    ----------
+    .. [1] Demsar, Journal of Machine Learning Research 7 (2006), pp. 1-30, section 3.2.2.
+    """
+    from scipy import stats
+
+    blocks, count = values.shape
+    means = stats.rankdata(values, axis=1).mean(axis=0)
+    with np.errstate(invalid="ignore"):  # where all are equal
+        found = stats.friedmanchisquare(*values.T)
+    quantile = stats.studentized_range.ppf(1 - ALPHA, count, np.inf) / np.sqrt(2)
+    order: list[int] = np.argsort(means, kind="stable").tolist()
+    return Ranking(
+        what=what,
+        blocks=blocks,
+        methods=tuple(methods[i] for i in order),
+        ranks=tuple(float(means[i]) for i in order),
+        statistic=float(found.statistic),
+        p_value=1.0 if np.isnan(found.pvalue) else float(found.pvalue),
+        critical=float(quantile * np.sqrt(count * (count + 1) / (6 * blocks))),
+    )
+
+
+def ranking_on(arena: Arena) -> Ranking | None:
+    """Methods ranked on one problem, seed by seed; None with fewer than three or too few runs."""
+    seeds = _common_seeds(arena)
+    if len(arena.fields) < 3 or len(seeds) < LEAST_RUNS:
+        return None
+    columns = [
+        [share for run, share in zip(field.runs, field.final, strict=True) if run.key.seed in seeds]
+        for field in arena.fields
+    ]
+    return ranking(np.array(columns).T, [field.method for field in arena.fields], "seeds")
+
+
+def ranking_over(arenas: Sequence[Arena]) -> Ranking | None:
+    """Methods ranked by their medians, problem by problem.
+
+    None with fewer than three methods, or fewer than `LEAST_RUNS` problems on which all of them
+    have so many runs.
+    """
+    methods = methods_in(arenas)
+    rows = [
+        [float(np.median(field.final)) for method in methods for field in arena.fields
+         if field.method == method]
+        for arena in arenas
+        if len(arena.fields) == len(methods) and len(_common_seeds(arena)) >= LEAST_RUNS
+    ]  # fmt: skip
+    if len(methods) < 3 or len(rows) < LEAST_RUNS:
+        return None
+    return ranking(np.array(rows), methods, "problems")
+
+
+def pairs_on(arena: Arena) -> list[Pair]:
+    """Every pair of methods on a problem that both have `LEAST_RUNS` runs on."""
+    from scipy import stats
+
+    fields = [field for field in arena.fields if len(field.runs) >= LEAST_RUNS]
+    found = list[tuple[str, str, float, float]]()
+    for one, other in combinations(fields, 2):
+        test = stats.mannwhitneyu(one.final, other.final)
+        effect = 1 - float(test.statistic) / (len(one.final) * len(other.final))
+        found.append((one.method, other.method, effect, float(test.pvalue)))
+    adjusted = holm([p_value for *_, p_value in found])
+    return [Pair(arena.problem, *pair, p) for pair, p in zip(found, adjusted, strict=True)]
+
+
+def holm(p_values: Sequence[float]) -> list[float]:
+    """P-values of several tests, corrected by Holm's step-down method.
+
+    Parameters
+    ----------
+    p_values : sequence of float
+        One a test.
+
+    Returns
+    -------
+    list of float
+        In the same order; a test is significant where its own is below the level.
+    """
+    adjusted, largest = [0.0] * len(p_values), 0.0
+    for done, i in enumerate(np.argsort(p_values, kind="stable").tolist()):
+        largest = max(largest, min(1.0, (len(p_values) - done) * p_values[i]))
+        adjusted[i] = largest
+    return adjusted
+
+
+def _common_seeds(arena: Arena) -> set[int]:
+    """Seeds from which every method was run."""
+    seeds = [{run.key.seed for run in field.runs} for field in arena.fields]
+    return set[int].intersection(*seeds)

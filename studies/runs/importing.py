@@ -1,0 +1,244 @@
+"""Fronts from elsewhere: coefficients of a file, evaluated here, beside what the file claims."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from metaheuristics import MoveFunction
+from ocp import Front, JointProfile, PointToPoint, SolverFailedError
+from ocp.answers.provenance import AGREEMENT, REST, Setting
+from ocp.base.checks import whole
+from ocp.front.evaluation import refuse_beyond_box
+from studies.display.progress import working
+from studies.display.saving import drawing, finish
+from studies.display.words import print_lines
+from studies.reports.search import print_fronts
+from studies.runs.files import refuse_same_file
+from studies.runs.foreign import Found
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+MOST_MOTIONS = 1_000_000
+_NEAR = 1e-3
+"""Motions that another beats by more than this share are not evaluated a second time."""
+_NEAR_REST = 1e-6
+"""Nor do residuals count [m] that differ by less."""
+_FIGURES = (("residual", "m", REST), ("energy", "J", 0.0))
+
+
+@dataclass(frozen=True)
+class Claim:
+    """How what a file states of one figure compares with what its coefficients give.
+
+    Attributes
+    ----------
+    figure, unit : str
+        Which.
+    stated, differ : int
+        How many motions have it stated, and for how many of them it is another.
+    row : int
+        The motion that differs most, from 1.
+    theirs, ours : float
+        Its figure in the file and here.
+    factor : float
+        Median of theirs over ours; NaN where none can be told.
+    """
+
+    figure: str
+    unit: str
+    stated: int
+    differ: int
+    row: int
+    theirs: float
+    ours: float
+    factor: float
+
+    def line(self) -> str:
+        """In words."""
+        if not self.differ:
+            return f"the file's {self.figure} is right for all {self.stated} motions"
+        hint = ""
+        if abs(self.factor / 1000 - 1) < 0.05:
+            hint = f"; is it in m{self.unit}? name the column {self.figure}_m{self.unit}"
+        return (
+            f"the file's {self.figure} is wrong for {self.differ} of {self.stated} motions, most "
+            f"for motion {self.row}: {self.theirs:.4g} {self.unit} in the file, {self.ours:.4g} "
+            f"{self.unit} by its coefficients{hint}"
+        )
+
+
+def import_front(
+    task: PointToPoint,
+    profile: JointProfile,
+    found: Found,
+    method: str,
+    settings: dict[str, Setting],
+) -> tuple[Front, list[Claim]]:
+    """The front of coefficients from elsewhere, and how its claims compare.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    found : Found
+        What a file holds.
+    method : str
+        What found them.
+    settings : dict
+        Its settings; a ``bound`` must be kept.
+
+    Returns
+    -------
+    front : Front
+        Every point evaluated by CVODES. `evaluations` counts all motions.
+    claims : list of Claim
+        For each figure that the file states.
+
+    Raises
+    ------
+    ValueError
+        When the coefficients do not fit the profile or the bound.
+    """
+    table = found.coefficients
+    whole("number of motions", len(table), 1, MOST_MOTIONS)
+    rows = np.array([_checked(i, row, profile, task) for i, row in enumerate(table, start=1)])
+    refuse_beyond_box(profile, rows, settings.get("bound"))
+    widest = max(float(np.abs(rows).max()), 1e-3)  # any box: the function needs one
+    objectives, violations = MoveFunction(task, profile, bound=min(widest, 1e6))(rows)
+    failed = (objectives >= 1e30).any(axis=1)
+    broken = ~failed & (violations > _NEAR).any(axis=1)
+    usable = np.flatnonzero(~failed & ~broken)
+    near = usable[_not_beaten(objectives[usable])]
+    if not near.size:
+        raise SolverFailedError(_why_none(len(rows), int(failed.sum()), int(broken.sum()), task))
+    front = Front.from_coefficients(
+        task, rows[near], method=method, profile=profile, settings=settings
+    )
+    front = replace(
+        front,
+        evaluations=len(rows),
+        failed=int(failed.sum()) + front.failed,
+        infeasible=int(broken.sum()) + front.infeasible,
+    )
+    if not front.points:
+        raise SolverFailedError(front.why_empty())
+    return front, _claims(found.claims, objectives[:, :2])
+
+
+def _checked(
+    number: int, row: Array, profile: JointProfile, task: PointToPoint
+) -> tuple[float, ...]:
+    try:
+        return profile.checked(row, task.duration)
+    except ValueError as error:
+        raise ValueError(f"motion {number}: {error}") from None
+
+
+def _why_none(count: int, failed: int, broken: int, task: PointToPoint) -> str:
+    limits = ", ".join(f"{name} {most:g}" for name, most in task.limits.items())
+    words = [f"{broken} break the limits ({limits})" if broken else "",
+             f"{failed} overflow" if failed else ""]  # fmt: skip
+    return f"no motion of {count} can be used: {' and '.join(filter(None, words))}"
+
+
+def _not_beaten(F: Array) -> NDArray[np.bool_]:
+    """Rows that no other is clearly better than."""
+    import moocore  # not at the top: it takes long to load
+
+    if not len(F):
+        return np.zeros(0, dtype=bool)
+    best = F[moocore.is_nondominated(F)]
+    best = best[np.argsort(best[:, 0])] * (1 + _NEAR) + np.array([_NEAR_REST, 0.0])
+    # energies fall along the front: the last point within a residual has the least
+    last = np.searchsorted(best[:, 0], F[:, 0], side="right") - 1
+    return (last < 0) | (F[:, 1] < best[np.maximum(last, 0), 1])
+
+
+def _claims(stated: Array, figures: Array) -> list[Claim]:
+    found: list[Claim] = []
+    for column, (figure, unit, least) in enumerate(_FIGURES):
+        theirs, ours = stated[:, column], figures[:, column]
+        known = ~np.isnan(theirs)
+        if not known.any():
+            continue
+        gap = np.where(known, np.abs(theirs - ours) - least, 0.0)
+        wrong = known & ~(gap <= AGREEMENT * np.abs(ours))
+        worst = int(np.argmax(np.where(wrong, gap / np.maximum(np.abs(ours), 1e-300), -1.0)))
+        telling = known & (ours > 100 * REST)
+        factor = float(np.median(theirs[telling] / ours[telling])) if telling.any() else np.nan
+        found.append(
+            Claim(
+                figure, unit, int(known.sum()), int(wrong.sum()), worst + 1,
+                float(theirs[worst]), float(ours[worst]), factor,
+            )
+        )  # fmt: skip
+    return found
+
+
+def run_import(
+    path: Path,
+    task: PointToPoint,
+    profile: JointProfile,
+    found: Found,
+    method: str,
+    settings: dict[str, Setting],
+    output: Path | None,
+    csv_file: Path | None,
+    figure: Path | None,
+    quiet: bool,
+) -> None:
+    """Evaluate what a file holds, write the front, and show it beside the file's claims.
+
+    Parameters
+    ----------
+    path : Path
+        The file, for messages.
+    task, profile, found, method, settings
+        As for `import_front`.
+    output, csv_file, figure : Path or None
+        Files for the front: whole, its points as a table, a picture.
+    quiet : bool
+        Show no progress.
+
+    Raises
+    ------
+    ValueError
+        When the coefficients do not fit.
+    SolverFailedError
+        When no motion can be used.
+    """
+    refuse_same_file([("--output", output), ("--csv", csv_file), ("--figure", figure)])
+    refuse_same_file([("FILE", path), ("--output", output)])
+    refuse_same_file([("FILE", path), ("--csv", csv_file)])
+    with working("evaluating", Console(stderr=True), quiet=quiet):
+        try:
+            front, claims = import_front(task, profile, found, method, settings)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+
+    def picture() -> Figure:
+        from studies.figures import front_figure
+
+        return front_figure([front])
+
+    def show(console: Console) -> None:
+        print_fronts(console, [front])
+        lines = [claim.line() for claim in claims]
+        if not claims:
+            lines.append("the file states neither residual nor energy: nothing to hold against")
+        if found.ignored:
+            lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
+        print_lines(console, *lines)
+
+    finish([(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))], show)

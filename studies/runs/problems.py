@@ -1,0 +1,81 @@
+"""The named problems: a list of them, and their exact fronts in files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
+from ocp import Front
+from studies.display.progress import progress
+from studies.display.saving import Together, finish, inside, interruption
+from studies.display.words import print_lines
+
+
+def run_problems(names: Sequence[str], again: bool, output: Path | None, quiet: bool) -> None:
+    """List problems; write their exact fronts where a folder is given.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of `PROBLEMS`; all of them where there is none.
+    again : bool
+        Find the fronts anew.
+    output : Path or None
+        The folder.
+    quiet : bool
+        Show no progress.
+
+    Raises
+    ------
+    ValueError
+        When fronts are to be found anew for no folder.
+    QuietarmError
+        When it was interrupted, after what was found is written.
+    """
+    chosen = [PROBLEMS[name] for name in dict.fromkeys(names or PROBLEMS)]
+    if again and output is None:
+        raise ValueError("--again finds fronts for a folder; give --output as well")
+    fronts, trouble = dict[str, Front](), None
+    if again and not _find_again(chosen, fronts, quiet):
+        if not fronts:
+            raise KeyboardInterrupt
+        trouble = interruption()
+    elif not again:
+        for problem in chosen:
+            fronts |= zip(problem.tasks(), problem.fronts(), strict=True)
+    together = None
+    if output is not None and fronts:
+        writes = {f"{name}.json": front.save for name, front in fronts.items()}
+        together = Together("fronts", output, inside(output, writes))
+    finish(
+        [], lambda console: print_lines(console, *map(_line, chosen)), trouble=trouble,
+        together=together, quiet=quiet,
+    )  # fmt: skip
+
+
+def _find_again(chosen: Sequence[NamedProblem], fronts: dict[str, Front], quiet: bool) -> bool:
+    """Find fronts anew, whole ones alone; whether all were found before an interruption."""
+    total = sum(len(problem.tasks()) for problem in chosen)
+    with progress(total, Console(stderr=True), quiet=quiet) as begin:
+        for problem in chosen:
+            try:
+                found = problem.find_again(begin)
+            except KeyboardInterrupt:
+                return False
+            if not all(front.complete for front in found.values()):
+                return False
+            fronts |= found
+    return True
+
+
+def _line(problem: NamedProblem) -> str:
+    limits = ", ".join(f"{name} {most:g}" for name, most in problem.task.limits.items())
+    words = [
+        f"{problem.name}: {problem.profile.size} coefficients up to {problem.bound:g}",
+        f"limits {limits}" if limits else "",
+        f"third objective peak {problem.peak}" if problem.peak else "",
+    ]
+    return ", ".join(filter(None, words))

@@ -1,0 +1,183 @@
+"""The named problems and their exact fronts, held against other routes."""
+
+from dataclasses import replace
+
+import moocore
+import numpy as np
+import pytest
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.optimize import minimize
+
+from metaheuristics import PROBLEMS, MoveFunction, problem_of
+from metaheuristics.objective.claims import check_figures
+from metaheuristics.problems import finding
+from metaheuristics.problems.catalogue import FRONTS
+from ocp import CycloidPolynomial, evaluate_coefficients, plan_move, weighted_front
+
+NAMES = pytest.mark.parametrize("name", PROBLEMS)
+TWO_TERMS = ["single-link-30deg-0.8s-2-terms", "arm-on-flexible-link-90deg-0.8s-2-terms"]
+COLD = [
+    "dual-link-90deg-0.9s",
+    "single-link-30deg-0.8s-20-terms",
+    "arm-on-flexible-link-90deg-0.8s-12-terms",
+    "single-link-30deg-0.8s-limits",
+    "arm-on-flexible-link-90deg-0.8s-limits",
+    "single-link-30deg-0.8s-torque",
+]
+"""Beside the six conditions, whose fronts are held against random starts in tests/ocp."""
+THIRD = "single-link-30deg-0.8s-torque"
+BETTER = 1e-4
+"""Share by which nothing may be better than the exact front; the README's table."""
+
+
+def least_energies(front, residuals):
+    """Least energy of a front's points within each residual."""
+    return np.array([front.cheapest(residual).energy for residual in residuals])
+
+
+@NAMES
+def test_a_problem_has_its_exact_fronts_in_files_of_its_own(name):
+    problem = problem_of(name)
+    assert problem.name == name
+    fronts = problem.fronts()
+    assert [front.task for front in fronts] == list(problem.tasks().values())
+    for front in fronts:
+        assert front.profile == problem.profile
+        assert front.settings["bound"] == problem.bound
+        assert (front.method, front.complete, front.failures) == ("epsilon", True, ())
+        assert len(front.points) >= 25
+        check_figures(front, name)
+
+
+def test_the_files_are_of_the_problems_and_small():
+    wanted = {f"{name}.json" for problem in PROBLEMS.values() for name in problem.tasks()}
+    files = {path.name: path.stat().st_size for path in FRONTS.iterdir()}
+    assert set(files) == wanted
+    assert sum(files.values()) < 300_000
+
+
+@pytest.mark.parametrize("name", COLD)
+def test_no_cold_start_is_better_than_the_exact_front(name):
+    front = problem_of(name).fronts()[0]
+    middle = front.points[len(front.points) // 2]
+    problem = problem_of(name)
+    plan = plan_move(
+        front.task, problem.profile, residual_limit=middle.residual, bound=problem.bound,
+        starts=1, seed=99,
+    )  # fmt: skip
+    assert plan.residual <= middle.residual * (1 + 1e-3)
+    assert plan.energy >= middle.energy * (1 - BETTER)
+
+
+@pytest.mark.parametrize("name", TWO_TERMS)
+def test_no_motion_of_a_fine_grid_is_better_and_the_best_come_near(name):
+    # all motions of two coefficients: 121 by 121 of them
+    problem = problem_of(name)
+    (front,), line = problem.fronts(), np.linspace(-problem.bound, problem.bound, 121)
+    objectives, _ = problem.function()(np.stack(np.meshgrid(line, line), -1).reshape(-1, 2))
+    for point in front.points:
+        within = objectives[:, 0] <= point.residual
+        if within.any():
+            assert objectives[within, 1].min() >= point.energy * (1 - BETTER)
+    corner = front.reference
+    exact = moocore.hypervolume(np.column_stack([front.residuals, front.energies]), ref=corner)
+    grid = moocore.hypervolume(objectives, ref=corner)
+    assert 0.95 < grid / exact < 1.02  # the motions between the exact front's points count here
+
+
+@pytest.mark.parametrize("name", TWO_TERMS)
+def test_no_weighted_sum_is_better(name):
+    problem = problem_of(name)
+    found = weighted_front(problem.task, problem.profile, bound=problem.bound, points=5)
+    (front,) = problem.fronts()
+    for point in found.points[:-1]:
+        beyond = next(p for p in front.points if p.residual >= point.residual * (1 - 1e-6))
+        assert point.energy >= beyond.energy * (1 - BETTER)
+    assert found.cheapest().energy == pytest.approx(front.cheapest().energy, rel=BETTER)
+
+
+def test_the_fronts_are_found_again(monkeypatch):
+    # fewer points between, the same at the ends and at the levels
+    monkeypatch.setattr(finding, "POINTS", 4)
+    problem, begun = problem_of(TWO_TERMS[1]), []
+    found = problem.find_again(begun.append)
+    assert begun == [problem.name] == list(found)
+    (front,), (again,) = problem.fronts(), found.values()
+    assert len(again.points) == 4 + len(finding.LEVELS)
+    residuals = [*finding.LEVELS, front.residuals[0] + 1e-9, front.residuals[-1]]
+    wanted = least_energies(front, np.array(residuals) * (1 + 1e-6))
+    assert least_energies(again, np.array(residuals) * (1 + 1e-6)) == pytest.approx(
+        wanted, rel=BETTER
+    )
+
+
+def test_random_starts_find_what_the_sweep_passes_by(monkeypatch):
+    # a sweep whose middle point is not the best of its residual
+    problem = problem_of(TWO_TERMS[0])
+    (front,) = problem.fronts()
+    middle = front.points[14]
+    worse = replace(middle, energy=middle.energy * 1.001)
+    swept = replace(front, points=(front.points[0], worse, front.points[-1]))
+    monkeypatch.setattr(finding, "epsilon_front", lambda *task, **settings: swept)
+    found = finding.exact_front(problem.task, problem.profile, problem.bound)
+    assert found.points[1].energy == pytest.approx(middle.energy, rel=BETTER)
+    assert (found.points[0], found.points[2]) == (front.points[0], front.points[-1])
+
+
+def test_pymoo_has_the_exact_front_and_set():
+    problem = problem_of("arm-on-flexible-link-90deg-0.8s-limits")
+    made = problem.pymoo()
+    (front,) = problem.fronts()
+    assert made.pareto_front().tolist() == [[p.residual, p.energy] for p in front.points]
+    F, G = made.evaluate(made.pareto_set(), return_values_of=["F", "G"])
+    assert pytest.approx(F, rel=1e-4, abs=1e-6) == made.pareto_front()
+    assert (G <= 1e-4).all()
+    assert G.shape[1] == 2
+
+
+def test_an_algorithm_of_pymoo_comes_near_the_exact_front_and_not_beyond():
+    problem = problem_of(TWO_TERMS[0]).pymoo()
+    result = minimize(problem, NSGA2(pop_size=40), ("n_gen", 25), seed=1)
+    corner = problem.pareto_front().max(axis=0) * 1.1
+    exact = moocore.hypervolume(problem.pareto_front(), ref=corner)
+    assert 0.9 < moocore.hypervolume(result.F, ref=corner) / exact < 1.02
+    stillest, cheapest = problem.pareto_front()[[0, -1]]
+    assert result.F[:, 1].min() >= cheapest[1] * (1 - BETTER)
+    assert stillest[0] < 1e-6
+
+
+def test_a_move_of_ones_own_has_no_exact_front():
+    from metaheuristics import ExactProblem
+
+    problem = problem_of(TWO_TERMS[0])
+    own = ExactProblem(MoveFunction(problem.task, CycloidPolynomial(3), bound=0.2))
+    assert own.pareto_front() is None
+    assert own.pareto_set() is None
+
+
+def test_the_third_objective_is_the_peak_torque():
+    problem = problem_of(THIRD)
+    X, F = problem.exact()
+    assert F.shape == (len(X), 3)
+    assert moocore.is_nondominated(F).all()
+    assert len(F) > 100  # of six fronts of 25 and more
+    for x, f in zip(X[::40], F[::40], strict=True):
+        motion = evaluate_coefficients(problem.task, x).motion
+        assert f == pytest.approx([motion.residual, motion.energy, motion.peak_torque], rel=2e-3,
+                                  abs=1e-8)  # fmt: skip
+    assert problem.pymoo().pareto_front().shape == F.shape
+    # a limit costs energy and residual, never the other way round
+    energies = np.array([least_energies(front, [0.0375])[0] for front in problem.fronts()])
+    assert (energies[1:] <= energies[:-1] * (1 + BETTER)).all()
+    assert energies[0] > 1.2 * energies[-1]
+
+
+def test_the_limit_of_the_third_objective_costs_nothing_where_it_is_wide():
+    free, wide = problem_of("single-link-30deg-0.8s").fronts()[0], problem_of(THIRD).fronts()[-1]
+    assert wide.stillest().energy == pytest.approx(free.stillest().energy, rel=BETTER)
+    assert wide.cheapest().energy == pytest.approx(free.cheapest().energy, rel=BETTER)
+
+
+def test_an_unknown_problem_is_refused_with_the_nearest_one():
+    with pytest.raises(ValueError, match="unknown problem 'dual-link'; did you mean 'dual-link-90"):
+        problem_of("dual-link")

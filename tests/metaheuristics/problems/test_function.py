@@ -1,0 +1,82 @@
+"""A move as a function of arrays."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from small_searches import HALF, SIXTH
+
+from metaheuristics import MoveFunction
+from ocp import CycloidGaussians, CycloidPolynomial, evaluate_coefficients
+
+LIMITED = dataclasses.replace(SIXTH, torque_limit=0.16, acceleration_limit=60.0)
+RANDOM = np.random.default_rng(4).uniform(-0.2, 0.2, (7, 3))
+
+
+def test_it_says_what_goes_in_and_what_comes_out():
+    function = MoveFunction(LIMITED, CycloidPolynomial(3), bound=0.2, peaks=["torque", "speed"])
+    assert function.variables == ("a_1", "a_2", "a_3")
+    assert function.lower.tolist() == [-0.2] * 3
+    assert function.upper.tolist() == [0.2] * 3
+    assert function.objectives == ("residual", "energy", "peak_torque", "peak_speed")
+    assert function.units == ("m", "J", "N m", "rad/s")
+    assert function.constraints == ("torque_limit", "acceleration_limit")
+    objectives, violations = function(RANDOM)
+    assert (objectives.shape, violations.shape) == ((7, 4), (7, 2))
+    assert [part.shape for part in function(RANDOM[:0])] == [(0, 4), (0, 2)]
+
+
+@pytest.mark.parametrize("task", [SIXTH, HALF, LIMITED])
+def test_the_figures_are_those_of_cvodes(task):
+    # the README's table: energy within 1e-5 relative; a peak between samples is a little higher
+    function = MoveFunction(task, CycloidPolynomial(3), bound=0.2, peaks=["torque"])
+    objectives, violations = function(RANDOM)
+    for row, found, broken in zip(RANDOM, objectives, violations, strict=True):
+        exact = evaluate_coefficients(task, row)
+        assert found[0] == pytest.approx(exact.residual, rel=1e-4, abs=1e-7)
+        assert found[1] == pytest.approx(exact.energy, rel=1e-5)
+        assert found[2] == pytest.approx(exact.motion.peak_torque, rel=2e-3)
+        for (name, limit), passed in zip(task.limits.items(), broken, strict=True):
+            assert passed == pytest.approx(exact.motion.peak(name) / limit - 1, abs=1e-2)
+
+
+def test_a_limit_does_not_change_the_objectives():
+    free = MoveFunction(SIXTH, CycloidPolynomial(3), bound=0.2, peaks=["torque"])
+    limited = MoveFunction(LIMITED, CycloidPolynomial(3), bound=0.2, peaks=["torque"])
+    assert limited(RANDOM)[0] == pytest.approx(free(RANDOM)[0], rel=1e-12)
+
+
+def test_a_motion_that_overflows_comes_last():
+    objectives, violations = MoveFunction(LIMITED, bound=0.2)([[1e300] * 6, [0.0] * 6])
+    assert objectives[0].tolist() == [1e30, 1e30]
+    assert violations[0].tolist() == [1e30, 1e30]
+    assert (objectives[1] < 1).all()
+
+
+def test_a_profile_with_a_box_of_its_own_needs_no_bound():
+    function = MoveFunction(SIXTH, CycloidGaussians(2))
+    assert (function.lower < function.upper).all()
+    assert len(function.variables) == CycloidGaussians(2).size
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({}, "give a bound"),
+        ({"bound": math.nan}, "give a finite number"),
+        ({"bound": -1}, "positive"),
+        ({"bound": 0.2, "peaks": ["torqe"]}, "unknown quantity 'torqe'; did you mean 'torque'"),
+        ({"bound": 0.2, "profile": CycloidPolynomial(0)}, "give 1 term or more"),
+        ({"bound": 0.2, "threads": 0}, "threads is 0"),
+    ],
+)
+def test_bad_input_is_refused(given, words):
+    with pytest.raises(ValueError, match=words):
+        MoveFunction(SIXTH, **given)
+
+
+@pytest.mark.parametrize("candidates", [np.zeros(6), np.zeros((2, 5)), np.zeros((2, 6, 1))])
+def test_candidates_of_another_shape_are_refused(candidates):
+    with pytest.raises(ValueError, match=r"the population has shape .*; give \(candidates, 6\)"):
+        MoveFunction(SIXTH, bound=0.2)(candidates)

@@ -1,0 +1,47 @@
+"""The problems in the hands of other libraries."""
+
+import random
+import re
+from pathlib import Path
+
+import pytest
+from scipy.optimize import differential_evolution
+
+from metaheuristics import problem_of
+from ocp import Front
+
+TWO_TERMS = problem_of("single-link-30deg-0.8s-2-terms")
+DOCUMENT = Path(__file__).parents[3] / "docs" / "problems.md"
+BLOCKS = re.findall(r"^```python\n(.*?)^```$", DOCUMENT.read_text(), re.DOTALL | re.MULTILINE)
+
+
+def test_scipy_finds_the_cheap_end():
+    function = TWO_TERMS.function()
+    found = differential_evolution(
+        lambda x: function(x.T)[0][:, 1], list(zip(function.lower, function.upper, strict=True)),
+        vectorized=True, updating="deferred", rng=3, maxiter=60,
+    )  # fmt: skip
+    (front,) = TWO_TERMS.fronts()
+    assert found.fun == pytest.approx(front.cheapest().energy, rel=1e-4)
+    assert found.x == pytest.approx(front.cheapest().coefficients, abs=1e-3)
+
+
+def test_the_document_s_examples_run_as_they_stand(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for block in BLOCKS[:-1]:
+        exec(compile(block, str(DOCUMENT), "exec"), {})
+    assert Front.load("random.json").method == "random"
+    assert float(capsys.readouterr().out.splitlines()[-1]) > 0  # IGD+
+
+
+def test_platypus_searches_a_problem_with_limits():
+    pytest.importorskip("platypus")
+    random.seed(5)
+    names = {}
+    exec(compile(BLOCKS[-1], str(DOCUMENT), "exec"), names)
+    found = [solution for solution in names["algorithm"].result if solution.feasible]
+    assert len(found) > 2
+    (front,) = problem_of("arm-on-flexible-link-90deg-0.8s-limits").fronts()
+    for residual, energy in (solution.objectives for solution in found):
+        beyond = [point.energy for point in front.points if point.residual >= residual]
+        assert energy >= max(beyond, default=front.cheapest().energy) * (1 - 1e-4)

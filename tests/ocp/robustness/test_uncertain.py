@@ -1,0 +1,192 @@
+"""A plant that stands for several: what it computes, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from models import DualLinkManipulator, SingleLinkManipulator
+from ocp import (
+    CycloidPolynomial,
+    FileFormatError,
+    Plan,
+    PointToPoint,
+    UncertainPlant,
+    evaluate_coefficients,
+    evaluate_robustness,
+    residual_matrix,
+    resimulate,
+    rollout,
+    with_errors,
+)
+from ocp.robustness.population import ErrorPopulation
+from ocp.robustness.uncertain import on_assumed, with_samples
+from ocp.robustness.worst import peaks_between
+
+MOVE = [0.003347, -0.1697]  # the paper's, N = 2
+
+
+@pytest.fixture(scope="module")
+def task():
+    plant = UncertainPlant(SingleLinkManipulator(), {"frequency": 0.1, "beta1": 0.05})
+    return PointToPoint(plant, target=pi / 6, duration=0.8)
+
+
+@pytest.fixture(scope="module")
+def two_links_task():
+    plant = UncertainPlant(DualLinkManipulator(), {"frequency": 0.2}, ((0.2,),))
+    return PointToPoint(plant, target=pi / 2, duration=0.9)
+
+
+@pytest.fixture(scope="module")
+def evaluated(task):
+    return evaluate_coefficients(task, MOVE)
+
+
+def test_the_samples_are_the_corners(task):
+    corners = {(-0.1, -0.05), (-0.1, 0.05), (0.1, -0.05), (0.1, 0.05)}
+    assert set(task.plant.samples) == corners
+    assert task.plant.modes == 5
+
+
+@pytest.mark.parametrize("of", ["task", "two_links_task"])
+def test_figures_are_the_worst_of_the_parts_alone(of, request):
+    task = request.getfixturevalue(of)
+    profile = CycloidPolynomial(len(MOVE))
+    alone = [
+        resimulate(replace(task, plant=part), profile, MOVE)
+        for part in (
+            task.plant.assumed,
+            *(
+                with_errors(task.plant.assumed, dict(zip(task.plant.ranges, sample, strict=True)))
+                for sample in task.plant.samples
+            ),
+        )
+    ]
+    together, fixed = resimulate(task, profile, MOVE), rollout(task, profile, MOVE).motion
+    for found, tolerance in ((together, 1e-6), (fixed, 1e-2)):  # fixed steps: peaks at the nodes
+        for name in ("residual", "peak_deflection"):
+            largest = max(getattr(one, name) for one in alone)
+            assert getattr(found, name) == pytest.approx(largest, rel=tolerance)
+        assert found.energy == pytest.approx(alone[0].energy, rel=tolerance)
+        assert found.peak_torque == pytest.approx(alone[0].peak_torque, rel=tolerance)
+
+
+def test_residual_matrix_keeps_the_parts_apart(task):
+    matrix = residual_matrix(task)
+    size, tips = task.plant.modes, task.plant.tips
+    for tip in range(tips):
+        others = [i for i in range(2 * size) if i % size != tip]
+        assert not matrix[tip::tips, others].any()
+
+
+def test_worst_is_what_a_dense_search_finds(task, evaluated):
+    population = ErrorPopulation(on_assumed(task), evaluated.profile, MOVE, task.plant.ranges)
+    grid = np.meshgrid(np.linspace(-0.1, 0.1, 60), np.linspace(-0.05, 0.05, 60))
+    largest = population(np.reshape(grid, (2, -1)).T).residual.max()
+    assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
+    there = with_errors(task.plant.assumed, evaluated.worst.errors)
+    again = resimulate(replace(task, plant=there), evaluated.profile, MOVE)
+    assert evaluated.worst.residual == again.residual
+
+
+def test_peaks_lie_within_the_ranges_the_largest_first(task, evaluated):
+    _, peaks = peaks_between(task, evaluated.profile, MOVE, most=3)
+    assert np.all(np.diff(peaks[:, 0]) <= 0)
+    assert np.all(np.abs(peaks[:, 1:]) <= [0.1 + 1e-12, 0.05 + 1e-12])
+
+
+def test_a_plant_without_errors_has_no_worst(task):
+    assumed = on_assumed(task)
+    assert assumed.plant == SingleLinkManipulator()
+    assert evaluate_coefficients(assumed, MOVE).worst is None
+    with pytest.raises(ValueError, match="is not uncertain; give an UncertainPlant"):
+        peaks_between(assumed, CycloidPolynomial(2), MOVE)
+    with pytest.raises(ValueError, match="is not uncertain; give an UncertainPlant"):
+        with_samples(assumed, [[0.1]])
+
+
+def test_robustness_is_that_of_the_assumed_plant(task, evaluated):
+    both = [
+        evaluate_robustness(one, evaluated.profile, MOVE, {"frequency": 0.1}, samples=1)
+        for one in (task, on_assumed(task))
+    ]
+    assert both[0].sweeps[0].insensitivity == both[1].sweeps[0].insensitivity
+    assert both[0].cycloid == both[1].cycloid
+
+
+# -- files --
+
+
+def test_a_saved_evaluation_loads_equal(evaluated, tmp_path):
+    evaluated.save(tmp_path / "plan.json")
+    loaded = Plan.load(tmp_path / "plan.json")
+    assert loaded == evaluated
+    assert hash(loaded.task.plant) == hash(evaluated.task.plant)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ('"frequency": 0.1', '"frequenzy": 0.1', "no parameter 'frequenzy'; did you mean 'freq"),
+        ('"frequency": 0.1', '"frequency": 2.0', "makes the frequency negative"),
+        (
+            '"frequency": 0.1',
+            '"frequency": "a"',
+            "uncertain.ranges is .*'a'.*; give a number in every entry",
+        ),
+        ('"samples"', '"sample"', "'samples' is missing"),
+        ("-0.05", "-0.06", r"error of beta1 in a sample is -0.06; give one within \+-0.05"),
+    ],
+)
+def test_a_damaged_file_is_refused_in_a_line(evaluated, tmp_path, old, new, complaint):
+    path = tmp_path / "plan.json"
+    evaluated.save(path)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    with pytest.raises(FileFormatError, match=complaint) as found:
+        Plan.load(path)
+    assert "\n" not in str(found.value)
+
+
+# -- bad input --
+
+
+@pytest.mark.parametrize(
+    ("ranges", "samples", "complaint"),
+    [
+        ({}, (), "no error is named"),
+        ({"frequenzy": 0.1}, (), "no parameter 'frequenzy'; did you mean 'frequency'"),
+        ({"frequency": 1.2}, (), "error of 120 % makes the frequency negative"),
+        ({"omega": -0.1}, (), "range of omega is -0.1; give a positive number"),
+        (dict.fromkeys(["alpha1", "alpha2", "c", "beta1", "omega"], 0.1), (), "give at most 4"),
+        ({"omega": 0.1}, ((0.1, 0.1),), "has 2 errors; give 1"),
+        ({"omega": 0.1}, ((0.2,),), r"error of omega in a sample is 0.2; give one within \+-0.1"),
+        ({"omega": 0.1}, ((float("nan"),),), "is nan; give a finite number"),
+    ],
+)
+def test_what_is_wrong_is_said_in_a_line(ranges, samples, complaint):
+    with pytest.raises(ValueError, match=complaint) as found:
+        UncertainPlant(SingleLinkManipulator(), ranges, samples)
+    assert "\n" not in str(found.value)
+
+
+def test_only_a_plant_can_be_uncertain():
+    with pytest.raises(ValueError, match="assumed plant is 'single-link'; give a Plant, such as"):
+        UncertainPlant("single-link", {"frequency": 0.1})
+
+
+def test_it_is_drawn_as_the_assumed_plant(task):
+    bodies = [p.structure(0.3, [0.01] * p.tips) for p in (task.plant, task.plant.assumed)]
+    assert len(bodies[0]) == len(bodies[1])
+    for one, other in zip(*bodies, strict=True):
+        np.testing.assert_array_equal(one.points, other.points)
+
+
+def test_an_uncertain_plant_is_not_made_uncertain_again(task):
+    with pytest.raises(ValueError, match="uncertain already; give the assumed one"):
+        UncertainPlant(task.plant, {"frequency": 0.1})

@@ -1,0 +1,75 @@
+"""`quietarm problems`: the list, and the exact fronts in files."""
+
+import pytest
+
+from metaheuristics import PROBLEMS, problem_of
+from metaheuristics.problems import catalogue
+from ocp import Front
+
+SMALL = "single-link-30deg-0.8s-2-terms"
+THIRD = "single-link-30deg-0.8s-torque"
+
+
+def test_problems_are_listed(call):
+    code, out, err = call("problems")
+    assert (code, err) == (0, "")
+    assert [line.partition(":")[0] for line in out.splitlines()] == list(PROBLEMS)
+    assert f"{SMALL}: 2 coefficients up to 0.2\n" in out
+    assert "-limits: 6 coefficients up to 0.5, limits torque 0.3, acceleration 75\n" in out
+    assert f"{THIRD}: 6 coefficients up to 0.2, third objective peak torque\n" in out
+
+
+def test_exact_fronts_are_written_to_a_folder(call, folder):
+    code, out, err = call(f"problems {SMALL} {THIRD} --output fronts --quiet")
+    assert (code, err) == (0, "")
+    assert out.splitlines()[-1] == "wrote 7 fronts to fronts"
+    (front,) = problem_of(SMALL).fronts()
+    assert Front.load(folder / "fronts" / f"{SMALL}.json") == front
+    names = problem_of(THIRD).tasks()
+    loaded = tuple(Front.load(folder / "fronts" / f"{name}.json") for name in names)
+    assert loaded == problem_of(THIRD).fronts()
+
+
+def front_of(name):
+    return problem_of(name).fronts()[0]
+
+
+def test_exact_fronts_are_found_again(call, folder, monkeypatch):
+    monkeypatch.setattr(catalogue, "exact_front", lambda *task: front_of(SMALL))
+    code, out, err = call(f"problems {SMALL} --again --output fronts")
+    assert (code, err) == (0, f"[1/1] {SMALL}\n")
+    assert out.endswith("wrote 1 fronts to fronts\n")
+    assert Front.load(folder / "fronts" / f"{SMALL}.json") == front_of(SMALL)
+
+
+def test_an_interruption_keeps_the_fronts_that_are_whole(call, folder, monkeypatch):
+    answers = iter([front_of(SMALL)])
+
+    def stopped(*task):
+        try:
+            return next(answers)
+        except StopIteration:
+            raise KeyboardInterrupt from None
+
+    monkeypatch.setattr(catalogue, "exact_front", stopped)
+    code, _, err = call(f"problems {SMALL} {THIRD} --again --output fronts --quiet")
+    assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
+    assert [path.name for path in (folder / "fronts").iterdir()] == [f"{SMALL}.json"]
+    code, _, err = call(f"problems {SMALL} --again --output others --quiet")
+    assert (code, err.strip()) == (1, "quietarm: interrupted; nothing was written")
+    assert not (folder / "others").exists()
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("problems single-link", "unknown problem 'single-link'; did you mean 'single-link-30deg"),
+        ("problems --again", "--again finds fronts for a folder; give --output as well"),
+        (f"problems {SMALL} --output -", "this is for a folder, not for standard output"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(call, folder, line, words):
+    code, out, err = call(line)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert words in err
+    assert list(folder.iterdir()) == []

@@ -1,0 +1,68 @@
+"""What makes a problem hard: on a problem with one minimum, and by hand."""
+
+import numpy as np
+import pytest
+from small_contest import TINY, documents
+
+from ocp import evaluate_coefficients, plan_move
+from studies.contest import landscape
+from studies.contest.landscape import LEVEL, _correlation, _different, landscape_of
+
+
+@pytest.fixture(scope="module")
+def found():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(landscape, "STARTS", 6)
+        patch.setattr(landscape, "BOXES", (0.1, 2.0))
+        return landscape_of(TINY)
+
+
+def test_two_terms_have_a_minimum_that_most_starts_reach(found):
+    assert found.starts == 6
+    assert 0.5 <= found.best <= found.solved <= 1
+    assert found.minima >= 1
+    assert -1 <= found.candidates <= 1
+
+
+def test_the_box_is_held_against_a_plan_of_its_own(found):
+    boxes = dict(found.boxes)
+    own = plan_move(TINY.task, TINY.profile, residual_limit=LEVEL, bound=TINY.bound)
+    wide = plan_move(TINY.task, TINY.profile, residual_limit=LEVEL, bound=2 * TINY.bound)
+    assert boxes[2.0] == pytest.approx(wide.energy / own.energy, rel=1e-3)
+    assert boxes[2.0] <= 1 + 1e-4
+    assert boxes[0.1] is None  # no motion with so small coefficients arrives within 1 mm
+    steps = np.linspace(-0.1 * TINY.bound, 0.1 * TINY.bound, 3)
+    residuals = [evaluate_coefficients(TINY.task, (a, b)).residual for a in steps for b in steps]
+    assert min(residuals) > LEVEL
+
+
+def test_minima_and_their_correlation_by_hand():
+    energies = np.array([1.0, 1.0005, 1.1, 2.0])
+    assert _different(energies) == 3
+    assert _different(energies[:2]) == 1
+    assert _correlation(energies[:2], np.zeros((2, 2))) is None
+    steps = np.column_stack([energies - 1, np.zeros(4)])
+    assert _correlation(energies, steps) == pytest.approx(1.0)
+    assert _correlation(np.array([1.0, 2.0, 3.0]), np.array([[0], [2], [1]])) == pytest.approx(0.5)
+
+
+def test_explain_adds_the_landscape_once(call, held, tmp_path, monkeypatch):
+    import shutil
+
+    from small_contest import LINE
+
+    from studies.contest import files, page
+
+    monkeypatch.setattr(landscape, "STARTS", 3)
+    monkeypatch.setattr(landscape, "BOXES", (2.0,))
+    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
+    for name in ("anytime_figure", "attainment_figure"):
+        monkeypatch.setattr(page, name, lambda *given: None)
+    monkeypatch.setattr(page, "picture", lambda *given: "")
+    copy = shutil.copytree(held, tmp_path / "held")
+    assert call(f"{LINE} --explain --output {copy}")[0] == 0
+    written = (copy / "landscape/tiny.json").read_bytes()
+    assert "Of 3 random starts in the box" in (copy / "contest.html").read_text()
+    assert call(f"{LINE} --explain --output {copy}")[0] == 0
+    assert (copy / "landscape/tiny.json").read_bytes() == written
+    assert len(documents(copy)) == 4
