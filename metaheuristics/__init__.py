@@ -21,8 +21,6 @@ from metaheuristics.algorithms.velocity import (
 )
 from metaheuristics.ensemble import LostSeedsError, Spread, search_many
 from metaheuristics.objective.population import PopulationObjective, PopulationValues
-from metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
-from metaheuristics.problems.function import MoveFunction
 from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.search import search
 
@@ -30,6 +28,8 @@ if TYPE_CHECKING:
     from metaheuristics.algorithms.nsga2 import PaperNSGA2
     from metaheuristics.algorithms.vepso import VEPSO
     from metaheuristics.objective.problem import MoveProblem
+    from metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
+    from metaheuristics.problems.function import MoveFunction
     from metaheuristics.problems.pymoo_problem import ExactProblem
 
 __all__ = [
@@ -57,17 +57,21 @@ __all__ = [
     "search_many",
 ]
 
-_OF_PYMOO = {
+_LATER = {
+    "PROBLEMS": "metaheuristics.problems.catalogue",
     "ExactProblem": "metaheuristics.problems.pymoo_problem",
+    "MoveFunction": "metaheuristics.problems.function",
     "MoveProblem": "metaheuristics.objective.problem",
+    "NamedProblem": "metaheuristics.problems.catalogue",
     "PaperNSGA2": "metaheuristics.algorithms.nsga2",
     "VEPSO": "metaheuristics.algorithms.vepso",
+    "problem_of": "metaheuristics.problems.catalogue",
 }
-"""What derives from pymoo's classes, which take longer to load than all of quietarm."""
+"""What takes long to load: pymoo's classes, and the catalogue with its plants."""
 
 
 def __getattr__(name: str) -> object:
-    """Import what derives from pymoo's classes when it is first asked for."""
-    if name not in _OF_PYMOO:
+    """Import what takes long to load when it is first asked for."""
+    if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_OF_PYMOO[name]), name)
+    return getattr(import_module(_LATER[name]), name)

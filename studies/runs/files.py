@@ -8,8 +8,6 @@ from pathlib import Path
 
 from rich.console import Console
 
-from metaheuristics.sharing.workers import Workers
-
 
 def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
     """Make sure that no two options name one file; ValueError names them."""
@@ -24,6 +22,8 @@ def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
 
 def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
     """Warn where more workers start than there are cores; no more start than pieces of work."""
+    from metaheuristics.sharing.workers import Workers  # a plan by the gradient needs no workers
+
     cores, workers = os.cpu_count() or 1, Workers(workers).local(pieces)
     if workers > cores:
         console.print(

@@ -47,7 +47,9 @@ def test_what_is_no_profile_is_told(ask, profile):
 
 
 @pytest.mark.parametrize(
-    "given", ["abc", None, {1: 2}, [1j], (0.1 for _ in range(2)), [[1], [1, 2]]], ids=str
+    "given",
+    ["abc", None, {1: 2}, [1j], (0.1 for _ in range(2)), [[1], [1, 2]]],
+    ids=["word", "nothing", "mapping", "complex", "generator", "ragged"],
 )
 @pytest.mark.parametrize("profile", [None, CycloidPolynomial(2)], ids=["none", "two terms"])
 def test_coefficients_that_are_no_numbers_are_told(given, profile):
