@@ -99,8 +99,9 @@ def draw(of_moves: dict[str, list[Row]], path: Path) -> None:
             ours = row in plans
             marker, colour = ("o", "#0072b2") if ours else ("s", "#d55e00")
             ax.plot(row.energy, row.width, marker, color=colour)
+            place = (6, {0: -12, 1: -6, 2: 7}.get(i, 4))  # labels of near points stay apart
             ax.annotate(
-                row.name, (row.energy, row.width), xytext=(6, -12 if i == 1 else 4), textcoords="offset points",
+                row.name, (row.energy, row.width), xytext=place, textcoords="offset points",
                 fontsize=8,
             )  # fmt: skip
         ax.set_title(title, loc="left", fontsize=10)
