@@ -21,7 +21,7 @@ from studies.cli.options import FOLDER, quiet_option
 )
 @quiet_option
 def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
-    """Recompute the paper's Tables 2, 3, 5 and 6 beside the printed figures, and its claims.
+    """Recompute the paper's Tables 2, 3, 5 and 6 and its claims; compare every system.
 
     \b
     Example:
