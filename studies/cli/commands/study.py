@@ -83,12 +83,13 @@ def study(
     from studies.display.words import counted
     from studies.paper.case import Case
     from studies.paper.printed import CONDITIONS
-    from studies.runs.files import warn_of_workers
+    from studies.runs.files import refuse_same_file, warn_of_workers
     from studies.study.files import front_files, page_file
     from studies.study.findings import case_findings, findings
     from studies.study.pieces import StudySettings
     from studies.study.work import amount_of_work, run_study
 
+    refuse_same_file([("--output", output), ("--fronts", fronts)])
     names = ("terms", "points", "runs", "seed", "workers", "scheduler", "population", "generations")
     settings = StudySettings(
         **{name: rest.pop(name) for name in names},

@@ -101,3 +101,8 @@ def test_a_reproduction_finds_a_bad_folder_before_its_solves(
 def test_a_link_that_goes_in_a_circle_is_told(refused, folder, line):
     (folder / "round").symlink_to("round")
     assert "round cannot be read: too many levels of symbolic links" in refused(f"{line} round")
+
+
+def test_the_page_of_a_study_and_its_fronts_are_in_two_places(refused):
+    told = refused(f"study {MOVE} --output study.html --fronts ./study.html")
+    assert "--output and --fronts are both study.html" in told

@@ -1,0 +1,59 @@
+"""Fronts of a plant that may be wrong, by searches and by the gradient: F1 is the worst sample."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import pytest
+
+from metaheuristics import search
+from metaheuristics.objective.claims import check_figures
+from models import SingleLinkManipulator
+from ocp import Front, PointToPoint, UncertainPlant, epsilon_front, polish_front, resimulate
+
+
+@pytest.fixture(scope="module")
+def task():
+    plant = UncertainPlant(SingleLinkManipulator(), {"frequency": 0.1})
+    return PointToPoint(plant, target=pi / 6, duration=0.8)
+
+
+@pytest.fixture(scope="module")
+def searched(task):
+    return search(task, "nsga2", bound=0.2, population=20, generations=4)
+
+
+@pytest.fixture(scope="module")
+def exact(task):
+    return epsilon_front(task, points=3, starts=1)
+
+
+@pytest.mark.parametrize("of", ["searched", "exact"])
+def test_residuals_are_those_of_the_worst_sample_by_cvodes(of, task, request):
+    front = request.getfixturevalue(of)
+    for point in (front.stillest(), front.cheapest()):
+        alone = [
+            resimulate(replace(task, plant=part), front.profile, point.coefficients)
+            for part in task.plant.parts
+        ]
+        assert point.residual == pytest.approx(
+            max(one.residual for one in alone), rel=1e-3, abs=1e-8
+        )
+        assert point.energy == pytest.approx(alone[0].energy, rel=1e-3)
+
+
+@pytest.mark.parametrize("of", ["searched", "exact"])
+def test_fronts_save_load_and_are_believed(of, request, tmp_path):
+    front = request.getfixturevalue(of)
+    front.save(tmp_path / "front.json")
+    loaded = Front.load(tmp_path / "front.json")
+    assert loaded == front
+    check_figures(loaded, "front.json")
+
+
+def test_the_gradient_improves_what_a_search_found(searched):
+    few = replace(searched, points=searched.points[:2])
+    polished = polish_front(few)
+    assert all(gain.after < gain.before for gain in polished.gains)
+    assert polished.front.task == searched.task
