@@ -51,8 +51,9 @@ def reached(spread: Spread) -> str:
 
 def _front_lines(front: Front) -> list[str]:
     state = "" if front.complete else " (interrupted: what was found until then)"
+    seed = "" if front.seed is None else f", seed {front.seed}"
     lines = [
-        f"{front.method}, seed {front.seed}: {counted(len(front.points), 'point')}, "
+        f"{front.method}{seed}: {counted(len(front.points), 'point')}, "
         f"{counted(front.evaluations, 'candidate')} in {front.seconds:.1f} s, "
         f"{front.failed} failed{state}"
     ]

@@ -49,7 +49,9 @@ def run_problems(names: Sequence[str], again: bool, output: Path | None, quiet: 
     together = None
     if output is not None and fronts:
         writes = {f"{name}.json": front.save for name, front in fronts.items()}
-        together = Together("fronts", output, inside(output, writes))
+        together = Together(
+            "front" if len(writes) == 1 else "fronts", output, inside(output, writes)
+        )
     finish(
         [], lambda console: print_lines(console, *map(_line, chosen)), trouble=trouble,
         together=together, quiet=quiet,

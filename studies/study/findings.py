@@ -63,9 +63,9 @@ def case_findings(found: CaseStudy) -> list[str]:
 
 
 def _searches_of(found: CaseStudy) -> list[Method]:
-    """The metaheuristics that found something, in the order of the work."""
+    """The metaheuristics that found something, and others' fronts, in the order of the work."""
     methods = [group.method for group in found.comparison.groups if not group.method.polished]
-    return [method for method in methods if method.kind is Kind.METAHEURISTIC]
+    return [method for method in methods if method.kind is not Kind.GRADIENT]
 
 
 def _best(comparison: Comparison) -> str:

@@ -55,6 +55,8 @@ class StudySettings:
         The metaheuristics.
     settings : mapping, optional
         What else each is set to, by its name.
+    fronts : tuple of Front
+        Fronts that were found before, each compared with those of its task.
 
     Raises
     ------
@@ -72,6 +74,7 @@ class StudySettings:
     generations: int | None = None
     methods: tuple[str, ...] = tuple(method.name for method in PAPERS)
     settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    fronts: tuple[Front, ...] = ()
 
     def __post_init__(self) -> None:
         CycloidPolynomial(self.terms)

@@ -113,6 +113,13 @@ def run_study(
     """
     began = time.perf_counter()
     settings = StudySettings() if settings is None else settings
+    for front in settings.fronts:
+        if all(front.task != case.task for case in cases):
+            where = title_of(front.task)
+            raise ValueError(
+                f"the front by {front.method} is of another task, {where}; leave it out, or give "
+                "the task that it is of"
+            )
     pieces = [piece for case in cases for piece in pieces_of(case, settings)]
     where = Workers(settings.workers, settings.scheduler)
     done = run_pieces(pieces, Listener(begin), workers=where, note=QuietarmError)
@@ -138,6 +145,7 @@ def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStu
     failures = _what_is_missing(pieces, done)
     if not fronts and done.stopped:
         return []
+    fronts += [front for front in settings.fronts if front.task == case.task]
     if len(fronts) < 2 and not done.stopped:
         where = title_of(case.task)
         why = "; ".join([*failures, *_floor_words(case, done)])

@@ -14,6 +14,7 @@ from metaheuristics import PRESETS
 from studies.cli.arguments import task_of
 from studies.cli.options import (
     FOLDER,
+    INPUT,
     OUTPUT,
     Named,
     method_settings_option,
@@ -57,6 +58,10 @@ def _not_required(command: click.Command) -> click.Command:
 @click.option(
     "--output", type=OUTPUT, default="study.html", show_default=True, help="Write the report here."
 )
+@click.option(
+    "--front", "given", type=INPUT, multiple=True,
+    help="Compare with this front as well, as quietarm import writes one; may be repeated.",
+)  # fmt: skip
 @click.option("--fronts", type=FOLDER, help="Write every front to this folder.")
 @quiet_option
 @click.pass_context
@@ -84,6 +89,7 @@ def study(
     from studies.paper.case import Case
     from studies.paper.printed import CONDITIONS
     from studies.runs.files import refuse_same_file, warn_of_workers
+    from studies.runs.loading import load_front
     from studies.study.files import front_files, page_file
     from studies.study.findings import case_findings, findings
     from studies.study.pieces import StudySettings
@@ -95,6 +101,7 @@ def study(
         **{name: rest.pop(name) for name in names},
         methods=tuple(dict.fromkeys(rest["methods"])),
         settings=settings_by_method(rest.pop("setting"), rest.pop("methods")),
+        fronts=tuple(map(load_front, rest.pop("given"))),
     )
     bound = rest.pop("bound")
     if rest["plant"] is None and rest["plant_file"] is None:

@@ -10,8 +10,15 @@ from small_study import FLOOR as FLOOR_FOUND
 import metaheuristics.ensemble as ensemble
 import studies.study.pieces as study_pieces
 import studies.study.work as study_module
+from metaheuristics import search
 from metaheuristics.sharing.pieces import INTERRUPTED, Done
-from ocp import InfeasibleTaskError, PointToPoint, QuietarmError, SolverFailedError
+from ocp import (
+    CycloidPolynomial,
+    InfeasibleTaskError,
+    PointToPoint,
+    QuietarmError,
+    SolverFailedError,
+)
 from studies.comparison.measures import compare_fronts
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
@@ -208,3 +215,18 @@ def test_epsilon_has_a_point_at_every_residual_that_energies_are_compared_at(sma
         front = next(r.front for r in found.comparison.runs if r.front.method == "epsilon")
         for level in found.comparison.levels:
             assert level * (1 - 3e-4) < front.cheapest(level).residual <= level
+
+
+def test_a_front_from_elsewhere_is_compared_with_those_of_its_task():
+    case, settings = CASES[0], replace(QUICK, runs=1, methods=("gde3",))
+    before = search(case.task, "rvea", bound=0.2, population=16, generations=4,
+                    profile=CycloidPolynomial(2))  # fmt: skip
+    mine = replace(before, method="mine", seed=None)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study_pieces, "energy_floor", lambda task: FLOOR_FOUND)
+        found = run_study(CASES[:1], replace(settings, fronts=(mine,)))
+    methods = [run.front.method for run in found.cases[0].comparison.runs]
+    assert methods == ["epsilon", "weighted", "gde3", "gde3, polished", "mine"]
+    assert any("mine" in line for line in case_findings(found.cases[0]))
+    with pytest.raises(ValueError, match="the front by mine is of another task, single-link"):
+        run_study(CASES[1:], replace(settings, fronts=(mine,)))

@@ -52,6 +52,7 @@ def test_a_table_with_right_claims_is_a_front(call, folder):
     assert (front.method, front.evaluations) == ("swarm", len(X))
     assert dict(front.settings) == {"imported": "swarm.csv", "bound": 0.2}
     lines = out.splitlines()
+    assert lines[0].startswith(f"swarm: {len(X)} points, {len(X)} candidates in ")
     assert f"the file's residual is right for all {len(X)} motions" in lines
     assert f"the file's energy is right for all {len(X)} motions" in lines
     assert lines[-3:] == ["wrote f.json", "wrote f.csv", "wrote f.svg"]

@@ -38,7 +38,7 @@ def test_exact_fronts_are_found_again(call, folder, monkeypatch):
     monkeypatch.setattr(catalogue, "exact_front", lambda *task: front_of(SMALL))
     code, out, err = call(f"problems {SMALL} --again --output fronts")
     assert (code, err) == (0, f"[1/1] {SMALL}\n")
-    assert out.endswith("wrote 1 fronts to fronts\n")
+    assert out.endswith("wrote 1 front to fronts\n")
     assert Front.load(folder / "fronts" / f"{SMALL}.json") == front_of(SMALL)
 
 
