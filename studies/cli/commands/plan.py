@@ -89,7 +89,7 @@ def plan(
     refuse_idle(context, method, {"starts": [IPOPT]})
     refuse_idle(context, method, {"setting": SEARCHES}, "a metaheuristic")
     if method == IPOPT and polish:
-        raise ValueError("--polish is for a metaheuristic's point; give a --method, as nsga2")
+        raise ValueError("--polish is for a metaheuristic's point; give --method nsga2 or another")
     motions = profile_of(profile, task, terms)
     if method == IPOPT:
         with working("solving", Console(stderr=True), quiet=quiet):

@@ -12,7 +12,7 @@ BAD = [  # the line, the value that is named, the remedy
         "did you mean 'arm-on-flexible-link'?",
     ),
     ("plan arm --target 1 --duration 1", "'arm'", "did you mean 'arm-on-flexible-link'?"),
-    ("plan qqq --target 1 --duration 1", "qqq", "arm-on-flexible-link, dual-link, single-link"),
+    ("plan qqq --target 1 --duration 1", "'qqq'", "your own by its --plant-file"),
     (f"evaluate singel-link --target 1 --duration 1 {TWO_TERMS}", "singel-link", "single-link"),
     ("plan single-link --target 30degrees --duration 1", "30degrees", "30deg, pi/6"),
     ("plan single-link --target pi/0 --duration 1", "pi/0", "30deg, pi/6"),
