@@ -237,7 +237,7 @@ def test_runs_cannot_share_a_checkpoint(tmp_path, name):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_an_algorithm_of_your_own_is_refused_with_a_remedy(workers):
-    words = "method is SMSEMOA; give 'vepso' or 'nsga2', or call `search` once a seed"
+    words = "method is SMSEMOA; give one of vepso, nsga2, .*, or call `search` once a seed"
     with pytest.raises(ValueError, match=words):
         search_many(TASK, SMSEMOA(pop_size=8), 2, workers=workers, bound=0.2, generations=2)
 

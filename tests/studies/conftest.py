@@ -132,7 +132,7 @@ def no_place(monkeypatch):
     def fail(*given, **settings):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
 
-    monkeypatch.setattr("tempfile.mkdtemp", fail)
+    monkeypatch.setattr("tempfile.TemporaryFile", fail)
 
 
 @pytest.fixture(scope="session")

@@ -22,7 +22,6 @@ HUGE = "100000000000"
         (f"{FRONT} epsilon --starts {HUGE}", "give at most 10000: each is a solve"),
         (f"{FRONT} epsilon --points {HUGE}", "give at most 10000: 50 show a front"),
         (f"{FRONT} weighted --points {HUGE}", "give at most 10000: 50 show a front"),
-        (f"{FRONT} epsilon --workers {HUGE}", "give at most 1000: each is a process"),
         (f"{FRONT} nsga2 --runs 2 --workers {HUGE}", "give at most 1000: each is a process"),
         (f"{FRONT} nsga2 --runs {HUGE}", "give at most 10000: the fronts of more"),
         (f"{FRONT} nsga2 --population {HUGE}", "give at most 100000: 100000 take 1.6 GB"),
