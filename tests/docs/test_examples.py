@@ -113,7 +113,7 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 6
+    assert sum(len(blocks(page, "python")) for page in others) == 7
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python"}
 

@@ -179,7 +179,7 @@ def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call)
     assert (asked["task"].start, asked["task"].limits) == (0.0, {})
     assert asked["task"].residual_window == 1.0
     assert asked["profile"].terms == 6
-    assert asked["settings"]["residual_limit"] == 0.0
+    assert asked["settings"]["residual_limit"] is None  # which is at rest
     assert asked["settings"]["bound"] is None
 
 
