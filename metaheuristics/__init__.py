@@ -19,18 +19,18 @@ from metaheuristics.algorithms.velocity import (
     PAPER_GROUP,
     VelocityRule,
 )
-from metaheuristics.ensemble import LostSeedsError, Spread, search_many
-from metaheuristics.objective.population import PopulationObjective, PopulationValues
-from metaheuristics.runs.progress import SearchProgress
 from metaheuristics.search import search
 
 if TYPE_CHECKING:
     from metaheuristics.algorithms.nsga2 import PaperNSGA2
     from metaheuristics.algorithms.vepso import VEPSO
+    from metaheuristics.ensemble import LostSeedsError, Spread, search_many
+    from metaheuristics.objective.population import PopulationObjective, PopulationValues
     from metaheuristics.objective.problem import MoveProblem
     from metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
     from metaheuristics.problems.function import MoveFunction
     from metaheuristics.problems.pymoo_problem import ExactProblem
+    from metaheuristics.runs.progress import SearchProgress
 
 __all__ = [
     "CONSTRICTION",
@@ -58,20 +58,26 @@ __all__ = [
 ]
 
 _LATER = {
-    "PROBLEMS": "metaheuristics.problems.catalogue",
-    "ExactProblem": "metaheuristics.problems.pymoo_problem",
-    "MoveFunction": "metaheuristics.problems.function",
-    "MoveProblem": "metaheuristics.objective.problem",
-    "NamedProblem": "metaheuristics.problems.catalogue",
-    "PaperNSGA2": "metaheuristics.algorithms.nsga2",
-    "VEPSO": "metaheuristics.algorithms.vepso",
-    "problem_of": "metaheuristics.problems.catalogue",
+    "PROBLEMS": "problems.catalogue",
+    "VEPSO": "algorithms.vepso",
+    "ExactProblem": "problems.pymoo_problem",
+    "LostSeedsError": "ensemble",
+    "MoveFunction": "problems.function",
+    "MoveProblem": "objective.problem",
+    "NamedProblem": "problems.catalogue",
+    "PaperNSGA2": "algorithms.nsga2",
+    "PopulationObjective": "objective.population",
+    "PopulationValues": "objective.population",
+    "SearchProgress": "runs.progress",
+    "Spread": "ensemble",
+    "problem_of": "problems.catalogue",
+    "search_many": "ensemble",
 }
-"""What takes long to load: pymoo's classes, and the catalogue with its plants."""
+"""What takes long to load, so that the names of the methods are there at once."""
 
 
 def __getattr__(name: str) -> object:
     """Import what takes long to load when it is first asked for."""
     if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_LATER[name]), name)
+    return getattr(import_module(f"metaheuristics.{_LATER[name]}"), name)
