@@ -46,6 +46,11 @@ class _Quantity:
         return Column(self.heading, self.form, self.key)
 
 
+def seconds_in_words(seconds: float) -> str:
+    """Two digits, and no power of ten that would widen the column."""
+    return f"{seconds:.0f}" if seconds >= 10 else f"{seconds:.2g}"
+
+
 def _three_digits(value: float) -> str:
     """Three digits at least, never a power of ten: the floor's jolts are as large as 1e5."""
     return f"{value:.3g}" if value < 1000 else f"{value:.0f}"
@@ -74,7 +79,7 @@ _QUANTITIES = (
         "peak accel. [1/s^2]", "peak_acceleration_rad_s2", _three_digits,
         lambda found: found.motion and found.motion.peak_acceleration,
     ),
-    _Quantity("time [s]", "seconds", "{:.2g}".format, lambda found: found.seconds),
+    _Quantity("time [s]", "seconds", seconds_in_words, lambda found: found.seconds),
 )  # fmt: skip
 
 

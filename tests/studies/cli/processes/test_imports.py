@@ -28,6 +28,12 @@ def loaded(line, folder):
     return set(ran.stderr.split())
 
 
+def of_gradient(found):
+    """Of the metaheuristics only the names of the methods, which the options offer."""
+    rooms = {name.split(".")[1] for name in found if name.startswith("metaheuristics.")}
+    return found.isdisjoint(HEAVY) and rooms <= {"algorithms", "runs", "search"}
+
+
 @pytest.mark.parametrize("line", ["--help", "--version"])
 def test_help_and_version_load_no_command(tmp_path, line):
     found = loaded(line, tmp_path)
@@ -51,11 +57,7 @@ def test_the_help_of_a_command_loads_no_other(tmp_path):
     ],
 )
 def test_the_gradient_loads_no_metaheuristic_and_no_picture(tmp_path, line):
-    found = loaded(line, tmp_path)
-    assert found.isdisjoint(HEAVY)
-    rooms = {name.split(".")[1] for name in found if name.startswith("metaheuristics.")}
-    # The names of the methods, which the options offer; nothing that evaluates or searches.
-    assert rooms <= {"algorithms", "runs", "search"}
+    assert of_gradient(loaded(line, tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -76,4 +78,4 @@ def test_what_is_asked_for_is_loaded(tmp_path, line, needed):
 
 @pytest.mark.parametrize("line", ["front", "polish", "compare", "study", "reproduce"])
 def test_help_of_what_searches_and_draws_waits_for_neither(tmp_path, line):
-    assert loaded(f"{line} --help", tmp_path).isdisjoint({*HEAVY, "metaheuristics"})
+    assert of_gradient(loaded(f"{line} --help", tmp_path))

@@ -11,10 +11,18 @@ from studies.paper.printed import ARM_HALF, DUAL_LINK_HALF, SINGLE_LINK_SIXTH
 from studies.reproduction.side_by_side.table import (
     all_systems,
     print_systems,
+    seconds_in_words,
     systems_in_markdown,
     systems_table,
     why_not,
 )
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(0.012, "0.012"), (3.456, "3.5"), (14.2, "14"), (123.4, "123")]
+)
+def test_seconds_take_little_room(seconds, words):
+    assert seconds_in_words(seconds) == words
 
 
 @pytest.mark.parametrize("width", [80, 120])
@@ -28,7 +36,9 @@ def test_every_table_is_whole_on_the_screen(reproduction, width):
         below = text.split(title)[1].split("Side by side")[0]
         for found in systems:  # a line each, in one piece
             (line,) = [line for line in below.splitlines() if line.startswith(f"  {found.name}  ")]
-            assert line.split()[-1] == ("-" if found.seconds is None else f"{found.seconds:.2g}")
+            assert line.split()[-1] == (
+                "-" if found.seconds is None else seconds_in_words(found.seconds)
+            )
             if found.motion is not None:
                 assert f" {found.energy:.4f} " in line
                 assert f" {found.motion.residual * 1e3:.2f} " in line
