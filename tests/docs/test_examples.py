@@ -124,6 +124,7 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
     "weighted": ["--points", "5"],
     "study": [*SEARCH, "--runs", "1", "--points", "4"],
     "contest": ["--runs", "1", "--evaluations", "150"],
+    "floor": ["--starts", "1", "--tolerance", "0.05"],
 }
 
 
