@@ -47,8 +47,10 @@ class _Quantity:
 
 
 def seconds_in_words(seconds: float) -> str:
-    """Two digits, and no power of ten that would widen the column."""
-    return f"{seconds:.0f}" if seconds >= 10 else f"{seconds:.2g}"
+    """Two digits, but no more than five characters: a faster machine must not widen the column."""
+    if seconds >= 10:
+        return f"{seconds:.0f}"
+    return f"{seconds:.2g}" if seconds >= 0.01 else f"{seconds:.3f}"
 
 
 def _three_digits(value: float) -> str:
