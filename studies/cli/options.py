@@ -27,7 +27,7 @@ from studies.cli.quantities import (
 )
 from studies.display.pictures import check_figure
 from studies.display.saving import STDOUT
-from studies.profiles import FAMILIES, POLYNOMIAL, PROFILES
+from studies.registry.profiles import FAMILIES, POLYNOMIAL, PROFILES
 
 _BARE = "quietarm.bare_angles"
 F = TypeVar("F", bound=Callable[..., Any])

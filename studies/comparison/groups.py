@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 from ocp import Front
 from ocp.answers.encoding import plain
-from studies.methods import method_of
 from studies.paper.tasks import task_difference
+from studies.registry.methods import method_of
 
 
 def check_fronts(

@@ -13,9 +13,9 @@ from ocp.answers.saved import Saved
 from ocp.base.names import nearest
 from ocp.base.ranges import Positive
 from studies.comparison.staircase import filled
-from studies.methods import LEVELS
 from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
+from studies.registry.methods import LEVELS
 
 _POINTS = 50
 _FILL = 10_000

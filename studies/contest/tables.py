@@ -10,7 +10,7 @@ from studies.contest.measures import TARGETS, Arena, Field, quartiles, spread
 from studies.contest.statistics import ALPHA, Pair, Ranking
 from studies.display.tables import Cell, Column, Table
 from studies.display.words import millimetres
-from studies.methods import LEVELS, method_of
+from studies.registry.methods import LEVELS, method_of
 
 _PERCENT = "{:.3g} %".format
 

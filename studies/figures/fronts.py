@@ -14,7 +14,7 @@ from ocp import Front
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
 from studies.figures.looks import BLUE, look
-from studies.methods import method_of
+from studies.registry.methods import method_of
 
 _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""

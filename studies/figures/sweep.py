@@ -12,7 +12,7 @@ from ocp.front.checking import RESIDUAL_LIMIT
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
 from studies.figures.looks import BLUE, ORANGE, RED
-from studies.methods import method_of
+from studies.registry.methods import method_of
 
 
 def draw_sweep(front: Front, ax: Axes | None = None) -> Axes:
