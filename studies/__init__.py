@@ -1,10 +1,10 @@
 """The command line, and the studies behind it.
 
-Rooms, each of which may import those after it: `cli`, then `study` and `reproduction`, `runs`,
-`reports`, `figures`, `comparison`, `paper`, and last `display`, `methods` and `profiles`, the
-registries of methods and of joint profiles, and `early`, for Ctrl-C while the command is being
-loaded. All of them may import the other three packages, but for `early`, which comes before
-everything. Of use from outside is `figures`, which draws.
+Rooms, each of which may import those after it: `cli`, then `contest`, `reproduction` and `study`,
+then `runs`, `animation`, `figures`, `comparison`, `paper`, and last `display`, `registry`, which
+names methods and joint profiles, and `early`, for Ctrl-C while the command is being loaded. All of
+them may import the other three packages, but for `early`, which comes before everything. Of use
+from outside are `figures` and `animation`, which draw.
 """
 
 # ruff: noqa: E402  # what follows takes a third of a second

@@ -15,7 +15,7 @@ from metaheuristics.budget.record import Mark, Scale, Visits
 from metaheuristics.runs.settings import search_versions
 from ocp import Front, JointProfile, PointToPoint, reference_corner
 from ocp.base.checks import whole
-from ocp.base.names import nearest
+from ocp.base.names import unknown
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -65,11 +65,8 @@ def parts_of(method: str) -> tuple[str, Help]:
     if plus and part not in helps:
         raise ValueError(f"unknown method {method!r}; give {search}+{f' or {search}+'.join(helps)}")
     if search not in PRESETS:
-        hint = nearest(search, [*PRESETS, MULTISTART])
-        raise ValueError(
-            f"unknown method {method!r}; {hint}(known: {', '.join([*PRESETS, MULTISTART])}, and "
-            f"with +{' or +'.join(helps)} behind it)"
-        )
+        also = f", and with +{' or +'.join(helps)} behind it"
+        raise ValueError(unknown("method", method, [*PRESETS, MULTISTART], also))
     return search, Help(part)
 
 

@@ -19,22 +19,22 @@ from studies.early import in_the_way, ready
 BAD_INPUT, NOT_SOLVED = 2, 1
 
 COMMANDS = {
-    "plan": "Find the still move of least energy.",
-    "evaluate": "Compute the figures of given coefficients.",
-    "front": "Find the trade-off of residual and energy.",
-    "import": "Make a front of coefficients that another program found.",
-    "polish": "Improve a front by the gradient.",
-    "compare": "Compare fronts of one task.",
-    "floor": "Find the least energy over all joint motions.",
-    "robustness": "Show what plans leave when the plant is not the assumed one.",
-    "problems": "List named problems with their exact fronts.",
-    "animate": "Draw plans in motion, as a GIF or an MP4.",
-    "study": "Run every method on a task, and write one report.",
-    "contest": "Hold methods with equal evaluations against exact fronts.",
-    "reproduce": "Recompute the paper.",
+    "plan": ("moves", "Find the still move of least energy."),
+    "evaluate": ("moves", "Compute the figures of given coefficients."),
+    "front": ("fronts", "Find the trade-off of residual and energy."),
+    "import": ("fronts", "Make a front of coefficients that another program found."),
+    "polish": ("fronts", "Improve a front by the gradient."),
+    "compare": ("fronts", "Compare fronts of one task."),
+    "floor": ("moves", "Find the least energy over all joint motions."),
+    "robustness": ("moves", "Show what plans leave when the plant is not the assumed one."),
+    "problems": ("fronts", "List named problems with their exact fronts."),
+    "animate": ("moves", "Draw plans in motion, as a GIF or an MP4."),
+    "study": ("studies", "Run every method on a task, and write one report."),
+    "contest": ("studies", "Hold methods with equal evaluations against exact fronts."),
+    "reproduce": ("studies", "Recompute the paper."),
 }
-"""What each command does; `NAME` is the function `NAME` of `studies.cli.commands.NAME`, with an
-underscore behind it where NAME is a word of Python's."""
+"""The room of each command and what it does. `NAME` is the function `NAME` of
+`studies.cli.commands.ROOM.NAME`, with an underscore behind it where NAME is a word of Python's."""
 
 
 class LazyGroup(click.Group):
@@ -47,7 +47,8 @@ class LazyGroup(click.Group):
         name, command, others = super().resolve_command(ctx, args)
         if name is not None:
             own = f"{name}_" if iskeyword(name) else name
-            command = getattr(import_module(f"studies.cli.commands.{own}"), own)
+            room, _ = COMMANDS[name]
+            command = getattr(import_module(f"studies.cli.commands.{room}.{own}"), own)
         return name, command, others
 
 
@@ -61,7 +62,7 @@ def _say_version(ctx: click.Context, param: click.Parameter, wanted: bool) -> No
 
 @click.group(
     cls=LazyGroup,
-    commands=[click.Command(name, short_help=does) for name, does in COMMANDS.items()],
+    commands=[click.Command(name, short_help=does) for name, (_, does) in COMMANDS.items()],
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     no_args_is_help=True,
 )

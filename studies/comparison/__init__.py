@@ -1,4 +1,4 @@
 """Fronts of one task measured against each other, in figures and tables.
 
-May import `paper`, `methods` and `display`.
+May import `paper`, `registry` and `display`.
 """

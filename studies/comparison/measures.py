@@ -14,7 +14,7 @@ from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
 from studies.comparison.groups import check_fronts, grouped
 from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
-from studies.methods import LEVELS, Method, method_of
+from studies.registry.methods import LEVELS, Method, method_of
 
 FILL = 1000
 """About how many points a filled front has."""

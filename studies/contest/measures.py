@@ -18,7 +18,7 @@ from studies.contest.imported import Imported
 from studies.contest.landscape import Landscape
 from studies.contest.problems import Yardstick
 from studies.contest.runs import Run
-from studies.methods import LEVELS
+from studies.registry.methods import LEVELS
 
 Array = NDArray[np.float64]
 TARGETS = (1e-2, 1e-3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from metaheuristics.budget.run import MULTISTART, Help, parts_of
-from studies.methods import method_of
+from studies.registry.methods import method_of
 
 _HELPED = {Help.NONE: "", Help.POLISH: ", then polished", Help.SEEDS: " from gradient seeds"}
 _GIVEN = re.compile(r"\w[\w .,+/()=-]{0,59}")

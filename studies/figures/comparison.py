@@ -17,8 +17,8 @@ from studies.comparison.staircase import within
 from studies.display.words import title_of
 from studies.figures.axes import TITLE, axes_or_new, legend_of, logarithmic_residuals, new_figure
 from studies.figures.looks import Look, look
-from studies.methods import EPSILON, NSGA2, VEPSO, WEIGHTED
 from studies.paper.points import PaperPoint
+from studies.registry.methods import EPSILON, NSGA2, VEPSO, WEIGHTED
 
 _NUMBERS = {
     method: number

@@ -1,4 +1,4 @@
 """What the paper prints: its conditions, coefficients and energies, and how a task is named.
 
-May import `methods` and `display`.
+May import `registry` and `display`.
 """

@@ -10,8 +10,8 @@ from math import pi
 
 from models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
 from ocp import PointToPoint
-from studies.methods import NSGA2, VEPSO
 from studies.paper.case import Case
+from studies.registry.methods import NSGA2, VEPSO
 
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
 
@@ -57,7 +57,7 @@ EARLIER: dict[str, tuple[int, str]] = {
     ARM.name: (24, "Gaussians"),
 }
 """The earlier study of each plant: its reference, and what it moves the joint with, by a name of
-`studies.profiles.OTHERS`; sections 1 and 3."""
+`studies.registry.profiles.OTHERS`; sections 1 and 3."""
 
 
 @dataclass(frozen=True)

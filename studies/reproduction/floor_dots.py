@@ -10,8 +10,8 @@ from matplotlib.ticker import FixedLocator, NullLocator
 from studies.display.words import move_of
 from studies.figures.axes import axes_or_new, new_figure
 from studies.figures.looks import BLUE, GREEN, PINK, RED
-from studies.methods import NSGA2, VEPSO
 from studies.paper.printed import CONDITIONS
+from studies.registry.methods import NSGA2, VEPSO
 from studies.reproduction.floor_table import FREE, IN_BOX, PAPER, SERIES, Multiple, multiples
 from studies.reproduction.recompute import Reproduction
 

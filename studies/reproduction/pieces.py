@@ -19,7 +19,6 @@ from ocp import (
     plan_move,
 )
 from ocp.robustness.plants import FREQUENCY
-from studies.methods import Method
 from studies.paper.case import Case
 from studies.paper.printed import (
     ARM_HALF,
@@ -29,7 +28,8 @@ from studies.paper.printed import (
     ROWS,
     SINGLE_LINK_SIXTH,
 )
-from studies.profiles import OTHERS
+from studies.registry.methods import Method
+from studies.registry.profiles import OTHERS
 from studies.reproduction.side_by_side.results import (
     COMPARED_TERMS,
     FREQUENCY_ERROR,

@@ -10,7 +10,6 @@ from metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener
 from metaheuristics.sharing.running import run_pieces
 from ocp import Floor, Front, Plan, evaluate_coefficients
 from ocp.base.interrupts import note_interrupts
-from studies.methods import Method
 from studies.paper.case import Case
 from studies.paper.points import residual_level
 from studies.paper.printed import (
@@ -22,6 +21,7 @@ from studies.paper.printed import (
     ROWS,
     Row,
 )
+from studies.registry.methods import Method
 from studies.reproduction.pieces import (
     CASES,
     PAPER_SOLVES,

@@ -1,4 +1,4 @@
 """Work that takes a while: run with progress, shown, and written to files.
 
-May import `reports`, `comparison`, `paper`, `methods` and `display`.
+May import `animation`, `figures`, `comparison`, `paper`, `registry` and `display`.
 """

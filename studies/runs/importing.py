@@ -18,9 +18,9 @@ from ocp.front.evaluation import refuse_beyond_box
 from studies.display.progress import working
 from studies.display.saving import drawing, finish
 from studies.display.words import print_lines
-from studies.reports.search import print_fronts
 from studies.runs.files import refuse_same_file
 from studies.runs.foreign import Found
+from studies.runs.reports.search import print_fronts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -16,9 +16,9 @@ from studies.display.progress import count, working
 from studies.display.saving import drawing, finish, interruption
 from studies.display.tables import Column, Table
 from studies.display.words import counted, millimetres, print_lines
-from studies.reports.sweep import failure_lines
 from studies.runs.files import refuse_same_file
 from studies.runs.loading import load_front
+from studies.runs.reports.sweep import failure_lines
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,8 +12,8 @@ from ocp import Plan, evaluate_robustness
 from ocp.robustness.plants import checked_ranges
 from studies.display.progress import count
 from studies.display.saving import finish
-from studies.reports.robustness import Figured, print_robustness, robustness_files
 from studies.runs.loading import load_plans
+from studies.runs.reports.robustness import Figured, print_robustness, robustness_files
 
 DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
 """The errors where none is asked for."""

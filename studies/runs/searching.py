@@ -28,9 +28,9 @@ from ocp.base.interrupts import note_interrupts
 from ocp.plan.robust import limit_of
 from studies.display.saving import STDOUT, File, drawing, finish
 from studies.display.search_progress import search_display
-from studies.methods import Method
-from studies.reports.search import print_fronts
+from studies.registry.methods import Method
 from studies.runs.files import refuse_same_file, warn_of_workers
+from studies.runs.reports.search import print_fronts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,9 +14,9 @@ from ocp import (
 )
 from studies.display.progress import count
 from studies.display.saving import drawing, finish, interruption
-from studies.methods import Method
-from studies.reports.sweep import failure_lines, print_sweep
+from studies.registry.methods import Method
 from studies.runs.files import refuse_same_file
+from studies.runs.reports.sweep import failure_lines, print_sweep
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,7 +10,7 @@ import numpy as np
 from studies.comparison.measures import Comparison, Group
 from studies.comparison.staircase import within
 from studies.display.words import millimetres, title_of
-from studies.methods import WEIGHTED, Kind, Method
+from studies.registry.methods import WEIGHTED, Kind, Method
 from studies.study.work import CaseStudy, Study
 
 STILL_LEVEL = 1

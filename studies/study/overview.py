@@ -12,7 +12,7 @@ from studies.display.tables import Cell, Column, Table
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import axes_or_new, new_figure
 from studies.figures.comparison import looks
-from studies.methods import Method
+from studies.registry.methods import Method
 from studies.study.findings import STILL_LEVEL, at_rest, gap
 from studies.study.work import Study
 

@@ -25,8 +25,8 @@ from ocp import (
 from ocp.answers.provenance import number_of_points
 from ocp.base.checks import whole
 from studies.display.words import title_of
-from studies.methods import METHODS, PAPERS, Kind, Method, methods_of
 from studies.paper.case import Case
+from studies.registry.methods import METHODS, PAPERS, Kind, Method, methods_of
 
 FLOOR = "floor"
 

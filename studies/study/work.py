@@ -15,10 +15,10 @@ from ocp import Floor, Front, Polish, QuietarmError, SolverFailedError
 from ocp.base.interrupts import note_interrupts
 from studies.comparison.measures import Comparison, compare_fronts
 from studies.display.words import title_of
-from studies.methods import METHODS
 from studies.paper.case import Case
 from studies.paper.points import PaperPoint, paper_points
 from studies.paper.printed import CONDITIONS
+from studies.registry.methods import METHODS
 from studies.study.pieces import FLOOR, Key, StudySettings, pieces_of
 
 

@@ -27,7 +27,7 @@ from ocp import (
 )
 from studies.cli import main
 from studies.display import progress
-from studies.methods import METHODS
+from studies.registry.methods import METHODS
 from studies.reproduction import pieces, recompute
 
 

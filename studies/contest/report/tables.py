@@ -11,7 +11,7 @@ from studies.contest.names import label_of
 from studies.contest.statistics import ALPHA, Pair, Ranking
 from studies.display.tables import Cell, Column, Table
 from studies.display.words import millimetres
-from studies.methods import LEVELS
+from studies.registry.methods import LEVELS
 
 _PERCENT = "{:.3g} %".format
 

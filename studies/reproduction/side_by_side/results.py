@@ -16,10 +16,10 @@ from ocp.robustness.plants import FREQUENCY
 from ocp.simulation.piecewise import PiecewiseMotion
 from ocp.simulation.resimulation import resimulated
 from studies.display.words import millimetres
-from studies.methods import Method
 from studies.paper.case import Case
 from studies.paper.points import paper_plan, residual_level
 from studies.paper.printed import ROWS
+from studies.registry.methods import Method
 
 COMPARED_TERMS = 6
 """Terms of the polynomial: the paper's choice."""

@@ -4,8 +4,8 @@ import signal
 
 import pytest
 
-import studies.cli.commands.evaluate
-import studies.cli.commands.plan
+import studies.cli.commands.moves.evaluate
+import studies.cli.commands.moves.plan
 import studies.reproduction.recompute
 import studies.runs.searching
 from studies.display.search_progress import SearchDisplay
@@ -50,8 +50,8 @@ def no_solve(monkeypatch):
     def solve(*arguments, **settings):
         pytest.fail("a solve was begun")
 
-    monkeypatch.setattr(studies.cli.commands.plan, "plan_move", solve)
-    monkeypatch.setattr(studies.cli.commands.evaluate, "evaluate_coefficients", solve)
+    monkeypatch.setattr(studies.cli.commands.moves.plan, "plan_move", solve)
+    monkeypatch.setattr(studies.cli.commands.moves.evaluate, "evaluate_coefficients", solve)
     for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
         monkeypatch.setattr(studies.runs.searching, name, solve)
     monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", solve)

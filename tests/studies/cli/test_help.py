@@ -7,9 +7,9 @@ import sys
 import pytest
 from lines import QUIETARM
 
-import studies.cli.commands.evaluate
-import studies.cli.commands.floor
-import studies.cli.commands.plan
+import studies.cli.commands.moves.evaluate
+import studies.cli.commands.moves.floor
+import studies.cli.commands.moves.plan
 import studies.contest.imported
 import studies.contest.work
 import studies.reproduction.recompute
@@ -78,8 +78,8 @@ def test_examples_in_the_help_are_read_without_complaint(
         reached.append(settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(studies.cli.commands.plan, "plan_move", note)
-    monkeypatch.setattr(studies.cli.commands.evaluate, "evaluate_coefficients", note)
+    monkeypatch.setattr(studies.cli.commands.moves.plan, "plan_move", note)
+    monkeypatch.setattr(studies.cli.commands.moves.evaluate, "evaluate_coefficients", note)
     monkeypatch.setattr(studies.runs.searching, "search", note)
     monkeypatch.setattr(studies.runs.searching, "search_many", note)
     monkeypatch.setattr(studies.runs.loading, "load_front", note)
@@ -91,7 +91,7 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.study.work, "run_study", note)
     monkeypatch.setattr(studies.contest.imported, "named_files", lambda given: {})
     monkeypatch.setattr(studies.contest.work, "set_up", note)
-    monkeypatch.setattr(studies.cli.commands.floor, "energy_floor", note)
+    monkeypatch.setattr(studies.cli.commands.moves.floor, "energy_floor", note)
     for name in ("epsilon", "weighted"):
         let_sweep(name, note)
     monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", note)

@@ -15,7 +15,7 @@ from ocp import (
     SolveStatus,
 )
 from ocp.profiles.cycloid import Cycloid
-from studies.profiles import profile_of
+from studies.registry.profiles import profile_of
 
 
 @pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])

@@ -10,8 +10,8 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 import studies.comparison.measures
-import studies.reports.comparison
 import studies.runs.loading
+import studies.runs.reports.comparison
 from models import ArmOnFlexibleLink
 from ocp import PointToPoint
 from studies.comparison.tables import runs_table, tables

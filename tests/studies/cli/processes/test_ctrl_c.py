@@ -23,19 +23,19 @@ GUARD = 120
 ANNOUNCED = """
 import time
 import studies.cli
-import studies.cli.commands.plan
+import studies.cli.commands.moves.plan
 import studies.display.progress
 from ocp.program.transcription import NonlinearProgram
 
 NonlinearProgram.solve = lambda *given, **settings: time.sleep(120)
 studies.display.progress.SILENT_SECONDS = 1e6
-solve = studies.cli.commands.plan.plan_move
+solve = studies.cli.commands.moves.plan.plan_move
 
 def announced(*arguments, **settings):
     print("begun", flush=True)
     return solve(*arguments, **settings)
 
-studies.cli.commands.plan.plan_move = announced
+studies.cli.commands.moves.plan.plan_move = announced
 studies.cli.main()
 """
 

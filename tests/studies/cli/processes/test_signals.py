@@ -11,7 +11,7 @@ from importlib import import_module
 import pytest
 from lines import MOVE
 
-import studies.reports.comparison
+import studies.runs.reports.comparison
 from ocp import Front
 
 SEARCH = "--bound 0.2 --population 20 --generations 20"
@@ -104,7 +104,9 @@ def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder,
     assert call(f"{line} epsilon --output a.json")[0] == 0
     assert call(f"{line} weighted --output b.json")[0] == 0
     monkeypatch.setattr(
-        studies.reports.comparison, "energy_floor", lambda task: signal.raise_signal(signal.SIGINT)
+        studies.runs.reports.comparison,
+        "energy_floor",
+        lambda task: signal.raise_signal(signal.SIGINT),
     )
     code, out, err = call("compare a.json b.json --output compared")
     assert (code, err) == (1, "quietarm: interrupted; the comparison is kept, without the floor\n")
@@ -112,7 +114,7 @@ def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder,
 
 
 def test_ctrl_c_while_the_plan_beside_it_is_looked_for_keeps_the_floor(call, folder, monkeypatch):
-    command = import_module("studies.cli.commands.floor")
+    command = import_module("studies.cli.commands.moves.floor")
     beside = command.plan_beside
 
     def interrupted(floor):
@@ -143,7 +145,7 @@ from studies.cli import main
 main()
 """
 LOADED = ["ocp", "casadi", "models", "click", "studies.cli", "rich.console",
-          "studies.cli.commands.plan", "studies.display.words"]  # fmt: skip
+          "studies.cli.commands.moves.plan", "studies.display.words"]  # fmt: skip
 
 
 @pytest.mark.parametrize("module", LOADED)

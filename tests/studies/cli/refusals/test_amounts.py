@@ -59,7 +59,7 @@ def test_a_table_that_would_be_too_long_is_refused_first(call):
 SLOW = """
 import time
 import studies.cli
-import studies.cli.commands.plan as command
+import studies.cli.commands.moves.plan as command
 import studies.display.progress as progress
 
 assert progress.SILENT_SECONDS == 2.0

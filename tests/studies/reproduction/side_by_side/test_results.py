@@ -3,7 +3,6 @@
 import pytest
 
 from ocp import evaluate_coefficients
-from studies.methods import NSGA2, VEPSO
 from studies.paper.points import residual_level
 from studies.paper.printed import (
     ARM_HALF,
@@ -17,6 +16,7 @@ from studies.paper.printed import (
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
 )
+from studies.registry.methods import NSGA2, VEPSO
 from studies.reproduction.side_by_side.results import searched
 
 SYSTEMS = [

@@ -17,7 +17,7 @@ from studies.cli.options import (
     quiet_option,
     task_options,
 )
-from studies.profiles import FAMILIES
+from studies.registry.profiles import FAMILIES
 
 
 @click.command("import")

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-import studies.cli.commands.evaluate
-import studies.cli.commands.floor
-import studies.cli.commands.plan
+import studies.cli.commands.moves.evaluate
+import studies.cli.commands.moves.floor
+import studies.cli.commands.moves.plan
 import studies.reproduction.recompute
 import studies.runs.loading
 import studies.runs.polishing

@@ -20,8 +20,8 @@ from studies.cli.options import (
 )
 from studies.display.progress import working
 from studies.display.saving import finish
-from studies.profiles import FAMILIES, profile_of
-from studies.reports.plan import print_plan
+from studies.registry.profiles import FAMILIES, profile_of
+from studies.runs.reports.plan import print_plan
 
 
 @click.command()

@@ -23,7 +23,7 @@ from studies.cli.options import (
     task_options,
     workers_options,
 )
-from studies.methods import PAPERS
+from studies.registry.methods import PAPERS
 
 
 def _not_required(command: click.Command) -> click.Command:

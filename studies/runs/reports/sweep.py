@@ -8,7 +8,7 @@ from metaheuristics.ensemble import energy_at
 from ocp import FailedPoint, Front
 from ocp.front.checking import RESIDUAL_LIMIT
 from studies.display.words import counted, millimetres, print_lines
-from studies.methods import LEVELS
+from studies.registry.methods import LEVELS
 
 
 def print_sweep(console: Console, front: Front, asked_for: int) -> None:

@@ -25,8 +25,8 @@ from studies.cli.options import (
     terms_option,
     workers_options,
 )
-from studies.methods import METHODS, WEIGHTED, Kind, methods_of
-from studies.profiles import profile_of
+from studies.registry.methods import METHODS, WEIGHTED, Kind, methods_of
+from studies.registry.profiles import profile_of
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]

@@ -7,7 +7,16 @@ import pytest
 from metaheuristics import PRESETS
 from models import SingleLinkManipulator
 from ocp import CycloidPolynomial, PointToPoint, polish_front
-from studies.methods import EPSILON, METHODS, NSGA2, VEPSO, WEIGHTED, Kind, method_of, methods_of
+from studies.registry.methods import (
+    EPSILON,
+    METHODS,
+    NSGA2,
+    VEPSO,
+    WEIGHTED,
+    Kind,
+    method_of,
+    methods_of,
+)
 
 
 @pytest.mark.parametrize(("name", "method"), METHODS.items())

@@ -48,12 +48,12 @@ def compare(
     from ocp import QuietarmError
     from studies.comparison.measures import FILL, compare_fronts
     from studies.display.saving import finish
-    from studies.reports.comparison import (
+    from studies.runs.loading import load_front
+    from studies.runs.reports.comparison import (
         comparison_files,
         print_comparison,
         with_floor,
     )
-    from studies.runs.loading import load_front
 
     errors, trouble = Console(stderr=True), None
     with working("comparing", errors, quiet=quiet):

@@ -24,9 +24,9 @@ from studies.cli.options import (
 from studies.display.progress import working
 from studies.display.saving import finish, interruption
 from studies.display.words import print_lines
-from studies.methods import METHODS, Kind, methods_of
-from studies.profiles import FAMILIES, profile_of
-from studies.reports.plan import print_plan
+from studies.registry.methods import METHODS, Kind, methods_of
+from studies.registry.profiles import FAMILIES, profile_of
+from studies.runs.reports.plan import print_plan
 
 IPOPT = "ipopt"
 OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "setting", "polish")

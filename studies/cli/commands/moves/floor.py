@@ -15,8 +15,8 @@ from studies.cli.arguments import task_of
 from studies.cli.options import OUTPUT, PICTURE, quiet_option, task_options
 from studies.display.progress import working
 from studies.display.saving import drawing, finish, interruption
-from studies.reports.floor import plan_beside, print_floor
 from studies.runs.files import refuse_same_file
+from studies.runs.reports.floor import plan_beside, print_floor
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,8 +8,8 @@ import re
 import pytest
 
 import studies.comparison.measures
-import studies.reports.comparison
 import studies.runs.loading
+import studies.runs.reports.comparison
 from metaheuristics.objective.claims import check_figures
 from ocp import FrontPoint, SolverFailedError, evaluate_coefficients
 from studies.paper.printed import ARM_HALF
@@ -71,7 +71,7 @@ def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     class Found:
         energy, complete = 0.1234, True
 
-    monkeypatch.setattr(studies.reports.comparison, "energy_floor", lambda task: Found())
+    monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", lambda task: Found())
     code, out, _ = call("compare good.json poor.json --as-found")
     assert code == 0
     assert "arrive at rest, not of polynomials only, is 0.1234 J" in " ".join(out.split())
@@ -81,7 +81,7 @@ def test_a_floor_that_is_not_found_is_no_obstacle(call, files, monkeypatch):
     def fail(task):
         raise SolverFailedError("no start ended at an optimum")
 
-    monkeypatch.setattr(studies.reports.comparison, "energy_floor", fail)
+    monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", fail)
     code, out, err = call("compare good.json poor.json --as-found")
     assert (code, err) == (0, "no floor: no start ended at an optimum\n")
     assert "Floor" not in out
