@@ -12,6 +12,7 @@ from metaheuristics import NamedProblem
 from metaheuristics.budget.record import Scale
 from ocp import Front, SolverFailedError
 from ocp.answers.documents import read_bytes
+from ocp.answers.provenance import Setting
 from ocp.answers.saved import Saved
 from ocp.base.printable import printable
 from ocp.base.ranges import CountFromOne
@@ -159,7 +160,7 @@ def imported_run(
     columns, size = found.coefficients.shape[1], problem.profile.size
     if columns != size:
         raise ValueError(f"{path} has {columns} coefficients a motion, and {problem.name} {size}")
-    settings = {"imported": printable(path.name), "bound": problem.bound}
+    settings: dict[str, Setting] = {"imported": printable(path.name), "bound": problem.bound}
     try:
         front, claims = import_front(problem.task, problem.profile, found, method, settings)
     except (ValueError, SolverFailedError) as error:

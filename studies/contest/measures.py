@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
 from math import inf
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from studies.contest.runs import Run
 from studies.registry.methods import LEVELS
 
 Array = NDArray[np.float64]
+_Kind = TypeVar("_Kind", Run, Imported)
 TARGETS = (1e-2, 1e-3)
 """Shares of the exact front's hypervolume that may be missing for a target to count as reached."""
 _TIMES = 120
@@ -217,19 +219,23 @@ def arenas_of(contents: Contents) -> tuple[Arena, ...]:
     tuple of Arena
         One a problem; none where results of other tools alone are there.
     """
+    runs = [run for _, run in sorted(contents.runs.items())]
+    imports = [run for _, run in sorted(contents.imports.items())]
     arenas = list[Arena]()
-    runs, imports = sorted(contents.runs.items()), sorted(contents.imports.items())
-    for problem in dict.fromkeys(key.problem for key, _ in runs):
+    for problem in dict.fromkeys(run.problem for run in runs):
         yardstick = contents.yardsticks[problem]
-        own, others = (
-            {method: tuple(run for key, run in all_runs if key[:2] == (problem, method))
-             for method in dict.fromkeys(key.method for key, _ in all_runs if key[0] == problem)}
-            for all_runs in (runs, imports)
-        )  # fmt: skip
-        fields = tuple(Field(method, yardstick, found) for method, found in own.items())
-        given = tuple(Outcome(method, yardstick, found) for method, found in others.items())
-        arenas.append(Arena(yardstick, fields, given, contents.landscapes.get(problem)))
+        fields = [Field(name, yardstick, own) for name, own in _by_method(runs, problem)]
+        given = [Outcome(name, yardstick, own) for name, own in _by_method(imports, problem)]
+        landscape = contents.landscapes.get(problem)
+        arenas.append(Arena(yardstick, tuple(fields), tuple(given), landscape))
     return tuple(arenas)
+
+
+def _by_method(runs: Iterable[_Kind], problem: str) -> Iterable[tuple[str, tuple[_Kind, ...]]]:
+    """The runs on a problem, one method after another."""
+    own = [run for run in runs if run.problem == problem]
+    for method in dict.fromkeys(run.method for run in own):
+        yield method, tuple(run for run in own if run.method == method)
 
 
 def _over_thirds(scaled: Array) -> Array:
