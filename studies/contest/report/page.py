@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from metaheuristics.budget.run import MULTISTART, Help, parts_of
-from studies.contest.citations import bibtex
-from studies.contest.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from studies.contest.imported import Imported
 from studies.contest.landscape import CANDIDATES, LEVEL, Landscape
-from studies.contest.measures import Arena, methods_in
+from studies.contest.measures import Arena, Outcome, methods_in
+from studies.contest.names import is_own, label_of
+from studies.contest.report.citations import bibtex
+from studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from studies.contest.report.tables import (
+    effects_table,
+    evaluations_words,
+    summary_table,
+    visits_table,
+)
 from studies.contest.statistics import ALPHA, Ranking, pairs_on, ranking_on, ranking_over, why_none
-from studies.contest.tables import effects_table, label_of, summary_table, visits_table
 from studies.display.html_page import Markup, bullets, element, page, picture, table_element
 from studies.display.words import counted, millimetres, title_of
 
@@ -22,16 +29,19 @@ _ATTAINMENT = (
     "What half of the runs of each method attain, with the exact front in black; and where more "
     "runs of the best method (blue) or of another (red) attain residual and energy."
 )
+_THE_EXACT = "the exact front's"
 _RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell apart."
 
 
-def contest_page(arenas: Sequence[Arena]) -> str:
+def contest_page(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> str:
     """The contest as a page.
 
     Parameters
     ----------
     arenas : sequence of Arena
         The problems with their runs.
+    notes : sequence of str
+        What else is to be known, in sentences without a full stop.
 
     Returns
     -------
@@ -41,27 +51,47 @@ def contest_page(arenas: Sequence[Arena]) -> str:
     methods = methods_in(arenas)
     title = f"{counted(len(methods), 'method')} against the exact front"
     sections = [_section(arena, methods) for arena in arenas]
-    return page(title, element("h1", title), _findings(arenas), *sections, _methods(arenas))
+    return page(title, element("h1", title), _findings(arenas, notes), *sections, _methods(arenas))
 
 
-def _findings(arenas: Sequence[Arena]) -> Markup:
+def _findings(arenas: Sequence[Arena], notes: Sequence[str]) -> Markup:
     none, lines = why_none(arenas), list[str]()
     for arena in arenas:
-        best = min(arena.fields, key=lambda field: sorted(field.final)[len(field.final) // 2])
-        middle = sorted(best.final)[len(best.final) // 2]
+        best = min(arena.alike, key=_middle)
         lines.append(
             f"{arena.problem}: {label_of(best.method)} ends nearest to the exact front, with "
-            f"{100 * middle:.2g} % of its hypervolume missing in the middle run of "
-            f"{len(best.runs)}."
+            f"{_missing(best, 'its')}."
         )
     lines += [f"{none}."] if none else []
     over = None if none else ranking_over(arenas)
-    parts = [bullets([*lines, *_unequal(arenas)])]
+    stated = [*_unequal(arenas), *not_alike(arenas), *notes]
+    parts = [bullets([*lines, *(line if line.endswith(".") else f"{line}." for line in stated)])]
     found = element("div", *parts, class_="findings")
     if over is None:
         return found
     words = f"{_RANKS} Over {over.blocks} problems, by medians. {_verdict(over)}"
     return element("div", found, picture(ranks_figure(over, "all problems"), words, words))
+
+
+def _middle(one: Outcome) -> float:
+    return sorted(one.final)[len(one.final) // 2]
+
+
+def _missing(one: Outcome, whose: str) -> str:
+    runs = f"the middle run of {len(one.runs)}" if len(one.runs) > 1 else "its only run"
+    return f"{100 * _middle(one):.2g} % of {whose} hypervolume missing in {runs}"
+
+
+def not_alike(arenas: Sequence[Arena]) -> list[str]:
+    """Results from elsewhere that are shown and not compared by tests, and why, in sentences."""
+    return [
+        f"{arena.problem}: {label_of(one.method)} ends with {_missing(one, _THE_EXACT)}. "
+        f"It does not compare: its evaluations are {evaluations_words(one)}, those of the others "
+        f"{' or '.join(sorted({evaluations_words(field) for field in arena.fields}))}."
+        for arena in arenas
+        for one in arena.imports
+        if one not in arena.alike
+    ]
 
 
 def _unequal(arenas: Sequence[Arena]) -> list[str]:
@@ -93,7 +123,7 @@ def _section(arena: Arena, methods: Sequence[str]) -> Markup:
     parts = [
         element("h2", arena.problem),
         element("p", title, class_="soft"),
-        picture(anytime_figure(arena, looks), f"{_ANYTIME} On {title}.", _ANYTIME),
+        picture(anytime_figure(arena, looks), f"{_ANYTIME} On {title}.", _anytime_words(arena)),
         table_element(summary_table(arena)),
         picture(attainment_figure(arena, looks), f"{_ATTAINMENT} On {title}.", _ATTAINMENT),
         *_statistics(arena),
@@ -101,6 +131,13 @@ def _section(arena: Arena, methods: Sequence[str]) -> Markup:
         *([bullets(explanation(arena.landscape))] if arena.landscape else []),
     ]
     return element("section", *parts, id=arena.problem)
+
+
+def _anytime_words(arena: Arena) -> str:
+    if not arena.imports:
+        return _ANYTIME
+    names = " and ".join(label_of(one.method) for one in arena.imports)
+    return f"{_ANYTIME} Of {names} only the end is known, so that there are no curves."
 
 
 def explanation(found: Landscape) -> list[str]:
@@ -154,9 +191,13 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
     runs = [run for arena in arenas for field in arena.fields for run in field.runs]
     seeds = sorted({run.key.seed for run in runs})
     budgets = sorted({run.budget for run in runs})
-    versions = {name: version for run in runs for name, version in run.front.versions.items()}
-    names = ", ".join(label_of(method) for method in methods_in(arenas))
-    helped = _of_the_gradient(methods_in(arenas))
+    versions: dict[str, set[str]] = {}
+    for run in runs:
+        for name, version in run.front.versions.items():
+            versions.setdefault(name, set()).add(version)
+    own = [method for method in methods_in(arenas) if is_own(method)]
+    names = ", ".join(map(label_of, own))
+    helped = _of_the_gradient(own)
     tests = (
         ""
         if why_none(arenas)
@@ -175,9 +216,32 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
         "worst of the exact front in each objective, both scaled to its extent; that of the exact "
         "front counts the motions between its points. The expected running time is COCO's: the "
         "evaluations that all runs spent until they reached a target, or in all, over the number "
-        f"that reached it, seen at marks 5 % apart. {helped}{tests}Time is processor "
+        f"that reached it, seen at marks 5 % apart. {helped}{tests}{_of_imports(arenas)}Time is "
+        "processor "
         "time of the search, without that of the record. Computed with "
-        f"{', '.join(f'{name} {version}' for name, version in versions.items())}."
+        f"{', '.join(f'{name} {_either(known)}' for name, known in versions.items())}."
+    )
+
+
+def _either(versions: Iterable[str]) -> str:
+    return " or ".join(sorted(versions))
+
+
+def _of_imports(arenas: Sequence[Arena]) -> str:
+    """What was done with results from elsewhere, where there are some."""
+    imports = [one for arena in arenas for one in arena.imports]
+    if not imports:
+        return ""
+    runs = ", ".join(
+        f"{label_of(one.method)} on {one.yardstick.problem} ({counted(len(one.runs), 'run')}, "
+        f"evaluations {evaluations_words(one)})"
+        for one in imports
+    )
+    return (
+        f"Results from elsewhere: {runs}. Their coefficients were evaluated here by CVODES; only "
+        "what a run ended with is known of them, so that they have no anytime curves, expected "
+        "running times or times, and tests compare those alone whose evaluations are those of the "
+        "others. "
     )
 
 
@@ -203,11 +267,23 @@ def _of_the_gradient(methods: Sequence[str]) -> str:
 def settings_lines(arenas: Sequence[Arena]) -> list[str]:
     """The settings of every method, as its runs state them."""
     lines = list[str]()
-    for method in methods_in(arenas):
+    for method in filter(is_own, methods_in(arenas)):
         fields = [field for arena in arenas for field in arena.fields if field.method == method]
         settings = {**fields[0].runs[0].front.settings}
         bounds = {field.runs[0].front.settings.get("bound") for field in fields}
         settings["bound"] = " or ".join(f"{b:g}" for b in bounds if isinstance(b, float | int))
         stated = ", ".join(f"{name} {value}" for name, value in settings.items())
         lines.append(f"{label_of(method)}: {stated}.")
-    return lines
+    return [*lines, *(f"{claim}." for claim in wrong_claims(arenas))]
+
+
+def wrong_claims(arenas: Sequence[Arena]) -> list[str]:
+    """What files from elsewhere state otherwise than their coefficients give, in words."""
+    return [
+        f"{run.words}: {claim}"
+        for arena in arenas
+        for one in arena.imports
+        for run in one.runs
+        if isinstance(run, Imported)
+        for claim in run.claims
+    ]
