@@ -81,7 +81,7 @@ class BudgetRun:
         All candidates that no other dominates, with figures of the finer rollout; its `evaluations`
         are those spent.
     marks : tuple of Mark
-        What there was after so many evaluations, with the figures that the search had.
+        How far the search was after so many evaluations, by the figures that it had itself.
     visits : Visits
         Where its feasible candidates lie.
     """

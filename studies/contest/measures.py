@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from metaheuristics.budget.record import CORNER
 from metaheuristics.ensemble import Spread
+from ocp.front.points import LEVELS
 from studies.comparison.staircase import objectives, within
 from studies.contest.folder import Contents
 from studies.contest.imported import Imported
 from studies.contest.landscape import Landscape
 from studies.contest.problems import Yardstick
 from studies.contest.runs import Run
-from studies.registry.methods import LEVELS
 
 Array = NDArray[np.float64]
 _Kind = TypeVar("_Kind", Run, Imported)
