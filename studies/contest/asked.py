@@ -2,22 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Self
 
 from metaheuristics import PRESETS, NamedProblem
-from metaheuristics.budget.run import number_of_evaluations, parts_of
+from metaheuristics.algorithms.settings import Value, with_defaults
+from metaheuristics.budget.run import check_method, number_of_evaluations, parts_of
 from metaheuristics.ensemble import seeds_of
 from metaheuristics.runs.settings import number_of_individuals, search_versions
 from metaheuristics.sharing.workers import HERE, Workers
 from studies.contest.folder import EXACT, Contents
 from studies.contest.imported import Imported
+from studies.contest.names import POPULATION, name_of, sets_population
 from studies.contest.problems import Yardstick
 from studies.contest.runs import Key, Run
 
 _CODE = ("quietarm", "pymoo")
 """What decides how a search goes; other libraries change its rounding."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A method as it takes part.
+
+    Attributes
+    ----------
+    method : str
+        Its name.
+    settings : dict
+        What it is set to where that is not its default.
+    population : int or None
+        Individuals; None where it has the method's own.
+    name : str
+        What it is called in the contest: with its settings.
+    """
+
+    method: str
+    settings: Mapping[str, Value]
+    population: int | None
+    name: str
+
+    @classmethod
+    def of(cls, method: str, given: Mapping[str, Value], population: int | None) -> Self:
+        """A method with what is given; ValueError where a setting is unknown or out of range."""
+        search, _ = parts_of(method)
+        own, stated = dict(given), dict[str, Value]()
+        if POPULATION in own and search in PRESETS:
+            population = number_of_individuals(own.pop(POPULATION))
+            stated[POPULATION] = population
+        if search in PRESETS:
+            known = PRESETS[search].settings
+            defaults, values = with_defaults(method, known, {}), with_defaults(method, known, own)
+            own = {name: values[name] for name in own if values[name] != defaults[name]}
+        return cls(method, own, population, name_of(method, {**stated, **own}))
+
+    def can_search(self, problem: NamedProblem) -> bool:
+        """Whether it keeps the limits of a problem, where that has some."""
+        search, _ = parts_of(self.method)
+        return not problem.task.limits or search not in PRESETS or PRESETS[search].keeps_limits
 
 
 @dataclass(frozen=True)
@@ -38,6 +82,8 @@ class Contest:
         First seed.
     population : int, optional
         Individuals of every method; each method's own by default.
+    settings : mapping of str to mapping
+        What a method is set to, by its name; ``population`` is for that method alone.
     explain : bool
         Whether the local minima of the problems are looked for as well.
     workers : Workers
@@ -55,19 +101,29 @@ class Contest:
     evaluations: int = 20_000
     seed: int = 0
     population: int | None = None
+    settings: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
     explain: bool = False
     workers: Workers = HERE
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "methods", tuple(dict.fromkeys(self.methods)))
-        for name in self.methods:
-            parts_of(name)
         seeds_of(self.seed, self.runs)
         number_of_evaluations(self.evaluations)
         if self.population is not None:
             number_of_individuals(self.population)
+        for entry in self.entries.values():
+            check_method(entry.method, entry.population, entry.settings)
         if not self.keys:
             raise ValueError(f"{self.left_out[0]}; give another method or problem")
+
+    @property
+    def entries(self) -> dict[str, Entry]:
+        """The methods as they take part, by what each is called."""
+        entries = [
+            Entry.of(method, self.settings.get(method, {}), self.population)
+            for method in self.methods
+        ]
+        return {entry.name: entry for entry in entries}
 
     @property
     def keys(self) -> list[Key]:
@@ -76,27 +132,22 @@ class Contest:
         So a contest that is stopped has as many runs of one method as of another.
         """
         return [
-            Key(problem.name, method, seed)
+            Key(problem.name, name, seed)
             for problem in self.problems
             for seed in seeds_of(self.seed, self.runs)
-            for method in self.methods
-            if _can_search(method, problem)
+            for name, entry in self.entries.items()
+            if entry.can_search(problem)
         ]
 
     @property
     def left_out(self) -> list[str]:
         """Which methods cannot search which problem, in words."""
         return [
-            f"{method} cannot search {problem.name}, which has limits: it is left out there"
+            f"{name} cannot search {problem.name}, which has limits: it is left out there"
             for problem in self.problems
-            for method in self.methods
-            if not _can_search(method, problem)
+            for name, entry in self.entries.items()
+            if not entry.can_search(problem)
         ]
-
-
-def _can_search(method: str, problem: NamedProblem) -> bool:
-    search, _ = parts_of(method)
-    return not problem.task.limits or search not in PRESETS or PRESETS[search].keeps_limits
 
 
 def check_alike(contents: Contents, contest: Contest) -> None:
@@ -168,7 +219,7 @@ def _check_amounts(run: Run, contest: Contest, folder: Path) -> None:
             f"{contest.evaluations} are asked for; give --evaluations {run.budget}, or another "
             "--output"
         )
-    if run.population != contest.population:
+    if run.population != contest.population and not sets_population(run.method):
         theirs, asked = (
             "the method's own" if size is None else size
             for size in (run.population, contest.population)

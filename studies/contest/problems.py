@@ -48,8 +48,11 @@ def problems_of(names: Sequence[str]) -> tuple[NamedProblem, ...]:
 def the_papers() -> tuple[NamedProblem, ...]:
     """The problems that are the paper's six conditions."""
     wanted = [(case.task, CycloidPolynomial(), case.bound) for case in CONDITIONS]
-    named = {name: (one.task, one.profile, one.bound) for name, one in PROBLEMS.items()}
-    return tuple(PROBLEMS[name] for name, parts in named.items() if parts in wanted)
+    return tuple(
+        problem
+        for problem in PROBLEMS.values()
+        if not problem.peak and (problem.task, problem.profile, problem.bound) in wanted
+    )
 
 
 @dataclass(frozen=True)

@@ -55,6 +55,10 @@ class Run(Saved):
     visits: Visits
     front: Front
 
+    def __post_init__(self) -> None:
+        if not self.marks or self.marks[-1].evaluations > self.budget:
+            raise ValueError("it has no marks, or some beyond its evaluations")
+
     @classmethod
     def of(
         cls, yardstick: Yardstick, method: str, budget: int, population: int | None, run: BudgetRun

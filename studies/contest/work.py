@@ -157,14 +157,16 @@ def _landscape(problem: NamedProblem, seed: int, earlier: Done, say: Say) -> Lan
 def _run(
     contest: Contest, problem: NamedProblem, key: Key, yardstick: Yardstick, earlier: Done, say: Say
 ) -> Run:
+    entry = contest.entries[key.method]
     found = search_within(
         problem.task,
-        key.method,
+        entry.method,
         contest.evaluations,
         yardstick.scale,
         profile=problem.profile,
         bound=problem.bound,
-        population=contest.population,
+        population=entry.population,
+        settings=entry.settings,
         seed=key.seed,
     )
-    return Run.of(yardstick, key.method, contest.evaluations, contest.population, found)
+    return Run.of(yardstick, key.method, contest.evaluations, entry.population, found)

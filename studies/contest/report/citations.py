@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from metaheuristics.budget.run import MULTISTART, parts_of
-from studies.contest.names import is_own
+from studies.contest.names import is_own, method_in
 
 _TEC = "IEEE Transactions on Evolutionary Computation"
 _ALWAYS = ("casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment")
@@ -141,7 +141,7 @@ def bibtex(methods: Iterable[str], *, statistics: bool) -> str:
         where it comes from.
     """
     methods = list(methods)
-    searches = dict.fromkeys(parts_of(method)[0] for method in methods if is_own(method))
+    searches = dict.fromkeys(parts_of(method_in(method))[0] for method in methods if is_own(method))
     elsewhere = [method for method in methods if not is_own(method)]
     keys = [*_ALWAYS, *(_STATISTICS if statistics else ())]
     unknown = [one for one in searches if one not in _ENTRIES and one != MULTISTART]

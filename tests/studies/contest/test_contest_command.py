@@ -126,40 +126,6 @@ def test_bad_input_is_refused_before_any_work(call, folder, line, words, searche
     assert list(folder.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        (LINE.replace("130", "260"), "has runs of 130 evaluations"),
-        (LINE.replace("--population 20", "--population 24"), "a run whose population is 20"),
-        (LINE.replace("--population 20", ""), "and the method's own is asked for"),
-    ],
-)
-def test_runs_that_differ_are_not_put_into_one_folder(call, copy, line, words, searches):
-    code, out, err = call(f"{line} --output {copy}")
-    assert (code, out, err.count("\n"), searches) == (2, "", 1, [])
-    assert words in err
-    assert "or another --output" in err
-
-
-def _spoil(path, **entries):
-    document = json.loads(path.read_text())
-    path.write_text(json.dumps({**document, **entries}))
-
-
-def test_a_run_measured_against_another_front_is_refused(call, copy):
-    _spoil(copy / f"runs/{NAME}/vepso/seed1.json", scale={"ideal": [0.0, 0.0], "nadir": [1.0, 1.0]})
-    code, _, err = call(f"{LINE} --output {copy}")
-    assert code == 2
-    assert f"measured against another exact front (vepso on {NAME} from seed 1)" in err
-
-
-def test_a_missing_exact_front_is_not_made_anew_behind_the_runs(call, copy):
-    (copy / f"exact/{NAME}.json").unlink()
-    code, _, err = call(f"{LINE} --output {copy}")
-    assert code == 2
-    assert f"has runs on {NAME} without its exact front" in err
-
-
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"format": "quietarm-front", "version": 3}'])
 def test_a_broken_run_is_named_with_the_remedy(call, copy, content):
     path = copy / f"runs/{NAME}/vepso/seed1.json"

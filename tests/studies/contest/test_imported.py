@@ -13,7 +13,7 @@ from studies.contest.folder import Contents
 from studies.contest.measures import arenas_of
 from studies.contest.report import files, page
 from studies.contest.report.citations import bibtex
-from studies.contest.report.page import methods_paragraph
+from studies.contest.report.paragraph import methods_paragraph
 from studies.contest.statistics import pairs_on
 from studies.display.html_page import element
 

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING
 import click
 from rich.console import Console
 
-from studies.cli.options import FOLDER, quiet_option, workers_options
+from studies.cli.options import (
+    FOLDER,
+    method_settings_option,
+    quiet_option,
+    settings_by_method,
+    workers_options,
+)
 
 if TYPE_CHECKING:
     from metaheuristics.sharing.pieces import Done
@@ -27,21 +33,21 @@ if TYPE_CHECKING:
 )
 @click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
 @click.option("--population", type=int, help="Of every method; each method's own by default.")
+@method_settings_option(
+    "as in --setting nsga2.crossover=0.7, or its population; it takes part beside the same method "
+    "with others"
+)
 @click.option(
-    "--import",
-    "given",
-    multiple=True,
-    metavar="[NAME=]PATH",
+    "--import", "given", multiple=True, metavar="[NAME=]PATH",
     help="Results of another tool on the one PROBLEM: a file of coefficients as quietarm import "
     "reads it, or a folder with such a file for each run; may be repeated. Without NAME the method "
     "is called as the file or folder.",
-)
+)  # fmt: skip
 @click.option(
-    "--import-evaluations",
-    type=int,
+    "--import-evaluations", type=int,
     help="Evaluations that each imported run took. Where they are not known, or not as many as "
     "--evaluations, the runs are shown and marked, and left out of the tests.",
-)
+)  # fmt: skip
 @click.option(
     "--explain", is_flag=True,
     help="Look for the local minima of each problem as well, and say what the box costs.",
@@ -59,6 +65,7 @@ def contest(
     evaluations: int,
     seed: int,
     population: int | None,
+    setting: tuple[tuple[str, str], ...],
     given: tuple[str, ...],
     import_evaluations: int | None,
     explain: bool,
@@ -87,7 +94,7 @@ def contest(
     from studies.contest.measures import arenas_of
     from studies.contest.problems import problems_of
     from studies.contest.report.files import report_files
-    from studies.contest.report.page import not_alike, wrong_claims
+    from studies.contest.report.notes import not_alike, wrong_claims
     from studies.contest.report.tables import summary_table
     from studies.contest.statistics import why_none
     from studies.contest.work import pieces_of, run_contest, set_up
@@ -97,9 +104,10 @@ def contest(
     from studies.display.words import print_lines
     from studies.runs.files import warn_of_workers
 
+    names = tuple(name.strip() for name in methods.split(","))
     asked = Contest(
-        problems_of(problems), tuple(name.strip() for name in methods.split(",")), runs,
-        evaluations, seed, population, explain, Workers(workers, scheduler),
+        problems_of(problems), names, runs, evaluations, seed, population,
+        settings_by_method(setting, names), explain, Workers(workers, scheduler),
     )  # fmt: skip
     if import_evaluations is not None and not given:
         raise ValueError("--import-evaluations says how long imported runs are; give --import too")
