@@ -48,8 +48,8 @@ class ExactDuplicates(DuplicateElimination):
         return is_duplicate
 
     def _rows(self, individuals: Any) -> list[bytes]:
-        X = individuals.get("X").astype(float) + 0.0  # -0.0 becomes 0.0, which it equals
-        return [row.tobytes() for row in X]
+        X = np.array([individual.X for individual in individuals], dtype=float)
+        return [row.tobytes() for row in X + 0.0]  # -0.0 becomes 0.0, which it equals
 
 
 class PaperNSGA2(NSGA2):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from floor_moves import ARM, SHORT
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
+from models import ArmOnFlexibleLink
 from ocp import (
     InfeasibleTaskError,
     PointToPoint,
@@ -41,8 +41,8 @@ def test_limited_to_200_the_arm_needs_what_other_transcriptions_find(floor_of):
 
 @pytest.mark.parametrize(
     "limits",
-    [{}, {"torque_limit": 0.5, "speed_limit": 3.6}, {"deflection_limit": 5e-3}],
-    ids=["no limit", "torque and speed", "deflection"],
+    [{}, {"torque_limit": 0.5, "speed_limit": 3.6}],
+    ids=["no limit", "torque and speed"],
 )
 def test_no_plan_is_cheaper(solved, floor_of, limits):
     task = replace(ARM, **limits)
@@ -95,11 +95,10 @@ def test_a_plant_of_two_modes_has_a_floor(tasks, solved):
     assert floor.energy < solved(task, 10, starts=1).energy
 
 
-def test_a_mirrored_move_needs_the_same():
-    # The single link is symmetric in theta: -30 degrees cost what 30 degrees do.
-    task = PointToPoint(SingleLinkManipulator(), 0.5, 0.8, acceleration_limit=150.0)
-    there, back = (energy_floor(replace(task, target=t), **SHORT) for t in (0.5, -0.5))
-    assert back.energy == pytest.approx(there.energy, rel=1e-3)
+def test_a_mirrored_move_needs_the_same(floor_of):
+    # Eqs (13), (14) are odd in (theta, W) together.
+    back = energy_floor(replace(ARM, target=-ARM.target), **SHORT)
+    assert back.energy == pytest.approx(floor_of(ARM, **SHORT).energy, rel=1e-3)
 
 
 # -- what it says of itself --
@@ -211,9 +210,9 @@ def test_starts_that_agree_are_counted(floor_of):
 
 def test_the_same_seed_gives_the_same_floor(floor_of):
     task = replace(ARM, acceleration_limit=100.0)
-    one, two = energy_floor(task, starts=3, seed=5), energy_floor(task, starts=3, seed=5)
+    one, two = energy_floor(task, starts=2, seed=5), energy_floor(task, starts=2, seed=5)
     assert one == two
-    assert len(one.starts) == 3
+    assert len(one.starts) == 2
     assert one.provenance.settings.seed == 5
 
 
