@@ -153,7 +153,7 @@ def test_a_move_of_ones_own_has_no_exact_front():
     from metaheuristics import ExactProblem
 
     problem = problem_of(TWO_TERMS[0])
-    own = ExactProblem(MoveFunction(problem.task, CycloidPolynomial(3), bound=0.2))
+    own = ExactProblem(MoveFunction(problem.task, CycloidPolynomial(3), bound=0.2, steps=10))
     assert own.pareto_front() is None
     assert own.pareto_set() is None
 

@@ -15,7 +15,9 @@ RANDOM = np.random.default_rng(4).uniform(-0.2, 0.2, (7, 3))
 
 
 def test_it_says_what_goes_in_and_what_comes_out():
-    function = MoveFunction(LIMITED, CycloidPolynomial(3), bound=0.2, peaks=["torque", "speed"])
+    function = MoveFunction(
+        LIMITED, CycloidPolynomial(3), bound=0.2, peaks=["torque", "speed"], steps=10
+    )
     assert function.variables == ("a_1", "a_2", "a_3")
     assert function.lower.tolist() == [-0.2] * 3
     assert function.upper.tolist() == [0.2] * 3
@@ -48,14 +50,14 @@ def test_a_limit_does_not_change_the_objectives():
 
 
 def test_a_motion_that_overflows_comes_last():
-    objectives, violations = MoveFunction(LIMITED, bound=0.2)([[1e300] * 6, [0.0] * 6])
+    objectives, violations = MoveFunction(LIMITED, bound=0.2, steps=24)([[1e300] * 6, [0.0] * 6])
     assert objectives[0].tolist() == [1e30, 1e30]
     assert violations[0].tolist() == [1e30, 1e30]
     assert (objectives[1] < 1).all()
 
 
 def test_a_profile_with_a_box_of_its_own_needs_no_bound():
-    function = MoveFunction(SIXTH, CycloidGaussians(2))
+    function = MoveFunction(SIXTH, CycloidGaussians(2), steps=10)
     assert (function.lower < function.upper).all()
     assert len(function.variables) == CycloidGaussians(2).size
 
@@ -79,4 +81,4 @@ def test_bad_input_is_refused(given, words):
 @pytest.mark.parametrize("candidates", [np.zeros(6), np.zeros((2, 5)), np.zeros((2, 6, 1))])
 def test_candidates_of_another_shape_are_refused(candidates):
     with pytest.raises(ValueError, match=r"the population has shape .*; give \(candidates, 6\)"):
-        MoveFunction(SIXTH, bound=0.2)(candidates)
+        MoveFunction(SIXTH, bound=0.2, steps=10)(candidates)
