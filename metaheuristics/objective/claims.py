@@ -25,7 +25,7 @@ all of these as they were."""
 @lru_cache(maxsize=4)
 def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
     """The objective at the steps that fronts are verified with; made once for a task."""
-    return PopulationObjective(task, profile, steps=default_steps(task))
+    return PopulationObjective(task, profile, steps=default_steps(task), few=True)
 
 
 def check_figures(front: Front, name: str) -> None:
