@@ -10,7 +10,7 @@ from multiprocessing.reduction import ForkingPickler
 
 import pytest
 
-from models import Plant, SingleLinkManipulator, file_of_plant, known_plants, load_plant_file
+from models import SingleLinkManipulator, file_of_plant, known_plants, load_plant_file
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
