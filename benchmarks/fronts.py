@@ -27,10 +27,10 @@ from time import process_time
 
 import moocore
 import numpy as np
-from common import console, forget_compiled, load_plugins, machine, timed
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.table import Table
 
 from metaheuristics import SearchProgress, search

@@ -45,8 +45,8 @@ from time import process_time
 import casadi as ca
 import numpy as np
 import rockit
-from common import console, forget_compiled, load_plugins, machine, timed
 from old_and_new import conditions
+from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 

@@ -32,7 +32,7 @@ from statistics import median
 from time import process_time
 
 import numpy as np
-from common import console, forget_compiled, load_plugins, machine, timed
+from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.progress import track
 from rich.table import Table
 

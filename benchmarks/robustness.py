@@ -16,9 +16,9 @@ from math import pi
 from pathlib import Path
 from typing import NamedTuple
 
-from common import console, machine
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from parts.measuring import console, machine
 from rich.table import Table
 
 from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator

@@ -17,7 +17,7 @@ import argparse
 from time import perf_counter, process_time
 
 import numpy as np
-from common import console, forget_compiled, load_plugins, machine, timed
+from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.table import Table
 
 from metaheuristics import PRESETS, PopulationObjective, search, search_many

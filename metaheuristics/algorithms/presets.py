@@ -22,7 +22,7 @@ from metaheuristics.algorithms.settings import (
     yes_or_no,
 )
 from ocp.base.checks import not_negative, positive
-from ocp.base.names import nearest
+from ocp.base.names import unknown
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -111,8 +111,7 @@ class Preset:
 def preset_of(name: str) -> Preset:
     """A method by its name; ValueError suggests the nearest one."""
     if name not in PRESETS:
-        hint = nearest(name, PRESETS)
-        raise ValueError(f"unknown method {name!r}; {hint}(known: {', '.join(PRESETS)})")
+        raise ValueError(unknown("method", name, PRESETS))
     return PRESETS[name]
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ocp.base.checks import finite, positive, whole
-from ocp.base.names import nearest
+from ocp.base.names import has_no, nearest
 
 Value = float | int | bool | str | None
 MOST_KEPT = 100_000
@@ -121,9 +121,7 @@ def with_defaults(
     given = {} if given is None else given
     for name in given:
         if name not in entries:
-            listed = ", ".join(entries) or "none"
-            hint = nearest(str(name), entries)
-            raise ValueError(f"{method} has no setting {name!r}; {hint}(it has: {listed})")
+            raise ValueError(has_no(method, "setting", str(name), entries))
     return {
         name: setting.check(name, given[name]) if name in given else setting.default
         for name, setting in entries.items()

@@ -42,7 +42,7 @@ class BudgetProblem(MoveProblem):
     spent : int
         Evaluations until now.
     marks : list of Mark
-        What there was after so many.
+        How far the search was after so many evaluations.
     visits : Visits
         Where the feasible candidates lie.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
@@ -15,7 +16,7 @@ from metaheuristics.budget.record import Mark, Scale, Visits
 from metaheuristics.runs.settings import search_versions
 from ocp import Front, JointProfile, PointToPoint, reference_corner
 from ocp.base.checks import whole
-from ocp.base.names import nearest
+from ocp.base.names import unknown
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -65,11 +66,8 @@ def parts_of(method: str) -> tuple[str, Help]:
     if plus and part not in helps:
         raise ValueError(f"unknown method {method!r}; give {search}+{f' or {search}+'.join(helps)}")
     if search not in PRESETS:
-        hint = nearest(search, [*PRESETS, MULTISTART])
-        raise ValueError(
-            f"unknown method {method!r}; {hint}(known: {', '.join([*PRESETS, MULTISTART])}, and "
-            f"with +{' or +'.join(helps)} behind it)"
-        )
+        also = f", and with +{' or +'.join(helps)} behind it"
+        raise ValueError(unknown("method", method, [*PRESETS, MULTISTART], also))
     return search, Help(part)
 
 
@@ -83,7 +81,7 @@ class BudgetRun:
         All candidates that no other dominates, with figures of the finer rollout; its `evaluations`
         are those spent.
     marks : tuple of Mark
-        What there was after so many evaluations, with the figures that the search had.
+        How far the search was after so many evaluations, by the figures that it had itself.
     visits : Visits
         Where its feasible candidates lie.
     """
@@ -107,6 +105,7 @@ def search_within(
     profile: JointProfile,
     bound: float,
     population: int | None = None,
+    settings: Mapping[str, object] | None = None,
     seed: int = 0,
 ) -> BudgetRun:
     """Search with exactly so many evaluations.
@@ -128,6 +127,8 @@ def search_within(
         Largest absolute coefficient.
     population : int, optional
         Individuals, or particles in a swarm; the method's own by default.
+    settings : mapping, optional
+        What else the method is set to, by the names of its preset.
     seed : int
         Seed of the random numbers.
 
@@ -149,7 +150,7 @@ def search_within(
 
     search, helped = parts_of(method)
     budget = number_of_evaluations(evaluations)
-    algorithm, settings = _built(search, population, bound)
+    algorithm, stated = _built(search, population, bound, settings)
     problem = BudgetProblem(PopulationObjective(task, profile), bound, budget, scale)
     gradient = Gradient(problem, bound, seed)
     with suppress(BudgetSpentError):
@@ -166,7 +167,7 @@ def search_within(
         profile=profile,
         points=verified_points(task, profile, problem.non_dominated()[0]),
         method=method,
-        settings=settings,
+        settings=stated,
         seed=seed,
         reference=reference_corner(task),
         evaluations=problem.spent,
@@ -179,19 +180,39 @@ def search_within(
     return BudgetRun(front, tuple(problem.marks), problem.visits)
 
 
+def check_method(
+    method: str, population: int | None = None, settings: Mapping[str, object] | None = None
+) -> None:
+    """Build what `search_within` would run, so that nothing of it is refused later.
+
+    Parameters
+    ----------
+    method, population, settings
+        As for `search_within`.
+
+    Raises
+    ------
+    ValueError
+        When the method or a setting is unknown, a number is out of range, or a library is missing.
+    """
+    _built(parts_of(method)[0], population, 1.0, settings)
+
+
 def _built(
-    search: str, population: int | None, bound: float
+    search: str, population: int | None, bound: float, given: Mapping[str, object] | None
 ) -> tuple[Algorithm | None, dict[str, Any]]:
     """The algorithm of a search, none where the gradient is alone, and its settings."""
     from metaheuristics.algorithms.provenance import flat, settings_of
     from metaheuristics.runs.settings import SearchSettings
 
     if search == MULTISTART:
+        if given:
+            raise ValueError(f"{MULTISTART} has no settings; leave {', '.join(given)} out")
         return None, {"bound": bound}
     preset = PRESETS[search]
     population = preset.population if population is None else population
     SearchSettings(bound, population, preset.generations)  # refuses what is out of range
-    algorithm = preset.build(population)
+    algorithm = preset.build(population, given)
     return algorithm, {"bound": bound, **dict(flat(settings_of(algorithm)))}
 
 

@@ -19,7 +19,7 @@ from metaheuristics.problems.finding import exact_front
 from metaheuristics.problems.function import MoveFunction
 from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
-from ocp.base.names import nearest
+from ocp.base.names import unknown
 
 if TYPE_CHECKING:
     from metaheuristics.problems.pymoo_problem import ExactProblem
@@ -130,8 +130,7 @@ def _loaded(path: Path) -> Front:
 def problem_of(name: str) -> NamedProblem:
     """A named problem; ValueError suggests the nearest one."""
     if name not in PROBLEMS:
-        hint = nearest(name, PROBLEMS)
-        raise ValueError(f"unknown problem {name!r}; {hint}(known: {', '.join(PROBLEMS)})")
+        raise ValueError(unknown("problem", name, PROBLEMS))
     return PROBLEMS[name]
 
 

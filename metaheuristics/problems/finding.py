@@ -14,21 +14,20 @@ from ocp import (
     non_dominated,
     plan_move,
 )
+from ocp.front.points import LEVELS
 
 POINTS = 25
 """Points of an exact front, beside those at `LEVELS`."""
-LEVELS = (1e-4, 1e-3, 5e-3)
-"""Residuals [m] at which each has a point where it can."""
 STARTS = 12
 """Starts of the ends of a front."""
 COLD_STARTS = 3
 """Random starts of every point between: with ten terms and more, a sweep may follow a branch of
 minima that another one passes below."""
 SEED = 1000
-"""Of these: others than the sweep's."""
+"""Seed of these starts: they are others than the sweep's."""
 _BETTER = 1e-6
-"""Share of the energy by which a motion must be better to count, and of the residual that it may be
-above."""
+"""A motion is better that takes less energy by more than this share; its residual may be larger by
+this share."""
 
 
 def exact_front(task: PointToPoint, profile: JointProfile, bound: float) -> Front:

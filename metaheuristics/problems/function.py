@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from metaheuristics.objective.population import PopulationObjective, replace_failures
 from ocp import CycloidPolynomial, JointProfile, PointToPoint
 from ocp.answers.provenance import coefficient_bound
-from ocp.base.names import nearest
+from ocp.base.names import unknown
 from ocp.simulation.rollout import default_steps
 from ocp.task.quantities import QUANTITIES
 
@@ -124,6 +124,5 @@ class MoveFunction:
 
 def _known(name: str) -> str:
     if name not in QUANTITIES:
-        hint = nearest(str(name), QUANTITIES)
-        raise ValueError(f"unknown quantity {name!r}; {hint}(known: {', '.join(QUANTITIES)})")
+        raise ValueError(unknown("quantity", str(name), QUANTITIES))
     return name

@@ -1,9 +1,58 @@
-"""Names that a user may have meant."""
+"""Names that are not known, and what a user may have meant."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+
+
+def unknown(what: str, name: str, known: Iterable[str], also: str = "") -> str:
+    """The message about a name that is not known.
+
+    Parameters
+    ----------
+    what : str
+        What it should name, as ``"plant"``.
+    name : str
+        What was typed.
+    known : iterable of str
+        What there is.
+    also : str
+        What else there is, behind the list, as ``"; your own by its --plant-file"``.
+
+    Returns
+    -------
+    str
+        As ``"unknown plant 'singel'; did you mean 'single-link'? (known: ...)"``; without the
+        question where no name is like it.
+    """
+    known = list(known)
+    return f"unknown {what} {name!r}{_question(name, known)} (known: {', '.join(known)}{also})"
+
+
+def has_no(owner: str, what: str, name: str, known: Iterable[str]) -> str:
+    """The message about a name that something does not have.
+
+    Parameters
+    ----------
+    owner : str
+        What does not have it, as ``"single-link"``.
+    what : str
+        What it should name, as ``"parameter"``.
+    name : str
+        What was typed.
+    known : iterable of str
+        What it has.
+
+    Returns
+    -------
+    str
+        As ``"single-link has no parameter 'omga'; did you mean 'omega'? (it has: ...)"``; without
+        the question where no name is like it.
+    """
+    known = list(known)
+    listed = ", ".join(known) or "none"
+    return f"{owner} has no {what} {name!r}{_question(name, known)} (it has: {listed})"
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -25,3 +74,8 @@ def nearest(name: str, known: Iterable[str]) -> str:
     part = [other for other in known if name and name.lower() in other.lower()]
     near = part or difflib.get_close_matches(name.lower(), known, n=1, cutoff=0.3)
     return f"did you mean {near[0]!r}? " if near else ""
+
+
+def _question(name: str, known: list[str]) -> str:
+    question = nearest(name, known).rstrip()
+    return f"; {question}" if question else ""

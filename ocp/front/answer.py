@@ -47,7 +47,8 @@ class Front(Saved):
     method : str
         How it was found.
     settings : dict
-        Settings of the method, the bound on the coefficients among them.
+        Settings by name, in one table: those that every method has, such as the bound on the
+        coefficients, and the method's own.
     seed : int or None
         Seed of the random numbers.
     reference : tuple of float

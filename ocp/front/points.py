@@ -12,6 +12,10 @@ import numpy as np
 from ocp.base.ranges import Count, NotNegative, Share
 from ocp.base.readonly import ReadOnlyDict
 
+LEVELS = (1e-4, 1e-3, 5e-3)
+"""Residuals [m] at which the energies of fronts are compared; those that are compared have a point
+at each, where they can."""
+
 
 @dataclass(frozen=True)
 class FrontPoint:

@@ -14,7 +14,7 @@ from models import Expression, JointMotion, Plant
 from models.contract.calls import Calls
 from ocp.base.checks import of_kind, positive
 from ocp.base.interrupts import keep_interrupts
-from ocp.base.names import nearest
+from ocp.base.names import has_no
 from ocp.simulation.collocation import modal_system
 
 FREQUENCY, DAMPING = "frequency", "damping"
@@ -170,10 +170,7 @@ def refuse_unknown(plant: Plant, names: Iterable[str]) -> None:
     known = [*_OF_MODES, *plant.parameters]
     for name in names:
         if name not in known:
-            raise ValueError(
-                f"{plant.name} has no parameter {name!r}; {nearest(name, known)}(it has: "
-                f"{', '.join(known)})"
-            )
+            raise ValueError(has_no(plant.name, "parameter", name, known))
 
 
 def _check_symbols(plant: Plant, name: str, error: float) -> None:

@@ -146,10 +146,15 @@ def on_assumed(task: PointToPoint) -> PointToPoint:
     return task if plant is task.plant else replace(task, plant=plant)
 
 
-def with_samples(task: PointToPoint, more: Sequence[Sequence[float]]) -> PointToPoint:
-    """The move with more samples of its uncertain plant; ValueError where it is not uncertain."""
-    plant = task.plant
+def uncertain_plant(plant: Plant) -> UncertainPlant:
+    """The plant itself; ValueError where it is not uncertain."""
     if not isinstance(plant, UncertainPlant):
         raise ValueError(f"plant {plant.name!r} is not uncertain; give an UncertainPlant")
+    return plant
+
+
+def with_samples(task: PointToPoint, more: Sequence[Sequence[float]]) -> PointToPoint:
+    """The move with more samples of its uncertain plant; ValueError where it is not uncertain."""
+    plant = uncertain_plant(task.plant)
     samples = (*plant.samples, *map(tuple, more))
     return replace(task, plant=replace(plant, samples=samples))

@@ -13,14 +13,14 @@ from ocp.base.readonly import ReadOnlyDict
 from ocp.profiles.joint_profile import JointProfile
 from ocp.robustness.plants import with_errors
 from ocp.robustness.population import ErrorPopulation
-from ocp.robustness.uncertain import UncertainPlant, on_assumed
+from ocp.robustness.uncertain import UncertainPlant, on_assumed, uncertain_plant
 from ocp.simulation.resimulation import resimulate
 from ocp.task.point_to_point import PointToPoint
 
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
 """Errors along each side of the grid, by the number of ranges."""
 _ZOOMS, _BESIDE = 3, (-1.0, -0.5, 0.0, 0.5, 1.0)
-"""How often the grid around a peak is made finer, and its errors in steps of the one before."""
+"""How often the grid around a peak is made finer, and its points in steps of the grid before."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +72,7 @@ def peaks_between(
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    plant = task.plant
-    if not isinstance(plant, UncertainPlant):
-        raise ValueError(f"plant {plant.name!r} is not uncertain; give an UncertainPlant")
+    plant = uncertain_plant(task.plant)
     assumed, largest = on_assumed(task), np.array(list(plant.ranges.values()))
     population = ErrorPopulation(assumed, profile, coefficients, dict(plant.ranges))
     along = _ALONG[len(largest)]
@@ -101,7 +99,7 @@ def _grid(along: ArrayLike, ranges: int) -> NDArray[np.float64]:
 
 
 def _is_peak(values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which values of a grid no neighbour along a side exceeds."""
+    """Where a value of a grid is no smaller than its neighbours along every side."""
     peak = np.ones(values.shape, dtype=bool)
     for axis in range(values.ndim):
         rows, of = np.moveaxis(values, axis, 0), np.moveaxis(peak, axis, 0)

@@ -28,7 +28,7 @@ class Clock:
     end : float
         When it stops [s].
     speed : float
-        Its seconds in a second of the animation; below 1 is slow motion.
+        Seconds of the motion in a second of the animation; below 1 is slow motion.
     frames_per_second : float
         Frames in a second of the animation.
 

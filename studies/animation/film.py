@@ -83,12 +83,11 @@ def animate(
         How many times larger than they are deflections are drawn, which the picture says; by
         default so that the largest is up to a fifth of the structure, but never less than 1.
     speed : float
-        Of the clock: 0.25 is slow motion, four times slower than it is.
+        Seconds of the motion in a second of the animation: 0.25 is slow motion.
     frames_per_second : float
-        50 at most. A GIF holds a frame for hundredths of a second, so that 100 over a whole number
-        are exact.
+        50 at most. A GIF counts hundredths of a second: 50, 25 and 20 are exact, 30 is rounded.
     width : int
-        Of the picture [pixels], 200 to 2000.
+        Width of the picture [pixels], 200 to 2000.
     format : str
         ``"gif"``, or ``"mp4"`` where the program ffmpeg is installed.
     report : callable, optional

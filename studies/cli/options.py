@@ -11,7 +11,7 @@ import click
 
 from models import Plant, load_plant_file
 from ocp.base.files import check_writable
-from ocp.base.names import nearest
+from ocp.base.names import unknown
 from ocp.task.quantities import QUANTITIES, Quantity
 from studies.cli.plants import parse_error, parse_plant, parse_setting
 from studies.cli.quantities import (
@@ -69,9 +69,7 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name."""
         if isinstance(value, str) and value not in self.choices:
-            hint = nearest(value, self.choices)
-            known = ", ".join(self.choices)
-            self.fail(f"unknown {self._what} {value!r}; {hint}(known: {known})", param, ctx)
+            self.fail(unknown(self._what, value, self.choices), param, ctx)
         return super().convert(value, param, ctx)
 
 

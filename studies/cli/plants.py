@@ -8,7 +8,7 @@ from typing import Any
 
 from models import Plant, known_plants
 from ocp import UncertainPlant
-from ocp.base.names import nearest
+from ocp.base.names import has_no, unknown
 from studies.cli.quantities import parse_share
 
 
@@ -17,11 +17,7 @@ def parse_plant(name: str) -> type[Plant]:
     plants = known_plants()
     if name in plants:
         return plants[name]
-    hint = nearest(name, plants)
-    raise ValueError(
-        f"unknown plant {name!r}; {hint}(known: {', '.join(sorted(plants))}; your own by its "
-        "--plant-file)"
-    )
+    raise ValueError(unknown("plant", name, sorted(plants), "; your own by its --plant-file"))
 
 
 def parse_setting(text: str, what: str, example: str) -> tuple[str, str]:
@@ -98,9 +94,7 @@ def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
     given: dict[str, float] = {}
     for name, text in settings:
         if name not in known:
-            listed = ", ".join(known) or "none"
-            hint = nearest(name, known)
-            raise ValueError(f"{kind.name} has no parameter {name!r}; {hint}(it has: {listed})")
+            raise ValueError(has_no(kind.name, "parameter", name, known))
         if name in given:
             raise ValueError(f"{name} is set twice; set it once")
         given[name] = _number(known[name], text)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from ocp import Front
 from ocp.answers.encoding import plain
+from ocp.base.checks import of_kind
 from studies.paper.tasks import task_difference
 from studies.registry.methods import method_of
 
@@ -30,12 +31,13 @@ def check_fronts(
     Raises
     ------
     ValueError
-        When there are fewer, one is empty, one is given twice, or their tasks differ; in
-        one line, with what differs.
+        When there are fewer, one is something else, empty or given twice, or their tasks differ;
+        in one line, with what differs.
     """
     if len(fronts) < least:
         raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given")
     for front, name in zip(fronts, names, strict=True):
+        of_kind(name, front, Front, "a Front, as of epsilon_front, search or Front.load")
         if not front.points:
             raise ValueError(f"{name} has no finite point; leave it out, or search longer")
         difference = task_difference(front.task, fronts[0].task)

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
+from ocp.front.points import LEVELS
 from studies.comparison.groups import check_fronts, grouped
 from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
-from studies.registry.methods import LEVELS, Method, method_of
+from studies.registry.methods import Method, method_of
 
 FILL = 1000
 """About how many points a filled front has."""

@@ -8,13 +8,12 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics import PopulationObjective
+from metaheuristics import NamedProblem, PopulationObjective
 from ocp import QuietarmError, plan_move
 from ocp.answers.provenance import SolveSettings
 from ocp.answers.saved import Saved
 from ocp.base.ranges import CountFromOne, Positive, Share
 from ocp.front.sweep import Sweep
-from studies.contest.problems import Problem
 
 LEVEL = 1e-3
 """Residual [m] within which the energy is minimised."""
@@ -69,12 +68,12 @@ class Landscape(Saved):
     boxes: tuple[tuple[Positive, float | None], ...]
 
 
-def landscape_of(problem: Problem, seed: int = 0) -> Landscape:
+def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
     """Look for the local minima of a problem.
 
     Parameters
     ----------
-    problem : Problem
+    problem : NamedProblem
         Which.
     seed : int
         Seed of the random starts.
@@ -131,7 +130,7 @@ def _correlation(energies: Array, steps: Array) -> float | None:
     return float(np.corrcoef(energies, _length(steps))[0, 1])
 
 
-def _in_box(problem: Problem, share: float, own: float) -> float | None:
+def _in_box(problem: NamedProblem, share: float, own: float) -> float | None:
     try:
         plan = plan_move(
             problem.task, problem.profile, residual_limit=LEVEL, bound=share * problem.bound

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
 from math import inf
-from types import MappingProxyType
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metaheuristics.budget.record import CORNER
 from metaheuristics.ensemble import Spread
+from ocp.front.points import LEVELS
 from studies.comparison.staircase import objectives, within
+from studies.contest.folder import Contents
+from studies.contest.imported import Imported
 from studies.contest.landscape import Landscape
 from studies.contest.problems import Yardstick
-from studies.contest.runs import Key, Run
-from studies.registry.methods import LEVELS
+from studies.contest.runs import Run
 
 Array = NDArray[np.float64]
+_Kind = TypeVar("_Kind", Run, Imported)
 TARGETS = (1e-2, 1e-3)
 """Shares of the exact front's hypervolume that may be missing for a target to count as reached."""
 _TIMES = 120
@@ -27,8 +30,8 @@ _PLACES = 3000
 
 
 @dataclass(frozen=True, eq=False)
-class Field:
-    """All runs of one method on one problem.
+class Outcome:
+    """What the runs of one method on one problem ended with; all that is known of other tools'.
 
     Attributes
     ----------
@@ -36,12 +39,60 @@ class Field:
         Its name.
     yardstick : Yardstick
         The exact front.
-    runs : tuple of Run
-        One a seed, in the order of the seeds.
+    runs : tuple of Run or Imported
+        In the order of their seeds or files.
     """
 
     method: str
     yardstick: Yardstick
+    runs: tuple[Run, ...] | tuple[Imported, ...]
+
+    @cached_property
+    def final(self) -> Array:
+        """Share of the exact front's hypervolume that is missing at the end, shape (runs,)."""
+        scale = self.yardstick.scale
+        volumes = [scale.hypervolume(objectives(run.front)) for run in self.runs]
+        return 1.0 - np.array(volumes) / self.yardstick.hypervolume
+
+    @property
+    def budgets(self) -> set[int | None]:
+        """Evaluations of its runs; with None where those of one are not known."""
+        return {run.evaluations for run in self.runs}
+
+    @cached_property
+    def energies(self) -> Array:
+        """How far the least energies within `LEVELS` are above the exact ones, as a share.
+
+        Shape (runs, levels); infinite where a run has no motion within a level.
+        """
+        exact = within(objectives(self.yardstick.front), LEVELS)
+        found = [within(objectives(run.front), LEVELS, inf) for run in self.runs]
+        return np.array(found) / exact - 1
+
+    @cached_property
+    def missing_by_thirds(self) -> Array:
+        """Share of the exact hypervolume over each third of the residuals that is missing.
+
+        Shape (runs, 3): still, middle, cheap. Both hypervolumes are up to the corner in the energy.
+        """
+        scale = self.yardstick.scale
+        exact = _over_thirds(scale.scaled(objectives(self.yardstick.front)))
+        found = [_over_thirds(scale.scaled(objectives(run.front))) for run in self.runs]
+        return 1.0 - np.array(found) / exact
+
+
+@dataclass(frozen=True, eq=False)
+class Field(Outcome):
+    """All runs of one method on one problem, with what they had found on the way.
+
+    Attributes
+    ----------
+    method, yardstick
+        As `Outcome` has them.
+    runs : tuple of Run
+        One a seed, in the order of the seeds.
+    """
+
     runs: tuple[Run, ...]
 
     @cached_property
@@ -63,37 +114,16 @@ class Field:
         count = len(self.evaluations)
         return np.array([[mark.seconds for mark in run.marks[:count]] for run in self.runs])
 
-    @property
-    def final(self) -> Array:
-        """Missing share at the end, shape (runs,)."""
-        return self.missing[:, -1]
-
     @cached_property
-    def energies(self) -> Array:
-        """How far the least energies within `LEVELS` are above the exact ones, as a share.
-
-        Shape (runs, levels); infinite where a run has no motion within a level.
-        """
-        exact = within(objectives(self.yardstick.front), LEVELS)
-        found = [within(objectives(run.front), LEVELS, inf) for run in self.runs]
-        return np.array(found) / exact - 1
+    def final(self) -> Array:
+        """Missing share at the last mark, shape (runs,)."""
+        return self.missing[:, -1]
 
     @cached_property
     def visited(self) -> Array:
         """Share of the feasible candidates in each third and beyond, shape (runs, 4)."""
         counts = np.array([astuple(run.visits) for run in self.runs], dtype=float)
         return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
-
-    @cached_property
-    def missing_by_thirds(self) -> Array:
-        """Share of the exact hypervolume over each third of the residuals that is missing.
-
-        Shape (runs, 3): still, middle, cheap. Both hypervolumes are up to the corner in the energy.
-        """
-        scale = self.yardstick.scale
-        exact = _over_thirds(scale.scaled(objectives(self.yardstick.front)))
-        found = [_over_thirds(scale.scaled(objectives(run.front))) for run in self.runs]
-        return 1.0 - np.array(found) / exact
 
     def hits(self, target: float) -> Array:
         """Evaluations after which a target was first seen reached, shape (runs,); else infinite.
@@ -140,19 +170,33 @@ class Arena:
     yardstick : Yardstick
         The problem and its exact front.
     fields : tuple of Field
-        The methods, each with one run or more.
+        The methods that were run here, each with one run or more.
+    imports : tuple of Outcome
+        Those whose results came from elsewhere.
     landscape : Landscape or None
         Its local minima, where they were looked for.
     """
 
     yardstick: Yardstick
     fields: tuple[Field, ...]
+    imports: tuple[Outcome, ...] = ()
     landscape: Landscape | None = None
 
     @property
     def problem(self) -> str:
         """Its name."""
         return self.yardstick.problem
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """Of all methods."""
+        return *self.fields, *self.imports
+
+    @property
+    def alike(self) -> tuple[Outcome, ...]:
+        """Those that are compared by tests: of runs with one number of evaluations, known here."""
+        budgets = {budget for field in self.fields for budget in field.budgets}
+        return *self.fields, *(one for one in self.imports if one.budgets == budgets)
 
     @cached_property
     def times(self) -> Array:
@@ -162,37 +206,36 @@ class Arena:
         return np.geomspace(max(first, 1e-4), max(last, 2e-4), _TIMES)
 
 
-def arenas_of(
-    runs: Mapping[Key, Run],
-    yardsticks: Mapping[str, Yardstick],
-    landscapes: Mapping[str, Landscape] = MappingProxyType({}),
-) -> tuple[Arena, ...]:
+def arenas_of(contents: Contents) -> tuple[Arena, ...]:
     """The problems with runs, in the order of their names; methods in that of theirs.
 
     Parameters
     ----------
-    runs : mapping of Key to Run
-        As `Folder.runs` gives them.
-    yardsticks : mapping of str to Yardstick
-        By problem.
-    landscapes : mapping of str to Landscape
-        By problem, where they are known.
+    contents : Contents
+        What the contest's folder holds.
 
     Returns
     -------
     tuple of Arena
-        One a problem.
+        One a problem; none where results of other tools alone are there.
     """
+    runs = [run for _, run in sorted(contents.runs.items())]
+    imports = [run for _, run in sorted(contents.imports.items())]
     arenas = list[Arena]()
-    for problem in dict.fromkeys(key.problem for key in runs):
-        own = [key for key in runs if key.problem == problem]
-        methods = dict.fromkeys(key.method for key in own)
-        fields = [
-            Field(m, yardsticks[problem], tuple(runs[key] for key in own if key.method == m))
-            for m in methods
-        ]
-        arenas.append(Arena(yardsticks[problem], tuple(fields), landscapes.get(problem)))
+    for problem in dict.fromkeys(run.problem for run in runs):
+        yardstick = contents.yardsticks[problem]
+        fields = [Field(name, yardstick, own) for name, own in _by_method(runs, problem)]
+        given = [Outcome(name, yardstick, own) for name, own in _by_method(imports, problem)]
+        landscape = contents.landscapes.get(problem)
+        arenas.append(Arena(yardstick, tuple(fields), tuple(given), landscape))
     return tuple(arenas)
+
+
+def _by_method(runs: Iterable[_Kind], problem: str) -> Iterable[tuple[str, tuple[_Kind, ...]]]:
+    """The runs on a problem, one method after another."""
+    own = [run for run in runs if run.problem == problem]
+    for method in dict.fromkeys(run.method for run in own):
+        yield method, tuple(run for run in own if run.method == method)
 
 
 def _over_thirds(scaled: Array) -> Array:
@@ -205,7 +248,7 @@ def _over_thirds(scaled: Array) -> Array:
 
 def methods_in(arenas: Iterable[Arena]) -> tuple[str, ...]:
     """Names of the methods that have runs on any problem, each once."""
-    return tuple(dict.fromkeys(field.method for arena in arenas for field in arena.fields))
+    return tuple(dict.fromkeys(one.method for arena in arenas for one in arena.outcomes))
 
 
 def quartiles(rows: Array) -> Array:

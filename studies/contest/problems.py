@@ -1,62 +1,25 @@
-"""The problems of a contest, by name, and the exact front that each is measured against."""
+"""The named problems that a contest is held on, and the exact front of each as a yardstick."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import degrees
 from typing import ClassVar
 
+from metaheuristics import PROBLEMS, NamedProblem, problem_of
 from metaheuristics.budget.record import Scale
-from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, epsilon_front
+from ocp import CycloidPolynomial, Front
 from ocp.answers.saved import Saved
-from ocp.base.names import nearest
 from ocp.base.ranges import Positive
 from studies.comparison.staircase import filled
-from studies.paper.case import Case
 from studies.paper.printed import CONDITIONS
-from studies.registry.methods import LEVELS
 
-_POINTS = 50
 _FILL = 10_000
 """Points of an exact front with the motions between them: its hypervolume is right to 1e-4."""
 
 
-@dataclass(frozen=True)
-class Problem:
-    """A move, a profile and a box, by name.
-
-    Attributes
-    ----------
-    name : str
-        What it is called on the command line and in names of files.
-    task : PointToPoint
-        The move.
-    bound : float
-        Largest absolute coefficient.
-    profile : JointProfile
-        How the joint moves.
-    """
-
-    name: str
-    task: PointToPoint
-    bound: float
-    profile: JointProfile
-
-
-def _named(case: Case) -> Problem:
-    task = case.task
-    name = f"{task.plant.name}-{degrees(task.span):.6g}deg-{task.duration:g}s"
-    assert case.bound is not None  # a case has one
-    return Problem(name, task, case.bound, CycloidPolynomial())
-
-
-PROBLEMS = {problem.name: problem for problem in map(_named, CONDITIONS)}
-"""The six conditions of the paper."""
-
-
-def problems_of(names: Sequence[str]) -> tuple[Problem, ...]:
-    """Problems by their names; all where none is given.
+def problems_of(names: Sequence[str]) -> tuple[NamedProblem, ...]:
+    """Problems by their names; the paper's six conditions where none is given.
 
     Parameters
     ----------
@@ -65,20 +28,31 @@ def problems_of(names: Sequence[str]) -> tuple[Problem, ...]:
 
     Returns
     -------
-    tuple of Problem
+    tuple of NamedProblem
         Each once.
 
     Raises
     ------
     ValueError
-        When a name is unknown; the nearest one is suggested.
+        When a name is unknown; the nearest one is suggested. When a problem has three objectives.
     """
     for name in names:
-        if name not in PROBLEMS:
+        if problem_of(name).peak:
             raise ValueError(
-                f"unknown problem {name!r}; {nearest(name, PROBLEMS)}(known: {', '.join(PROBLEMS)})"
+                f"{name} has a third objective, and a contest compares residual and energy alone; "
+                "leave it out"
             )
-    return tuple(PROBLEMS[name] for name in dict.fromkeys(names or PROBLEMS))
+    return tuple(map(problem_of, dict.fromkeys(names))) or the_papers()
+
+
+def the_papers() -> tuple[NamedProblem, ...]:
+    """The problems that are the paper's six conditions."""
+    wanted = [(case.task, CycloidPolynomial(), case.bound) for case in CONDITIONS]
+    return tuple(
+        problem
+        for problem in PROBLEMS.values()
+        if not problem.peak and (problem.task, problem.profile, problem.bound) in wanted
+    )
 
 
 @dataclass(frozen=True)
@@ -109,15 +83,9 @@ class Yardstick(Saved):
     hypervolume: Positive
 
     @classmethod
-    def of(cls, problem: Problem, front: Front) -> Yardstick:
-        """The yardstick that an exact front is; ValueError where it is a single motion."""
+    def of(cls, problem: NamedProblem) -> Yardstick:
+        """The yardstick of a problem; ValueError where its exact front is a single motion."""
+        (front,) = problem.fronts()
         scale = Scale.of(front)
         volume = scale.hypervolume(filled(front, _FILL))
         return cls(problem.name, problem.bound, front, scale, volume)
-
-
-def exact_front(problem: Problem) -> Front:
-    """The front of a problem by the gradient, with points at `LEVELS`."""
-    return epsilon_front(
-        problem.task, problem.profile, bound=problem.bound, points=_POINTS, at=LEVELS
-    )

@@ -94,7 +94,7 @@ def why_none(arenas: Sequence[Arena]) -> str:
     """Why there are no statistics at all, in a line; empty where there are some."""
     if find_spec("scipy") is None:
         return _EXTRA
-    if len(methods_in(arenas)) < 2:
+    if len({one.method for arena in arenas for one in arena.alike}) < 2:
         return "one method alone is not compared: statistics are left out"
     if not any(len(_common_seeds(arena)) >= LEAST_RUNS for arena in arenas):
         return f"fewer than {LEAST_RUNS} runs of each method: statistics are left out"
@@ -144,7 +144,10 @@ def ranking(values: Array, methods: Sequence[str], what: str) -> Ranking:
 
 
 def ranking_on(arena: Arena) -> Ranking | None:
-    """Methods ranked on one problem, seed by seed; None with fewer than three or too few runs."""
+    """Methods ranked on one problem, seed by seed; None with fewer than three or too few runs.
+
+    Without those whose results came from elsewhere: they have no seeds.
+    """
     seeds = _common_seeds(arena)
     if len(arena.fields) < 3 or len(seeds) < LEAST_RUNS:
         return None
@@ -159,25 +162,28 @@ def ranking_over(arenas: Sequence[Arena]) -> Ranking | None:
     """Methods ranked by their medians, problem by problem.
 
     None with fewer than three methods, or fewer than `LEAST_RUNS` problems on which all of them
-    have so many runs.
+    have so many runs. Results from elsewhere are ranked where they are alike on every problem.
     """
-    methods = methods_in(arenas)
+    known = [{one.method: one for one in arena.alike if len(one.runs) >= LEAST_RUNS}
+             for arena in arenas]  # fmt: skip
+    own = {field.method for arena in arenas for field in arena.fields}
+    methods = [name for name in methods_in(arenas)
+               if name in own or all(name in here for here in known)]  # fmt: skip
     rows = [
-        [float(np.median(field.final)) for method in methods for field in arena.fields
-         if field.method == method]
-        for arena in arenas
-        if len(arena.fields) == len(methods) and len(_common_seeds(arena)) >= LEAST_RUNS
-    ]  # fmt: skip
+        [float(np.median(here[method].final)) for method in methods]
+        for here, arena in zip(known, arenas, strict=True)
+        if all(method in here for method in methods) and len(_common_seeds(arena)) >= LEAST_RUNS
+    ]
     if len(methods) < 3 or len(rows) < LEAST_RUNS:
         return None
     return ranking(np.array(rows), methods, "problems")
 
 
 def pairs_on(arena: Arena) -> list[Pair]:
-    """Every pair of methods on a problem that both have `LEAST_RUNS` runs on."""
+    """Every pair of methods on a problem that both have `LEAST_RUNS` runs of one length on."""
     from scipy import stats
 
-    fields = [field for field in arena.fields if len(field.runs) >= LEAST_RUNS]
+    fields = [field for field in arena.alike if len(field.runs) >= LEAST_RUNS]
     found = list[tuple[str, str, float, float]]()
     for one, other in combinations(fields, 2):
         test = stats.mannwhitneyu(one.final, other.final)

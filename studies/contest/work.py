@@ -2,134 +2,127 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from pathlib import Path
 
-from metaheuristics import PRESETS
-from metaheuristics.budget.run import number_of_evaluations, parts_of, search_within
-from metaheuristics.ensemble import seeds_of
-from metaheuristics.runs.settings import number_of_individuals
-from metaheuristics.sharing.pieces import Done, Listener, NotTriedError, Piece, Say, to_the_end
+from metaheuristics import NamedProblem
+from metaheuristics.budget.run import number_of_evaluations, search_within
+from metaheuristics.sharing.pieces import Done, Listener, Piece, Say
 from metaheuristics.sharing.running import run_pieces
-from metaheuristics.sharing.workers import HERE, Workers
+from metaheuristics.sharing.workers import Workers
 from ocp import QuietarmError
 from ocp.base.interrupts import note_interrupts
+from studies.contest.asked import Contest, check_alike
+from studies.contest.folder import Contents
+from studies.contest.imported import Imported, imported_run
 from studies.contest.landscape import Landscape, landscape_of
-from studies.contest.problems import Problem, Yardstick, exact_front
-from studies.contest.runs import Folder, Key, Run, check_alike
+from studies.contest.problems import Yardstick
+from studies.contest.runs import Key, Run
 
 
-@dataclass(frozen=True)
-class Contest:
-    """What is asked of a contest.
+def set_up(
+    contest: Contest,
+    contents: Contents,
+    imports: Mapping[str, Sequence[Path]],
+    evaluations: int | None = None,
+) -> None:
+    """Put exact fronts and results of other tools into the folder, where they are not yet.
 
     Parameters
     ----------
-    problems : tuple of Problem
-        What the methods are run on.
-    methods : tuple of str
-        Names of methods.
-    runs : int
-        Seeds of each method.
-    evaluations : int
-        Evaluations of each run.
-    seed : int
-        First seed.
-    population : int, optional
-        Individuals of every method; each method's own by default.
-    explain : bool
-        Whether the local minima of the problems are looked for as well.
-    workers : Workers
-        Where the runs are done.
+    contest : Contest
+        What is asked.
+    contents : Contents
+        What is there.
+    imports : mapping of str to sequence of Path
+        Files of runs by the name of their method.
+    evaluations : int, optional
+        How many evaluations each of these runs took; unknown by default.
 
     Raises
     ------
     ValueError
-        When a method is unknown or a number out of range.
+        As `check_alike`; when imports are for no single problem, do not fit it, or are others than
+        those of the same names in the folder. Nothing is written then.
     """
-
-    problems: tuple[Problem, ...]
-    methods: tuple[str, ...]
-    runs: int = 31
-    evaluations: int = 20_000
-    seed: int = 0
-    population: int | None = None
-    explain: bool = False
-    workers: Workers = HERE
-
-    def __post_init__(self) -> None:
-        for name in self.methods:
-            search, _ = parts_of(name)
-            limited = [problem.name for problem in self.problems if problem.task.limits]
-            if limited and search in PRESETS and not PRESETS[search].keeps_limits:
+    check_alike(contents, contest)
+    if evaluations is not None:
+        number_of_evaluations(evaluations)
+    if imports and len(contest.problems) != 1:
+        raise ValueError(
+            f"results are imported for one problem, and {len(contest.problems)} are named; give "
+            "one PROBLEM with --import, then the next into the same folder"
+        )
+    yardsticks = {
+        problem.name: contents.yardsticks.get(problem.name) or Yardstick.of(problem)
+        for problem in contest.problems
+    }
+    imported = list[Imported]()
+    for method, files in imports.items():
+        (problem,) = contest.problems
+        for path in files:
+            run = imported_run(problem, yardsticks[problem.name], method, path, evaluations)
+            known = contents.imports.get(run.key)
+            if known is None:
+                _refuse_twice(run, [*contents.imports.values(), *imported])
+                imported.append(run)
+            elif (known.digest, known.evaluations) != (run.digest, run.evaluations):
                 raise ValueError(
-                    f"{name} cannot search {limited[0]}, which has limits; leave one of them out"
+                    f"{contents.folder.path} has another run of {method} from a file {path.name}; "
+                    "rename one of them, or remove the folder's "
+                    f"{contents.folder.place(known).relative_to(contents.folder.path)}"
                 )
-        object.__setattr__(self, "methods", tuple(dict.fromkeys(self.methods)))
-        seeds_of(self.seed, self.runs)
-        number_of_evaluations(self.evaluations)
-        if self.population is not None:
-            number_of_individuals(self.population)
-
-    @property
-    def keys(self) -> list[Key]:
-        """All runs: every method from one seed, then from the next, on one problem after another.
-
-        So a contest that is stopped has as many runs of one method as of another.
-        """
-        return [
-            Key(problem.name, method, seed)
-            for problem in self.problems
-            for seed in seeds_of(self.seed, self.runs)
-            for method in self.methods
-        ]
+    for yardstick in yardsticks.values():
+        if yardstick.problem not in contents.yardsticks:
+            contents.keep(yardstick)
+    for run in imported:
+        contents.keep(run)
 
 
-def pieces_of(contest: Contest, folder: Folder) -> list[Piece]:
+def _refuse_twice(run: Imported, others: Iterable[Imported]) -> None:
+    """Refuse a run that is counted already: it would pass for a second seed."""
+    for other in others:
+        if (other.problem, other.digest) == (run.problem, run.digest):
+            raise ValueError(
+                f"{run.file} of {run.method} holds the same as {other.file} of {other.method}; "
+                "give every run once"
+            )
+
+
+def pieces_of(contest: Contest, contents: Contents) -> list[Piece]:
     """The work that is still to be done.
 
     Parameters
     ----------
     contest : Contest
         What is asked.
-    folder : Folder
-        What is there.
+    contents : Contents
+        What is there, the exact fronts among it.
 
     Returns
     -------
     list of Piece
-        Exact fronts, local minima and runs that are not in the folder.
-
-    Raises
-    ------
-    ValueError
-        As `check_alike`.
-    FileFormatError
-        When a file in the folder is broken.
+        Local minima and runs that are not in the folder.
     """
-    there, yardsticks, landscapes = folder.runs(), folder.yardsticks(), folder.landscapes()
-    check_alike(there.values(), yardsticks, contest.evaluations, contest.population, folder.path)
     pieces = list[Piece]()
-    for problem in contest.problems:
-        wanted = [key for key in contest.keys if key.problem == problem.name and key not in there]
-        known = yardsticks.get(problem.name)
-        if known is None:
-            name = f"{problem.name}: exact front"
-            pieces.append(Piece(problem.name, name, partial(_yardstick, problem)))
-        if contest.explain and problem.name not in landscapes:
+    problems = {problem.name: problem for problem in contest.problems}
+    for problem in contest.problems if contest.explain else ():
+        if problem.name not in contents.landscapes:
             name = f"{problem.name}: local minima"
             work = partial(_landscape, problem, contest.seed)
             pieces.append(Piece((problem.name, "landscape"), name, work))
-        for key in wanted:
-            name = f"{problem.name}: {key.method}, seed {key.seed}"
-            work = partial(_run, contest, problem, key, known)
-            pieces.append(Piece(key, name, work, () if known else (problem.name,)))
+    for key in contest.keys:
+        if key not in contents.runs:
+            name = f"{key.problem}: {key.method}, seed {key.seed}"
+            yardstick = contents.yardsticks[key.problem]
+            work = partial(_run, contest, problems[key.problem], key, yardstick)
+            pieces.append(Piece(key, name, work))
     return pieces
 
 
 def run_contest(
-    pieces: Sequence[Piece], folder: Folder, workers: Workers, begin: Callable[[str], None]
+    pieces: Sequence[Piece], contents: Contents, workers: Workers, begin: Callable[[str], None]
 ) -> Done:
     """Do the work; every run is in the folder as soon as it is done.
 
@@ -137,7 +130,7 @@ def run_contest(
     ----------
     pieces : sequence of Piece
         What `pieces_of` gave.
-    folder : Folder
+    contents : Contents
         Where the runs are kept.
     workers : Workers
         Where they are done.
@@ -150,40 +143,30 @@ def run_contest(
         What became of the pieces.
     """
 
-    def keep(key: object, answer: Run | Yardstick | Landscape) -> None:
+    def keep(key: object, answer: Run | Landscape) -> None:
         with note_interrupts():
-            if isinstance(answer, Run):
-                folder.save_run(answer)
-            elif isinstance(answer, Landscape):
-                folder.save_landscape(answer)
-            else:
-                folder.save_yardstick(answer)
+            contents.keep(answer)
 
     return run_pieces(pieces, Listener(begin, ended=keep), workers=workers, note=QuietarmError)
 
 
-def _yardstick(problem: Problem, earlier: Done, say: Say) -> Yardstick:
-    return Yardstick.of(problem, to_the_end(exact_front(problem)))
-
-
-def _landscape(problem: Problem, seed: int, earlier: Done, say: Say) -> Landscape:
+def _landscape(problem: NamedProblem, seed: int, earlier: Done, say: Say) -> Landscape:
     return landscape_of(problem, seed)
 
 
 def _run(
-    contest: Contest, problem: Problem, key: Key, known: Yardstick | None, earlier: Done, say: Say
+    contest: Contest, problem: NamedProblem, key: Key, yardstick: Yardstick, earlier: Done, say: Say
 ) -> Run:
-    yardstick = earlier.answers.get(problem.name) if known is None else known
-    if yardstick is None:
-        raise NotTriedError("not tried, as there is no exact front to measure it against")
+    entry = contest.entries[key.method]
     found = search_within(
         problem.task,
-        key.method,
+        entry.method,
         contest.evaluations,
         yardstick.scale,
         profile=problem.profile,
         bound=problem.bound,
-        population=contest.population,
+        population=entry.population,
+        settings=entry.settings,
         seed=key.seed,
     )
-    return Run.of(yardstick, key.method, contest.evaluations, contest.population, found)
+    return Run.of(yardstick, key.method, contest.evaluations, entry.population, found)

@@ -13,6 +13,7 @@ from metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hyp
 from ocp import Front
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
+from studies.figures.given import fronts_given
 from studies.figures.looks import BLUE, look
 from studies.registry.methods import method_of
 
@@ -36,7 +37,13 @@ def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
         The axes, with a legend where there are a few fronts.
+
+    Raises
+    ------
+    ValueError
+        When there is no front, or one is something else.
     """
+    fronts = fronts_given(fronts)
     ax = axes_or_new(ax)
     names = _names(fronts)
     for i, front in enumerate(fronts):
@@ -80,7 +87,13 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
         The axes; the box that the hypervolume is a share of is named beside them.
+
+    Raises
+    ------
+    ValueError
+        When there is no front, or one is something else.
     """
+    fronts = fronts_given(fronts)
     ax = axes_or_new(ax)
     histories = [front.history for front in fronts if front.history]
     residual, energy = fronts[0].reference
@@ -123,6 +136,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes; a seed that never reaches that residual is a cross.
     """
+    fronts = fronts_given(fronts)
     ax = axes_or_new(ax)
     spread = energies_at(fronts)
     for place, front in enumerate(fronts):
@@ -173,6 +187,7 @@ def front_figure(fronts: Sequence[Front], title: str | None = None) -> Figure:
         Energy against residual; median hypervolume with its quartiles against candidates; for
         several seeds also the least energy of each at `SEARCH_RESIDUAL`, over its quartiles.
     """
+    fronts = fronts_given(fronts)
     complete = [front for front in fronts if front.complete]
     several = len(complete) > 1
     if title is None:

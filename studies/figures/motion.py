@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ocp import Floor, Plan, Trajectory, evaluate_coefficients
+from ocp.base.checks import of_kind
 from ocp.robustness.uncertain import assumed_plant
 from ocp.task.quantities import QUANTITIES
 from studies.display.words import error_words, title_of
@@ -175,8 +176,10 @@ def lines_of(motions: Motions) -> list[Line]:
         motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
     elif isinstance(motions, Floor):
         motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
-    if not motions:
+    if not of_kind("motions", motions, Sequence, "a Plan, a Floor or a list of Line"):
         raise ValueError(_GIVE_MOTIONS)
+    for i, line in enumerate(motions, 1):
+        of_kind(f"motion {i}", line, Line, "a Line, as Line(plan, 'what the legend calls it')")
     looks = [look(i) for i in range(len(motions))]
     return [
         line if line.colour else replace(line, colour=own.colour, style=own.dash)

@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ocp import Robustness
+from ocp import Robustness, Sweep
+from ocp.base.names import has_no
 from ocp.robustness.measures import TOLERATED
 from studies.figures.axes import axes_or_new, legend_of, side_by_side
+from studies.figures.given import robustness_given
 from studies.figures.looks import look
 
 
@@ -30,11 +32,17 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     matplotlib.axes.Axes
         The axes: residual, in per cent of what the plain cycloid leaves on the assumed plant,
         against the error [%]; where a curve first leaves the limit, it is marked.
+
+    Raises
+    ------
+    ValueError
+        When there is no plan, one is something else, or has no sweep of that name.
     """
+    plans = robustness_given(plans)
     ax = axes_or_new(ax)
     limit = 100 * TOLERATED
     for number, (label, plan) in enumerate(plans.items()):
-        sweep = next(sweep for sweep in plan.sweeps if sweep.name == name)
+        sweep = _sweep_of(label, plan, name)
         how, per_cent = look(number), 100 / plan.cycloid
         ax.plot(
             100 * sweep.errors, per_cent * sweep.figures.residual, color=how.colour,
@@ -54,9 +62,17 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
 
 def robustness_figure(plans: Mapping[str, Robustness], title: str = "") -> Figure:
     """The picture of `quietarm robustness`: `draw_robustness`, one panel for each parameter."""
-    names = next(iter(plans.values())).ranges
+    names = next(iter(robustness_given(plans).values())).ranges
     figure, axes = side_by_side(len(names), title, width=max(4.8, 7.2 / len(names)))
     for name, ax in zip(names, axes, strict=True):
         draw_robustness(plans, name, ax)
     figure.legend(*legend_of(axes), loc="outside lower center", ncols=3, fontsize=8)
     return figure
+
+
+def _sweep_of(label: str, plan: Robustness, name: str) -> Sweep:
+    """The sweep of one thing that is wrong; ValueError where there is none."""
+    sweeps = {sweep.name: sweep for sweep in plan.sweeps}
+    if name not in sweeps:
+        raise ValueError(has_no(f"plan {label!r}", "sweep of", name, sweeps))
+    return sweeps[name]

@@ -11,6 +11,7 @@ from ocp import Front, Polish
 from ocp.front.checking import RESIDUAL_LIMIT
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
+from studies.figures.given import front_given, polish_given
 from studies.figures.looks import BLUE, ORANGE, RED
 from studies.registry.methods import method_of
 
@@ -30,6 +31,7 @@ def draw_sweep(front: Front, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, energy against residual, with a legend.
     """
+    front = front_given(front)
     ax = axes_or_new(ax)
     label = method_of(front.method).label
     _draw_gaps(ax, front)
@@ -67,6 +69,7 @@ def draw_polish(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, energy against residual, with a legend.
     """
+    before, polish = front_given(before), polish_given(polish)
     ax = axes_or_new(ax)
     for label, front, colour, mark in (
         ("before", before, ORANGE, "^"), ("after", polish.front, BLUE, "o"),
@@ -95,6 +98,7 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, energy saved [%] against residual, on the same scale as `draw_polish`.
     """
+    before, polish = front_given(before), polish_given(polish)
     ax = axes_or_new(ax)
     gains = [(1e3 * gain.residual, 100 * gain.share) for gain in polish.gains if gain.tried]
     ax.plot(*np.reshape(gains, (-1, 2)).T, "o", color=BLUE, markersize=3)
@@ -107,13 +111,14 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
 
 def sweep_figure(front: Front) -> Figure:
     """The picture of `quietarm front` by the gradient: `draw_sweep` under the task."""
-    figure, (ax,) = side_by_side(1, title_of(front.task), width=6.4)
+    figure, (ax,) = side_by_side(1, title_of(front_given(front).task), width=6.4)
     draw_sweep(front, ax)
     return figure
 
 
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """The picture of `quietarm polish`: `draw_polish` and `draw_savings` side by side."""
+    before, polish = front_given(before), polish_given(polish)
     name = method_of(polish.front.method).label
     figure, axes = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_polish(before, polish, axes[0])

@@ -9,9 +9,8 @@ from functools import partial
 
 from metaheuristics import PRESETS
 from ocp import Front, epsilon_front, weighted_front
+from ocp.front.points import LEVELS
 
-LEVELS = (1e-4, 1e-3, 5e-3)
-"""Residuals [m] at which energies are compared; fronts by epsilon have a point at each."""
 _POLISHED = ", polished"
 """What `ocp.polish_front` adds to the name of a method."""
 

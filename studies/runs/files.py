@@ -4,9 +4,34 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
+
+
+@dataclass(frozen=True)
+class FrontFiles:
+    """The files that a front is written to; None where one is not asked for.
+
+    Attributes
+    ----------
+    output : Path or None
+        The front, whole.
+    csv : Path or None
+        A table: its points, or what each of them gained.
+    figure : Path or None
+        The picture.
+    """
+
+    output: Path | None
+    csv: Path | None
+    figure: Path | None
+
+    def refuse_same(self, *read: tuple[str, Path]) -> None:
+        """Make sure that no two are one file, nor one that is read; ValueError names both."""
+        written = [("--output", self.output), ("--csv", self.csv), ("--figure", self.figure)]
+        refuse_same_file([*read, *written])
 
 
 def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:

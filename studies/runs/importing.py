@@ -18,7 +18,7 @@ from ocp.front.evaluation import refuse_beyond_box
 from studies.display.progress import working
 from studies.display.saving import drawing, finish
 from studies.display.words import print_lines
-from studies.runs.files import refuse_same_file
+from studies.runs.files import FrontFiles
 from studies.runs.foreign import Found
 from studies.runs.reports.search import print_fronts
 
@@ -193,9 +193,7 @@ def run_import(
     found: Found,
     method: str,
     settings: dict[str, Setting],
-    output: Path | None,
-    csv_file: Path | None,
-    figure: Path | None,
+    files: FrontFiles,
     quiet: bool,
 ) -> None:
     """Evaluate what a file holds, write the front, and show it beside the file's claims.
@@ -206,8 +204,8 @@ def run_import(
         The file, for messages.
     task, profile, found, method, settings
         As for `import_front`.
-    output, csv_file, figure : Path or None
-        Files for the front: whole, its points as a table, a picture.
+    files : FrontFiles
+        What is written.
     quiet : bool
         Show no progress.
 
@@ -218,9 +216,7 @@ def run_import(
     SolverFailedError
         When no motion can be used.
     """
-    refuse_same_file([("--output", output), ("--csv", csv_file), ("--figure", figure)])
-    refuse_same_file([("FILE", path), ("--output", output)])
-    refuse_same_file([("FILE", path), ("--csv", csv_file)])
+    files.refuse_same(("FILE", path))
     with working("evaluating", Console(stderr=True), quiet=quiet):
         try:
             front, claims = import_front(task, profile, found, method, settings)
@@ -241,4 +237,11 @@ def run_import(
             lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
         print_lines(console, *lines)
 
-    finish([(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))], show)
+    finish(
+        [
+            (files.output, front.save),
+            (files.csv, front.save_csv),
+            (files.figure, drawing(picture)),
+        ],
+        show,
+    )

@@ -16,7 +16,7 @@ from studies.display.progress import count, working
 from studies.display.saving import drawing, finish, interruption
 from studies.display.tables import Column, Table
 from studies.display.words import counted, millimetres, print_lines
-from studies.runs.files import refuse_same_file
+from studies.runs.files import FrontFiles
 from studies.runs.loading import load_front
 from studies.runs.reports.sweep import failure_lines
 
@@ -27,14 +27,7 @@ _ROWS = 10
 """Points that the table on screen shows."""
 
 
-def run_polish(
-    path: Path,
-    points: int | None,
-    output: Path | None,
-    csv_file: Path | None,
-    figure: Path | None,
-    quiet: bool,
-) -> None:
+def run_polish(path: Path, points: int | None, files: FrontFiles, quiet: bool) -> None:
     """Improve a saved front, write it, and show what each point gained.
 
     Parameters
@@ -43,8 +36,8 @@ def run_polish(
         The front.
     points : int or None
         How many of its points; None is all.
-    output, csv_file, figure : Path or None
-        Files for the improved front, the gains and the picture.
+    files : FrontFiles
+        What is written; the table is of the gains.
     quiet : bool
         Show no progress.
 
@@ -57,8 +50,7 @@ def run_polish(
     QuietarmError
         When it was interrupted, after what was improved is written.
     """
-    files = {"--output": output, "--csv": csv_file, "--figure": figure}
-    refuse_same_file([("FRONT", path), *files.items()])
+    files.refuse_same(("FRONT", path))
     errors = Console(stderr=True)
     with working("checking", errors, quiet=quiet):
         whole_front = load_front(path)
@@ -76,9 +68,9 @@ def run_polish(
 
     finish(
         [
-            (output, polish.front.save),
-            (csv_file, gains_table(gains).save_csv),
-            (figure, drawing(picture)),
+            (files.output, polish.front.save),
+            (files.csv, gains_table(gains).save_csv),
+            (files.figure, drawing(picture)),
         ],
         lambda console: _print_gains(console, whole_front, front, polish.front, gains),
         trouble=interruption() if len(gains) < len(front.points) else None,

@@ -29,7 +29,7 @@ from ocp.plan.robust import limit_of
 from studies.display.saving import STDOUT, File, drawing, finish
 from studies.display.search_progress import search_display
 from studies.registry.methods import Method
-from studies.runs.files import refuse_same_file, warn_of_workers
+from studies.runs.files import FrontFiles, refuse_same_file, warn_of_workers
 from studies.runs.reports.search import print_fronts
 
 if TYPE_CHECKING:
@@ -122,9 +122,7 @@ def run_front(
     task: PointToPoint,
     method: Method,
     options: dict[str, Any],
-    output: Path | None,
-    csv_file: Path | None,
-    figure: Path | None,
+    files: FrontFiles,
     quiet: bool,
 ) -> None:
     """Search from every seed, write what was found, and show it.
@@ -137,11 +135,8 @@ def run_front(
         A metaheuristic.
     options : dict
         The settings of `search`, the profile among them, ``runs`` and ``workers``.
-    output, csv_file : Path or None
-        Files for the front, whole and its points as a table; with several runs `with_seed` names
-        one for every seed.
-    figure : Path or None
-        File for the picture.
+    files : FrontFiles
+        What is written; with several runs `with_seed` names a front and a table for every seed.
     quiet : bool
         Show no progress.
 
@@ -155,9 +150,9 @@ def run_front(
     if runs > 1 and (options.get("checkpoint") or options.get("resume")):
         raise ValueError("--checkpoint and --resume are for one run, not with --runs")
     seeds = seeds_of(options["seed"], runs)
-    targets = _targets("--output", output, seeds)
-    tables = _targets("--csv", csv_file, seeds)
-    _refuse_same_files([*targets.values()], [*tables.values()], options, figure)
+    targets = _targets("--output", files.output, seeds)
+    tables = _targets("--csv", files.csv, seeds)
+    _refuse_same_files([*targets.values()], [*tables.values()], options, files.figure)
     errors = Console(stderr=True)
     found, lost, troubles = _fronts(errors, task, method, options, quiet)
     fronts = [front for front in found if front.complete or front.points]
@@ -175,10 +170,10 @@ def run_front(
     trouble = lost
     if stopped or troubles:
         trouble = lost or QuietarmError("; ".join([*filter(None, [stopped]), *troubles]))
-    files: list[File] = [(targets.get(front.seed or 0), front.save) for front in fronts]
-    files += [(tables.get(front.seed or 0), front.save_csv) for front in fronts]
+    written: list[File] = [(targets.get(front.seed or 0), front.save) for front in fronts]
+    written += [(tables.get(front.seed or 0), front.save_csv) for front in fronts]
     finish(
-        [*files, (figure, drawing(picture))],
+        [*written, (files.figure, drawing(picture))],
         lambda console: print_fronts(console, fronts),
         trouble=trouble,
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -15,7 +14,7 @@ from ocp import (
 from studies.display.progress import count
 from studies.display.saving import drawing, finish, interruption
 from studies.registry.methods import Method
-from studies.runs.files import refuse_same_file
+from studies.runs.files import FrontFiles
 from studies.runs.reports.sweep import failure_lines, print_sweep
 
 if TYPE_CHECKING:
@@ -26,9 +25,7 @@ def run_sweep(
     task: PointToPoint,
     method: Method,
     options: dict[str, Any],
-    output: Path | None,
-    csv_file: Path | None,
-    figure: Path | None,
+    files: FrontFiles,
     quiet: bool,
 ) -> None:
     """Sweep the front by the gradient, write what was found, and show it.
@@ -41,10 +38,8 @@ def run_sweep(
         A method of the gradient.
     options : dict
         Its settings, the profile among them.
-    output, csv_file : Path or None
-        Files for the front: whole, and its points as a table.
-    figure : Path or None
-        File for the picture.
+    files : FrontFiles
+        What is written.
     quiet : bool
         Show no progress.
 
@@ -53,7 +48,7 @@ def run_sweep(
     QuietarmError
         When it was interrupted, after what was found is written; when nothing was found.
     """
-    refuse_same_file([("--output", output), ("--csv", csv_file), ("--figure", figure)])
+    files.refuse_same()
     weights = options.get("weights", ())
     asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
     front = _swept(task, method, dict(options), quiet)
@@ -68,7 +63,11 @@ def run_sweep(
         return sweep_figure(front)
 
     finish(
-        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
+        [
+            (files.output, front.save),
+            (files.csv, front.save_csv),
+            (files.figure, drawing(picture)),
+        ],
         lambda console: print_sweep(console, front, asked_for),
         trouble=None if front.complete else interruption(),
     )

@@ -7,8 +7,8 @@ from rich.console import Console
 from metaheuristics.ensemble import energy_at
 from ocp import FailedPoint, Front
 from ocp.front.checking import RESIDUAL_LIMIT
+from ocp.front.points import LEVELS
 from studies.display.words import counted, millimetres, print_lines
-from studies.registry.methods import LEVELS
 
 
 def print_sweep(console: Console, front: Front, asked_for: int) -> None:

@@ -1,8 +1,13 @@
 """The program over all joint motions: hand-assembled derivatives against casadi's own."""
 
-import casadi as ca
 import numpy as np
 import pytest
+from derivatives import (
+    assert_jacobian_is_casadis,
+    assert_jacobian_is_the_limit_of_differences,
+    both_hessians,
+    functions_of,
+)
 
 from ocp.floor.transcription import FreeProgram
 
@@ -30,10 +35,6 @@ def program(request, plants, quantities, smooth):
     return FreeProgram(plants[request.param], smooth, STEPS, quantities, quiet)
 
 
-def _functions(program):
-    return {name: program._solver.get_function(name) for name in program._solver.get_function()}
-
-
 def _random_point(program, seed):
     """Unknowns, parameters, and multipliers of the objective and the constraints."""
     random = np.random.default_rng(seed)
@@ -47,40 +48,20 @@ def _random_point(program, seed):
 
 def test_the_jacobian_is_that_of_the_constraints(program):
     x, p, *_ = _random_point(program, 0)
-    functions = _functions(program)
-    of_x, of_p = ca.MX.sym("x", len(x)), ca.MX.sym("p", len(p))
-    g = functions["nlp_g"](of_x, of_p)
-    automatic = ca.Function("automatic", [of_x, of_p], [g, ca.jacobian(g, of_x)])
-    expected_g, expected = (value.full() for value in automatic(x, p))
-    found_g, found = (value.full() for value in functions["nlp_jac_g"](x, p))
-    assert found_g == pytest.approx(expected_g, rel=1e-13, abs=1e-13)
-    assert found == pytest.approx(expected, rel=1e-10, abs=1e-10)
+    assert_jacobian_is_casadis(program, x, p)
 
 
 def test_the_hessian_is_that_of_the_lagrangian(program):
-    x, p, of_objective, multipliers = _random_point(program, 1)
-    functions = _functions(program)
-    of_x, of_p = ca.MX.sym("x", len(x)), ca.MX.sym("p", len(p))
-    lagrangian = of_objective * functions["nlp_f"](of_x, of_p)
-    lagrangian += ca.dot(multipliers, functions["nlp_g"](of_x, of_p))
-    automatic = ca.Function("automatic", [of_x, of_p], [ca.hessian(lagrangian, of_x)[0]])
-    expected = np.triu(automatic(x, p).full())
-    found = functions["nlp_hess_l"](x, p, of_objective, multipliers).full()
+    found, expected = both_hessians(program, *_random_point(program, 1))
     size = np.abs(expected).max()
     assert size > 0
     assert found == pytest.approx(expected, abs=1e-11 * size)
 
 
 def test_the_jacobian_is_the_limit_of_differences(program):
-    # Independent of casadi's derivatives, along random directions.
     x, p, *_ = _random_point(program, 2)
-    functions, h = _functions(program), 1e-6
-    jacobian = functions["nlp_jac_g"](x, p)[1].full()
-    for seed in range(3):
-        direction = np.random.default_rng(seed).normal(size=len(x))
-        there, back = (functions["nlp_g"](x + s * h * direction, p).full() for s in (1, -1))
-        expected = (there - back).ravel() / (2 * h)
-        assert jacobian @ direction == pytest.approx(expected, abs=1e-7 * np.abs(expected).max())
+    directions = [np.random.default_rng(seed).normal(size=len(x)) for seed in range(3)]
+    assert_jacobian_is_the_limit_of_differences(program, x, p, directions)
 
 
 def test_a_simulated_motion_meets_the_equations(program, smooth):
@@ -92,7 +73,7 @@ def test_a_simulated_motion_meets_the_equations(program, smooth):
     assert unknowns[model.after, 0] == pytest.approx(initial)
     power = outputs[:3].ravel(order="F")
     x = np.concatenate([np.full(len(program.peaks), 50.0), unknowns.ravel(order="F"), abs(power)])
-    g = _functions(program)["nlp_g"](x, p).full().ravel()
+    g = functions_of(program)["nlp_g"](x, p).full().ravel()
     equations = len(model.after) * STEPS
     assert g[:equations] == pytest.approx(np.zeros(equations), abs=1e-13)
     two_sided = g[equations : equations + 6 * STEPS].reshape(2, -1)

@@ -2,9 +2,14 @@
 
 from functools import cache
 
-import casadi as ca
 import numpy as np
 import pytest
+from derivatives import (
+    assert_jacobian_is_casadis,
+    assert_jacobian_is_the_limit_of_differences,
+    both_hessians,
+    functions_of,
+)
 
 from ocp import CycloidPolynomial, residual_matrix, rollout
 from ocp.program.condensed import Condensed
@@ -67,11 +72,6 @@ def program(request, compiled):
     return compiled(name, limited, Form(energy, rows, least))
 
 
-def _functions(program):
-    """The functions that IPOPT calls, by name."""
-    return {name: program._solver.get_function(name) for name in program._solver.get_function()}
-
-
 def _parameters(program, seed):
     """Move, scales, weights, correction of the arrival, residual matrix by columns, basis."""
     random, motion = np.random.default_rng(seed), program.motion
@@ -85,7 +85,7 @@ def _random_point(program, seed):
     """Unknowns, parameters, and multipliers of the objective and the constraints."""
     random = np.random.default_rng(seed)
     x = random.uniform(-0.3, 0.3, program.unknowns)
-    constraints = _functions(program)["nlp_g"].numel_out(0)
+    constraints = functions_of(program)["nlp_g"].numel_out(0)
     return x, _parameters(program, seed), random.normal(), random.normal(size=constraints)
 
 
@@ -95,34 +95,21 @@ def _random_point(program, seed):
 @pytest.mark.parametrize("seed", [0, 1])
 def test_the_jacobian_is_that_of_the_constraints(program, seed):
     x, p, *_ = _random_point(program, seed)
-    functions = _functions(program)
-    of_x, of_p = ca.MX.sym("x", len(x)), ca.MX.sym("p", len(p))
-    g = functions["nlp_g"](of_x, of_p)
-    automatic = ca.Function("automatic", [of_x, of_p], [g, ca.jacobian(g, of_x)])
-    expected_g, expected = (value.full() for value in automatic(x, p))
-    found_g, found = (value.full() for value in functions["nlp_jac_g"](x, p))
-    assert found_g == pytest.approx(expected_g, rel=1e-13, abs=1e-13)
-    assert found == pytest.approx(expected, rel=1e-10, abs=1e-10)
+    assert_jacobian_is_casadis(program, x, p)
 
 
 @pytest.mark.parametrize("seed", [0, 2])
 def test_the_jacobian_is_the_limit_of_differences(program, seed):
-    # Independent of casadi's derivatives, along random directions.
     x, p, *_ = _random_point(program, seed)
-    functions, h = _functions(program), 1e-6
-    jacobian = functions["nlp_jac_g"](x, p)[1].full()
-    random = np.random.default_rng(seed)
-    for direction in random.normal(size=(3, len(x))):
-        there, back = (functions["nlp_g"](x + s * h * direction, p).full() for s in (1, -1))
-        expected = (there - back).ravel() / (2 * h)
-        assert jacobian @ direction == pytest.approx(expected, abs=1e-7 * np.abs(expected).max())
+    directions = np.random.default_rng(seed).normal(size=(3, len(x)))
+    assert_jacobian_is_the_limit_of_differences(program, x, p, directions)
 
 
 @pytest.mark.parametrize("seed", [0, 2])
 def test_the_objectives_gradient_is_the_limit_of_differences(program, seed):
     # casadi has none of the resolved energy where zeros are complex: sqrt(0) there.
     x, p, *_ = _random_point(program, seed)
-    functions, h = _functions(program), 1e-6
+    functions, h = functions_of(program), 1e-6
     f, gradient = (value.full().ravel() for value in functions["nlp_grad_f"](x, p))
     assert f.item() == pytest.approx(float(functions["nlp_f"](x, p)), rel=1e-13)
     for i, unit in enumerate(np.eye(len(x))):
@@ -131,21 +118,10 @@ def test_the_objectives_gradient_is_the_limit_of_differences(program, seed):
         assert gradient[i] == pytest.approx(expected, abs=1e-7 * np.abs(gradient).max())
 
 
-def _both_hessians(program, seed):
-    x, p, of_objective, multipliers = _random_point(program, seed)
-    functions = _functions(program)
-    of_x, of_p = ca.MX.sym("x", len(x)), ca.MX.sym("p", len(p))
-    lagrangian = of_objective * functions["nlp_f"](of_x, of_p)
-    lagrangian += ca.dot(multipliers, functions["nlp_g"](of_x, of_p))
-    automatic = ca.Function("automatic", [of_x, of_p], [ca.hessian(lagrangian, of_x)[0]])
-    found = functions["nlp_hess_l"](x, p, of_objective, multipliers).full()
-    return found, np.triu(automatic(x, p).full())
-
-
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("program", SMOOTH, indirect=True, ids=_name)
 def test_the_hessian_is_that_of_the_lagrangian(program, seed):
-    found, expected = _both_hessians(program, seed)
+    found, expected = both_hessians(program, *_random_point(program, seed))
     assert found == pytest.approx(expected, abs=1e-11 * np.abs(expected).max())
 
 
@@ -155,7 +131,7 @@ def test_the_hessian_of_one_resolved_step_is_that_of_the_lagrangian(compiled, ca
     # Here the zeros are real, and casadi has all derivatives of the energy.
     name, limited, rows, least = case
     program = compiled(name, limited, Form("resolved", rows, least), steps=1)
-    found, expected = _both_hessians(program, seed)
+    found, expected = both_hessians(program, *_random_point(program, seed))
     size = np.abs(expected).max()
     assert size > 0
     assert found == pytest.approx(expected, abs=1e-9 * size)
@@ -167,7 +143,7 @@ def test_the_hessian_of_one_resolved_step_is_that_of_the_lagrangian(compiled, ca
 def test_the_hessian_of_the_resolved_energy_is_that_of_differences(compiled, name, steps, seed):
     program = compiled(name, "one limit", Form("resolved", 0, None), steps=steps)
     x, p, of_objective, multipliers = _random_point(program, seed)
-    functions, h = _functions(program), 1e-6
+    functions, h = functions_of(program), 1e-6
     found = functions["nlp_hess_l"](x, p, of_objective, 0 * multipliers).full()
     for i, unit in enumerate(np.eye(len(x))):
         there, back = (functions["nlp_grad_f"](x + s * h * unit, p)[1].full() for s in (1, -1))
@@ -232,7 +208,7 @@ def test_the_unknowns_stand_in_their_order(program):
 
 def test_the_constraints_are_equations_and_values_to_be_bounded(program):
     stated, form = _Stated(program, p := _parameters(program, 3)), program.form
-    rest = _functions(program)["nlp_g"](stated.unknowns, p).full().ravel()
+    rest = functions_of(program)["nlp_g"](stated.unknowns, p).full().ravel()
     samples, rest = np.split(rest, [SAMPLES if form.sampled else 0])
     assert np.abs(samples).max(initial=0.0) < 1e-13
     arrival, rest = np.split(rest, [program.motion.states])
@@ -255,7 +231,7 @@ def test_the_objective_weighs_energy_and_peak(program):
     expected = stated.weights[0] * energy
     if form.least:
         expected += stated.weights[1] * stated.peaks[form.least]
-    found = float(_functions(program)["nlp_f"](stated.unknowns, p))
+    found = float(functions_of(program)["nlp_f"](stated.unknowns, p))
     assert found == pytest.approx(expected, rel=1e-12)
 
 
@@ -265,7 +241,7 @@ def test_the_objective_weighs_energy_and_peak(program):
 def test_limits_bound_their_own_quantity_from_both_sides(program, limits):
     lower, upper = program._constraint_bounds(limits)
     stated, form = _Stated(program, p := _parameters(program, 5)), program.form
-    assert len(lower) == len(upper) == _functions(program)["nlp_g"](stated.unknowns, p).numel()
+    assert len(lower) == len(upper) == functions_of(program)["nlp_g"](stated.unknowns, p).numel()
     equations = (SAMPLES if form.sampled else 0) + program.motion.states
     assert not lower[:equations].any()
     assert not upper[:equations].any()
@@ -307,7 +283,7 @@ def test_every_form_states_what_the_rollout_finds(tasks, compiled, energy, name,
     weights = np.outer(program.motion.lengths, GAUSS_WEIGHTS).ravel()
     net_work = task.duration * weights @ stated.power
     assert net_work == pytest.approx(fixed.motion.net_work, rel=1e-9)
-    functions = _functions(program)
+    functions = functions_of(program)
     equations = (2 * steps if form.sampled else 0) + program.motion.states
     g = functions["nlp_g"](stated.unknowns, p).full().ravel()
     assert np.abs(g[:equations]).max() < 1e-12

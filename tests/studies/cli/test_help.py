@@ -10,6 +10,7 @@ from lines import QUIETARM
 import studies.cli.commands.moves.evaluate
 import studies.cli.commands.moves.floor
 import studies.cli.commands.moves.plan
+import studies.contest.imported
 import studies.contest.work
 import studies.reproduction.recompute
 import studies.runs.animating
@@ -88,7 +89,8 @@ def test_examples_in_the_help_are_read_without_complaint(
     monkeypatch.setattr(studies.runs.foreign, "read_found", note)
     monkeypatch.setattr(studies.runs.robustness, "run_robustness", note)
     monkeypatch.setattr(studies.study.work, "run_study", note)
-    monkeypatch.setattr(studies.contest.work, "run_contest", note)
+    monkeypatch.setattr(studies.contest.imported, "named_files", lambda given: {})
+    monkeypatch.setattr(studies.contest.work, "set_up", note)
     monkeypatch.setattr(studies.cli.commands.moves.floor, "energy_floor", note)
     for name in ("epsilon", "weighted"):
         let_sweep(name, note)

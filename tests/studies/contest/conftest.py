@@ -1,14 +1,12 @@
-"""What the tests of contests share: small problems, and one contest that is held once."""
+"""What the tests of contests share: one contest that is held once, on a small problem."""
 
 import pytest
-from small_contest import LINE, OTHER, TINY
+from small_contest import LINE
 
 from studies.contest import problems
 
 
 def _small(patch):
-    patch.setattr(problems, "PROBLEMS", {"tiny": TINY, "other": OTHER})
-    patch.setattr(problems, "_POINTS", 6)
     patch.setattr(problems, "_FILL", 500)
 
 

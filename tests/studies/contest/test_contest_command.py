@@ -4,12 +4,12 @@ import json
 import shutil
 
 import pytest
-from small_contest import LINE, METHODS, documents, rows_of
+from small_contest import LINE, METHODS, NAME, documents, rows_of
 
 import studies.contest.work as work
 from metaheuristics.budget.run import search_within
-from studies.contest import files, page
-from studies.contest.runs import Folder
+from studies.contest.folder import Folder
+from studies.contest.report import files, page
 from studies.display.html_page import element
 
 
@@ -52,9 +52,9 @@ def found(folder):
 
 def test_every_run_is_a_file_beside_tables_pictures_and_page(held):
     names = {str(path.relative_to(held)) for path in held.rglob("*") if path.is_file()}
-    runs = {f"runs/tiny/{method}/seed{seed}.json" for method in METHODS for seed in (0, 1)}
-    assert runs | {"exact/tiny.json", "contest.html", "tables/runs.csv"} <= names
-    assert {"figures/anytime-tiny.png", "figures/anytime-tiny.pdf"} <= names
+    runs = {f"runs/{NAME}/{method}/seed{seed}.json" for method in METHODS for seed in (0, 1)}
+    assert runs | {f"exact/{NAME}.json", "contest.html", "tables/runs.csv"} <= names
+    assert {f"figures/anytime-{NAME}.png", f"figures/anytime-{NAME}.pdf"} <= names
     assert (held / "contest.html").read_text().startswith("<!DOCTYPE html>")
 
 
@@ -68,7 +68,7 @@ def test_the_same_line_again_runs_nothing(call, copy, searches):
 
 def test_a_method_and_seeds_are_added_without_the_others_again(call, copy, searches):
     line = LINE.replace("--runs 2", "--runs 3")
-    shutil.rmtree(copy / "runs/tiny/vepso")
+    shutil.rmtree(copy / f"runs/{NAME}/vepso")
     assert call(f"{line} --output {copy}")[0] == 0
     assert sorted(searches) == [("nsga2", 2), ("vepso", 0), ("vepso", 1), ("vepso", 2)]
     assert len(rows_of(copy, "runs")) == 6
@@ -88,7 +88,7 @@ def test_a_contest_goes_on_after_a_stop_to_the_same_runs(call, folder, held, mon
     code, _, err = call(f"{LINE} --output part")
     assert code == 1
     assert err.strip() == (
-        "quietarm: interrupted: 3 of 5 pieces of work are done; give the same line again to go on"
+        "quietarm: interrupted: 2 of 4 pieces of work are done; give the same line again to go on"
     )
     assert set(found(folder / "part")) == {("nsga2", 0), ("vepso", 0)}
     assert (folder / "part/contest.html").exists()
@@ -103,14 +103,14 @@ def test_a_stop_before_the_first_run_says_so(call, folder, monkeypatch):
     monkeypatch.setattr(work, "search_within", interrupted)
     code, out, err = call(f"{LINE} --output part")
     assert (code, out) == (1, "")
-    assert "interrupted: 1 of 5 pieces of work are done" in err
+    assert "interrupted: 0 of 4 pieces of work are done" in err
     assert list((folder / "part").iterdir()) == [folder / "part/exact"]
 
 
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        (LINE.replace("tiny", "tinny"), "unknown problem 'tinny'; did you mean 'tiny'?"),
+        (LINE.replace("2-terms", "2-term"), f"did you mean '{NAME}'?"),
         (LINE.replace("vepso", "vespo"), "unknown method 'vespo'; did you mean 'vepso'?"),
         (LINE.replace("vepso", "vepso+polsh"), "give vepso+polish or vepso+seeds"),
         (LINE.replace("--runs 2", "--runs 0"), "runs is 0"),
@@ -126,43 +126,9 @@ def test_bad_input_is_refused_before_any_work(call, folder, line, words, searche
     assert list(folder.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        (LINE.replace("130", "260"), "has runs of 130 evaluations"),
-        (LINE.replace("--population 20", "--population 24"), "a run whose population is 20"),
-        (LINE.replace("--population 20", ""), "and the method's own is asked for"),
-    ],
-)
-def test_runs_that_differ_are_not_put_into_one_folder(call, copy, line, words, searches):
-    code, out, err = call(f"{line} --output {copy}")
-    assert (code, out, err.count("\n"), searches) == (2, "", 1, [])
-    assert words in err
-    assert "or another --output" in err
-
-
-def _spoil(path, **entries):
-    document = json.loads(path.read_text())
-    path.write_text(json.dumps({**document, **entries}))
-
-
-def test_a_run_measured_against_another_front_is_refused(call, copy):
-    _spoil(copy / "runs/tiny/vepso/seed1.json", scale={"ideal": [0.0, 0.0], "nadir": [1.0, 1.0]})
-    code, _, err = call(f"{LINE} --output {copy}")
-    assert code == 2
-    assert "measured against another exact front (vepso on tiny from seed 1)" in err
-
-
-def test_a_missing_exact_front_is_not_made_anew_behind_the_runs(call, copy):
-    (copy / "exact/tiny.json").unlink()
-    code, _, err = call(f"{LINE} --output {copy}")
-    assert code == 2
-    assert "has runs on tiny without its exact front" in err
-
-
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"format": "quietarm-front", "version": 3}'])
 def test_a_broken_run_is_named_with_the_remedy(call, copy, content):
-    path = copy / "runs/tiny/vepso/seed1.json"
+    path = copy / f"runs/{NAME}/vepso/seed1.json"
     path.write_text(content)
     code, out, err = call(f"{LINE} --output {copy}")
     assert (code, out, err.count("\n")) == (2, "", 1)
@@ -171,13 +137,13 @@ def test_a_broken_run_is_named_with_the_remedy(call, copy, content):
 
 
 def test_a_run_in_another_ones_place_is_refused(call, copy):
-    shutil.copy(copy / "runs/tiny/vepso/seed1.json", copy / "runs/tiny/vepso/seed7.json")
+    shutil.copy(copy / f"runs/{NAME}/vepso/seed1.json", copy / f"runs/{NAME}/vepso/seed7.json")
     code, _, err = call(f"{LINE} --output {copy}")
     assert code == 2
-    assert "seed7.json holds the run of vepso on tiny from seed 1" in err
+    assert f"seed7.json holds the run of vepso on {NAME} from seed 1" in err
 
 
 def test_a_run_loads_to_what_was_saved(held, tmp_path):
     runs = Folder(held).runs()
-    Folder(tmp_path).save_run(next(iter(runs.values())))
+    Folder(tmp_path).save(next(iter(runs.values())))
     assert Folder(tmp_path).runs() == dict([next(iter(runs.items()))])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from small_contest import TINY, documents
+from small_contest import NAME, TINY, documents
 
 from ocp import evaluate_coefficients, plan_move
 from studies.contest import landscape
@@ -51,7 +51,7 @@ def test_explain_adds_the_landscape_once(call, held, tmp_path, monkeypatch):
 
     from small_contest import LINE
 
-    from studies.contest import files, page
+    from studies.contest.report import files, page
 
     monkeypatch.setattr(landscape, "STARTS", 3)
     monkeypatch.setattr(landscape, "BOXES", (2.0,))
@@ -61,8 +61,8 @@ def test_explain_adds_the_landscape_once(call, held, tmp_path, monkeypatch):
     monkeypatch.setattr(page, "picture", lambda *given: "")
     copy = shutil.copytree(held, tmp_path / "held")
     assert call(f"{LINE} --explain --output {copy}")[0] == 0
-    written = (copy / "landscape/tiny.json").read_bytes()
+    written = (copy / f"landscape/{NAME}.json").read_bytes()
     assert "Of 3 random starts in the box" in (copy / "contest.html").read_text()
     assert call(f"{LINE} --explain --output {copy}")[0] == 0
-    assert (copy / "landscape/tiny.json").read_bytes() == written
+    assert (copy / f"landscape/{NAME}.json").read_bytes() == written
     assert len(documents(copy)) == 4

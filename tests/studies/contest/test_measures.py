@@ -5,10 +5,10 @@ import math
 
 import numpy as np
 import pytest
-from small_contest import METHODS, area, documents, least_energy, median_of, rows_of, scaled
+from small_contest import METHODS, NAME, area, documents, least_energy, median_of, rows_of, scaled
 
+from studies.contest.folder import Contents
 from studies.contest.measures import Field, arenas_of
-from studies.contest.runs import Folder
 
 LEVELS = (1e-4, 1e-3, 5e-3)
 
@@ -35,13 +35,12 @@ def test_expected_running_time_of_hand_made_runs():
 
 @pytest.fixture(scope="module")
 def arena(held):
-    folder = Folder(held)
-    (only,) = arenas_of(folder.runs(), folder.yardsticks())
+    (only,) = arenas_of(Contents.of(held))
     return only
 
 
 def test_the_exact_hypervolume_is_that_of_its_own_points_and_a_little_more(held, arena):
-    document = json.loads((held / "exact/tiny.json").read_text())
+    document = json.loads((held / f"exact/{NAME}.json").read_text())
     points = scaled(document)
     assert points[0] == pytest.approx((0, 1))
     assert points[-1] == pytest.approx((1, 0))
@@ -52,7 +51,7 @@ def test_the_exact_hypervolume_is_that_of_its_own_points_and_a_little_more(held,
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_figures_are_those_of_the_files_by_other_code(held, arena, method):
-    exact = json.loads((held / "exact/tiny.json").read_text())
+    exact = json.loads((held / f"exact/{NAME}.json").read_text())
     files = [documents(held)[method, seed] for seed in (0, 1)]
     (field,) = (one for one in arena.fields if one.method == method)
     ends = [1 - file["marks"][-1]["hypervolume"] / exact["hypervolume"] for file in files]

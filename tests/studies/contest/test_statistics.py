@@ -71,6 +71,7 @@ class Arena:
 
     def __init__(self, **finals):
         self.fields = [Field(name, final) for name, final in finals.items()]
+        self.outcomes = self.alike = self.fields
 
 
 def test_the_effect_is_how_likely_the_first_misses_less():

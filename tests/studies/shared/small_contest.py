@@ -6,17 +6,15 @@ import math
 
 import numpy as np
 
-from ocp import CycloidPolynomial
-from studies.contest.problems import Problem
-from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
+from metaheuristics import problem_of
 
-TINY = Problem("tiny", SINGLE_LINK_SIXTH.task, 0.2, CycloidPolynomial(2))
-OTHER = Problem("other", ARM_HALF.task, 0.5, CycloidPolynomial(2))
-LINE = "contest tiny --methods nsga2,vepso --runs 2 --evaluations 130 --population 20 --quiet"
+NAME, OTHER = "single-link-30deg-0.8s-2-terms", "arm-on-flexible-link-90deg-0.8s-2-terms"
+TINY = problem_of(NAME)
+LINE = f"contest {NAME} --methods nsga2,vepso --runs 2 --evaluations 130 --population 20 --quiet"
 METHODS = ("nsga2", "vepso")
 
 
-def documents(folder, problem="tiny"):
+def documents(folder, problem=NAME):
     """The runs of a contest as they stand in their files, by method and seed."""
     found = {}
     for path in folder.glob(f"runs/{problem}/*/seed*.json"):

@@ -27,6 +27,7 @@ from studies.cli.options import (
 )
 from studies.registry.methods import METHODS, WEIGHTED, Kind, methods_of
 from studies.registry.profiles import profile_of
+from studies.runs.files import FrontFiles
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
@@ -149,4 +150,4 @@ def front(
         from studies.runs.searching import run_front as run
 
         options["settings"] = settings_given(options.pop("setting"))
-    run(task, method, options, output, csv_file, figure, quiet)
+    run(task, method, options, FrontFiles(output, csv_file, figure), quiet)

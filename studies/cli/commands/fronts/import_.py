@@ -18,6 +18,7 @@ from studies.cli.options import (
     task_options,
 )
 from studies.registry.profiles import FAMILIES
+from studies.runs.files import FrontFiles
 
 
 @click.command("import")
@@ -77,4 +78,5 @@ def import_(
     if bound is not None:
         settings["bound"] = bound
     name = printable(method or file.stem)
-    run_import(file, task, motions, found, name, settings, output, csv_file, figure, quiet)
+    files = FrontFiles(output, csv_file, figure)
+    run_import(file, task, motions, found, name, settings, files, quiet)

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from studies.cli.options import INPUT, OUTPUT, PICTURE, plant_file_option, quiet_option
+from studies.runs.files import FrontFiles
 
 
 @click.command()
@@ -44,4 +45,4 @@ def polish(
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.runs.polishing import run_polish
 
-    run_polish(front, points, output, csv_file, figure, quiet)
+    run_polish(front, points, FrontFiles(output, csv_file, figure), quiet)

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING
 import click
 from rich.console import Console
 
-from studies.cli.options import FOLDER, quiet_option, workers_options
+from studies.cli.options import (
+    FOLDER,
+    method_settings_option,
+    quiet_option,
+    settings_by_method,
+    workers_options,
+)
 
 if TYPE_CHECKING:
     from metaheuristics.sharing.pieces import Done
@@ -27,6 +33,21 @@ if TYPE_CHECKING:
 )
 @click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
 @click.option("--population", type=int, help="Of every method; each method's own by default.")
+@method_settings_option(
+    "as in --setting nsga2.crossover=0.7, or its population; it takes part beside the same method "
+    "with others"
+)
+@click.option(
+    "--import", "given", multiple=True, metavar="[NAME=]PATH",
+    help="Results of another tool on the one PROBLEM: a file of coefficients as quietarm import "
+    "reads it, or a folder with such a file for each run; may be repeated. Without NAME the method "
+    "is called as the file or folder.",
+)  # fmt: skip
+@click.option(
+    "--import-evaluations", type=int,
+    help="Evaluations that each imported run took. Where they are not known, or not as many as "
+    "--evaluations, the runs are shown and marked, and left out of the tests.",
+)  # fmt: skip
 @click.option(
     "--explain", is_flag=True,
     help="Look for the local minima of each problem as well, and say what the box costs.",
@@ -44,6 +65,9 @@ def contest(
     evaluations: int,
     seed: int,
     population: int | None,
+    setting: tuple[tuple[str, str], ...],
+    given: tuple[str, ...],
+    import_evaluations: int | None,
     explain: bool,
     output: Path,
     workers: int,
@@ -60,32 +84,42 @@ def contest(
     Examples:
       quietarm contest --methods nsga2,vepso --runs 31 --output contest
       quietarm contest single-link-30deg-0.8s --runs 5 --evaluations 5000 --output small
+      quietarm contest single-link-30deg-0.8s --runs 5 --import "my swarm=results" --output small
     """  # noqa: D301  # \b is click's: do not rewrap
     from metaheuristics.sharing.workers import Workers
     from ocp import QuietarmError
-    from studies.contest.files import report_files
+    from studies.contest.asked import Contest
+    from studies.contest.folder import Contents
+    from studies.contest.imported import named_files
     from studies.contest.measures import arenas_of
     from studies.contest.problems import problems_of
-    from studies.contest.runs import Folder
+    from studies.contest.report.files import report_files
+    from studies.contest.report.notes import not_alike, wrong_claims
+    from studies.contest.report.tables import summary_table
     from studies.contest.statistics import why_none
-    from studies.contest.tables import summary_table
-    from studies.contest.work import Contest, pieces_of, run_contest
-    from studies.display.progress import progress
+    from studies.contest.work import pieces_of, run_contest, set_up
+    from studies.display.progress import progress, working
     from studies.display.saving import Together, finish
     from studies.display.tables import print_table
     from studies.display.words import print_lines
     from studies.runs.files import warn_of_workers
 
+    names = tuple(name.strip() for name in methods.split(","))
     asked = Contest(
-        problems_of(problems), tuple(name.strip() for name in methods.split(",")), runs,
-        evaluations, seed, population, explain, Workers(workers, scheduler),
+        problems_of(problems), names, runs, evaluations, seed, population,
+        settings_by_method(setting, names), explain, Workers(workers, scheduler),
     )  # fmt: skip
-    folder, errors = Folder(output), Console(stderr=True)
-    pieces = pieces_of(asked, folder)
+    if import_evaluations is not None and not given:
+        raise ValueError("--import-evaluations says how long imported runs are; give --import too")
+    files, errors = named_files(given), Console(stderr=True)
+    with working("reading", errors, quiet=quiet):
+        contents = Contents.of(output)
+        set_up(asked, contents, files, import_evaluations)
+    pieces = pieces_of(asked, contents)
     warn_of_workers(errors, workers, len(pieces))
     with progress(len(pieces), errors, quiet=quiet) as begin:
-        done = run_contest(pieces, folder, asked.workers, begin)
-    arenas = arenas_of(folder.runs(), folder.yardsticks(), folder.landscapes())
+        done = run_contest(pieces, contents, asked.workers, begin)
+    arenas = arenas_of(contents)
     if not arenas:
         raise QuietarmError(_why_not_whole(done, len(pieces)) or "no run was done")
 
@@ -93,12 +127,11 @@ def contest(
         for arena in arenas:
             print_lines(console, arena.problem)
             print_table(console, summary_table(arena))
-        none = why_none(arenas)
-        if none:
-            print_lines(console, none)
+        notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *asked.left_out]
+        print_lines(console, *filter(None, notes))
 
     trouble = _why_not_whole(done, len(pieces))
-    page, *others = report_files(arenas, output)
+    page, *others = report_files(arenas, output, asked.left_out)
     finish(
         [page], show, trouble=QuietarmError(trouble) if trouble else None, quiet=quiet,
         together=Together("tables and pictures", output, others),

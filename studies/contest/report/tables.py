@@ -5,44 +5,42 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite
 
-from metaheuristics.budget.run import MULTISTART, Help, parts_of
-from studies.contest.measures import TARGETS, Arena, Field, quartiles, spread
+from ocp.front.points import LEVELS
+from studies.contest.imported import Imported
+from studies.contest.measures import TARGETS, Arena, Field, Outcome, quartiles, spread
+from studies.contest.names import label_of
 from studies.contest.statistics import ALPHA, Pair, Ranking
 from studies.display.tables import Cell, Column, Table
 from studies.display.words import millimetres
-from studies.registry.methods import LEVELS, method_of
 
 _PERCENT = "{:.3g} %".format
 
 
-_HELPED = {Help.NONE: "", Help.POLISH: ", then polished", Help.SEEDS: " from gradient seeds"}
-
-
-def label_of(method: str) -> str:
-    """What a method is called in tables and pictures."""
-    search, helped = parts_of(method)
-    label = "gradient, random starts" if search == MULTISTART else method_of(search).label
-    return f"{label}{_HELPED[helped]}"
-
-
 def runs_table(arenas: Sequence[Arena]) -> Table:
-    """One row a run, with every figure that statistics are made of."""
+    """One row a run, with every figure that statistics are made of.
+
+    Cells that results from elsewhere have nothing for are empty, as is the number of evaluations
+    where it is not known.
+    """
     columns = [
-        *map(Column, ("problem", "method", "seed", "evaluations")),
+        *map(Column, ("problem", "method", "seed", "file", "evaluations")),
         Column("processor time [s]", key="seconds"), Column("missing"), Column("points"),
         *(Column(f"ERT {t:g}", key=f"evaluations_to_{t:g}") for t in TARGETS),
         *(Column(f"{level}", key=f"energy_above_exact_at_{level:g}_m") for level in LEVELS),
     ]  # fmt: skip
     rows: list[list[Cell]] = []
     for arena in arenas:
-        for field in arena.fields:
-            hits = [field.hits(target) for target in TARGETS]
-            for i, run in enumerate(field.runs):
+        for one in arena.outcomes:
+            hits = [one.hits(target) for target in TARGETS] if isinstance(one, Field) else None
+            for i, run in enumerate(one.runs):
+                which = (
+                    [None, run.file, run.evaluations, None] if isinstance(run, Imported)
+                    else [run.key.seed, None, run.front.evaluations, run.front.seconds]
+                )  # fmt: skip
                 rows.append([
-                    arena.problem, field.method, run.key.seed, run.front.evaluations,
-                    run.front.seconds, float(field.final[i]), len(run.front.points),
-                    *(_finite(float(hit[i])) for hit in hits),
-                    *(_finite(float(share)) for share in field.energies[i]),
+                    arena.problem, one.method, *which, float(one.final[i]), len(run.front.points),
+                    *([_finite(float(hit[i])) for hit in hits] if hits else [None] * len(TARGETS)),
+                    *(_finite(float(share)) for share in one.energies[i]),
                 ])  # fmt: skip
     return Table("Runs", columns, rows)
 
@@ -65,7 +63,7 @@ def anytime_table(arenas: Sequence[Arena]) -> Table:
 def summary_table(arena: Arena) -> Table:
     """What each method ended with on a problem: one column a method."""
     columns = [
-        Column("method"), Column("runs"),
+        Column("method"), Column("runs"), Column("evaluations of a run"),
         Column("hypervolume missing, median", _PERCENT),
         Column("  lower quartile", _PERCENT), Column("  upper quartile", _PERCENT),
         Column("processor time [s], median", "{:.2g}".format),
@@ -76,7 +74,7 @@ def summary_table(arena: Arena) -> Table:
             Column(f"energy above the exact at {millimetres(level)}, median", _PERCENT),
             Column(f"  runs that have a motion at {millimetres(level)}"))),
     ]  # fmt: skip
-    return Table("What the methods ended with", columns, [_summary(f) for f in arena.fields])
+    return Table("What the methods ended with", columns, [_summary(one) for one in arena.outcomes])
 
 
 def ranks_table(rankings: Sequence[tuple[str, Ranking]]) -> Table:
@@ -105,7 +103,7 @@ def pairs_table(pairs: Sequence[Pair]) -> Table:
 
 def effects_table(arena: Arena, pairs: Sequence[Pair]) -> Table:
     """The pairs on a problem as a square: how likely the line's method misses less."""
-    methods = [field.method for field in arena.fields]
+    methods = [one.method for one in arena.alike]
     known = {(pair.one, pair.other): (pair.effect, pair.adjusted) for pair in pairs}
     known |= {(pair.other, pair.one): (1 - pair.effect, pair.adjusted) for pair in pairs}
     rows: list[list[Cell]] = []
@@ -131,28 +129,38 @@ def visits_table(arena: Arena) -> Table:
           for third in ("still", "middle", "cheap")),
     ]  # fmt: skip
     rows: list[list[Cell]] = []
-    for field in arena.fields:
-        shares = quartiles(field.visited)[1]
-        missing = quartiles(field.missing_by_thirds)[1]
-        percent = [100 * float(share) for share in [*shares, *missing]]
-        rows.append([label_of(field.method), *percent])
+    for one in arena.outcomes:
+        visited = quartiles(one.visited)[1] if isinstance(one, Field) else None
+        missing = quartiles(one.missing_by_thirds)[1]
+        row: list[Cell] = [label_of(one.method)]
+        row += [None] * 4 if visited is None else [100 * float(share) for share in visited]
+        rows.append([*row, *(100 * float(share) for share in missing)])
     return Table("Where the candidates lie, by the residual", columns, rows)
 
 
-def _summary(field: Field) -> list[Cell]:
-    lower, median, upper = (100 * float(q) for q in quartiles(field.final[:, None])[:, 0])
-    row: list[Cell] = [label_of(field.method), len(field.runs), median, lower, upper]
-    row.append(float(quartiles(field.seconds[:, -1:])[1, 0]))
+def _summary(one: Outcome) -> list[Cell]:
+    runs, own = len(one.runs), one if isinstance(one, Field) else None
+    row: list[Cell] = [label_of(one.method), runs, evaluations_words(one)]
+    row += [100 * float(one_of_them) for one_of_them in _middle_first(one)]
+    row.append(float(quartiles(own.seconds[:, -1:])[1, 0]) if own else None)
     for target in TARGETS:
-        reached = int((field.final <= target).sum())
-        row += [f"{reached} of {len(field.runs)}", _finite(field.expected_running_time(target))]
+        row.append(f"{int((one.final <= target).sum())} of {runs}")
+        row.append(_finite(own.expected_running_time(target)) if own else None)
     for level in range(len(LEVELS)):
-        found = spread(field.energies[:, level])
-        row += [
-            100 * found.median if found.count else None,
-            f"{found.count} of {len(field.runs)}",
-        ]
+        found = spread(one.energies[:, level])
+        row += [100 * found.median if found.count else None, f"{found.count} of {runs}"]
     return row
+
+
+def _middle_first(one: Outcome) -> tuple[float, float, float]:
+    lower, median, upper = quartiles(one.final[:, None])[:, 0]
+    return median, lower, upper
+
+
+def evaluations_words(one: Outcome) -> str:
+    """How many evaluations its runs had, as far as that is known."""
+    known = sorted(budget for budget in one.budgets if budget is not None)
+    return ", ".join([*map(str, known), *(["not known"] if None in one.budgets else [])])
 
 
 def _finite(value: float) -> float | None:

@@ -11,9 +11,9 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from studies.comparison.staircase import objectives, within
-from studies.contest.measures import TARGETS, Arena, Field, quartiles
+from studies.contest.measures import TARGETS, Arena, Outcome, quartiles
+from studies.contest.names import label_of
 from studies.contest.statistics import Ranking
-from studies.contest.tables import label_of
 from studies.figures.axes import axes_or_new, new_figure
 from studies.figures.looks import Look, look
 
@@ -95,7 +95,8 @@ def _finished(ax: Axes) -> None:
 
 def attainment_figure(arena: Arena, looks: dict[str, Look]) -> Figure:
     """Median attainment surfaces over each other, and the best method's less each other's."""
-    best, *others = sorted(arena.fields, key=lambda field: float(np.median(field.final)))
+    best = min(arena.alike, key=_middle)
+    others = sorted((one for one in arena.outcomes if one is not best), key=_middle)
     panels = 1 + len(others)
     columns = min(panels, 3)
     rows = -(-panels // columns)
@@ -111,13 +112,17 @@ def attainment_figure(arena: Arena, looks: dict[str, Look]) -> Figure:
     return figure
 
 
+def _middle(one: Outcome) -> float:
+    return float(np.median(one.final))
+
+
 def draw_surfaces(arena: Arena, looks: dict[str, Look], ax: Axes | None = None) -> Axes:
     """Draw what half of the runs of each method attain, and the exact front.
 
     Parameters, and what is returned, are those of `draw_evaluations`.
     """
     ax, (residuals, _) = axes_or_new(ax), _grid(arena)
-    for field in arena.fields:
+    for field in arena.outcomes:
         own = looks[field.method]
         ax.plot(1e3 * residuals, np.median(_stairs(field, residuals), axis=0), color=own.colour,
                 linestyle=own.dash, label=label_of(field.method))  # fmt: skip
@@ -127,14 +132,14 @@ def draw_surfaces(arena: Arena, looks: dict[str, Look], ax: Axes | None = None) 
     return ax
 
 
-def draw_difference(arena: Arena, one: Field, other: Field, ax: Axes | None = None) -> Axes:
+def draw_difference(arena: Arena, one: Outcome, other: Outcome, ax: Axes | None = None) -> Axes:
     """Draw where more runs of one method than of another attain residual and energy.
 
     Parameters
     ----------
     arena : Arena
         The problem.
-    one, other : Field
+    one, other : Outcome
         Two methods on it.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
@@ -177,7 +182,7 @@ def _grid(arena: Arena) -> tuple[Array, Array]:
     )
 
 
-def _stairs(field: Field, residuals: Array) -> Array:
+def _stairs(field: Outcome, residuals: Array) -> Array:
     """Least energy [J] of every run within residuals, shape (runs, residuals)."""
     return np.array([within(objectives(run.front), residuals, np.inf) for run in field.runs])
 

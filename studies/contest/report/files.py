@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ocp.base.files import write_whole
-from studies.contest.citations import bibtex
-from studies.contest.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
 from studies.contest.measures import Arena, methods_in
-from studies.contest.page import contest_page
+from studies.contest.report.citations import bibtex
+from studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from studies.contest.report.page import contest_page
+from studies.contest.report.tables import anytime_table, pairs_table, ranks_table, runs_table
 from studies.contest.statistics import Ranking, pairs_on, ranking_on, ranking_over, why_none
-from studies.contest.tables import anytime_table, pairs_table, ranks_table, runs_table
 from studies.display.saving import File, drawing, inside
 
 if TYPE_CHECKING:
@@ -24,9 +24,9 @@ _OVERALL = "all problems"
 _KINDS = ("png", "pdf")
 
 
-def report_files(arenas: Sequence[Arena], folder: Path) -> list[File]:
+def report_files(arenas: Sequence[Arena], folder: Path, notes: Sequence[str] = ()) -> list[File]:
     """Every table as CSV, every picture as PNG and PDF, and the page; and what writes each."""
-    page: File = folder / PAGE, lambda path: write_whole(path, contest_page(arenas))
+    page: File = folder / PAGE, lambda path: write_whole(path, contest_page(arenas, notes))
     tests = not why_none(arenas)
     references = bibtex(methods_in(arenas), statistics=tests)
     return [

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from metaheuristics.budget.run import MULTISTART, parts_of
+from studies.contest.names import is_own, method_in
 
 _TEC = "IEEE Transactions on Evolutionary Computation"
 _ALWAYS = ("casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment")
@@ -139,11 +140,14 @@ def bibtex(methods: Iterable[str], *, statistics: bool) -> str:
         A file for BibTeX. A method whose reference is not known here is named in a comment, with
         where it comes from.
     """
-    searches = dict.fromkeys(parts_of(method)[0] for method in methods)
+    methods = list(methods)
+    searches = dict.fromkeys(parts_of(method_in(method))[0] for method in methods if is_own(method))
+    elsewhere = [method for method in methods if not is_own(method)]
     keys = [*_ALWAYS, *(_STATISTICS if statistics else ())]
     unknown = [one for one in searches if one not in _ENTRIES and one != MULTISTART]
     keys += [one for one in searches if one in _ENTRIES]
     comments = [f"% {one}: see {source_of(one)}" for one in unknown]
+    comments += [f"% {one}: results from elsewhere" for one in elsewhere]
     return "\n\n".join([*(_entry(key) for key in keys), *comments]) + "\n"
 
 

@@ -1,0 +1,242 @@
+"""What is asked of a contest, and whether it fits what its folder holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Self
+
+from metaheuristics import PRESETS, NamedProblem
+from metaheuristics.algorithms.settings import Value, with_defaults
+from metaheuristics.budget.run import check_method, number_of_evaluations, parts_of
+from metaheuristics.ensemble import seeds_of
+from metaheuristics.runs.settings import number_of_individuals, search_versions
+from metaheuristics.sharing.workers import HERE, Workers
+from studies.contest.folder import EXACT, Contents
+from studies.contest.imported import Imported
+from studies.contest.names import POPULATION, name_of, sets_population
+from studies.contest.problems import Yardstick
+from studies.contest.runs import Key, Run
+
+_CODE = ("quietarm", "pymoo")
+"""What decides how a search goes; other libraries change its rounding."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A method as it takes part.
+
+    Attributes
+    ----------
+    method : str
+        Its name.
+    settings : dict
+        What it is set to where that is not its default.
+    population : int or None
+        Individuals; None where it has the method's own.
+    name : str
+        What it is called in the contest: with its settings.
+    """
+
+    method: str
+    settings: Mapping[str, Value]
+    population: int | None
+    name: str
+
+    @classmethod
+    def of(cls, method: str, given: Mapping[str, Value], population: int | None) -> Self:
+        """A method with what is given; ValueError where a setting is unknown or out of range."""
+        search, _ = parts_of(method)
+        own, stated = dict(given), dict[str, Value]()
+        if POPULATION in own and search in PRESETS:
+            population = number_of_individuals(own.pop(POPULATION))
+            stated[POPULATION] = population
+        if search in PRESETS:
+            known = PRESETS[search].settings
+            defaults, values = with_defaults(method, known, {}), with_defaults(method, known, own)
+            own = {name: values[name] for name in own if values[name] != defaults[name]}
+        return cls(method, own, population, name_of(method, {**stated, **own}))
+
+    def can_search(self, problem: NamedProblem) -> bool:
+        """Whether it keeps the limits of a problem, where that has some."""
+        search, _ = parts_of(self.method)
+        return not problem.task.limits or search not in PRESETS or PRESETS[search].keeps_limits
+
+
+@dataclass(frozen=True)
+class Contest:
+    """What is asked of a contest.
+
+    Parameters
+    ----------
+    problems : tuple of NamedProblem
+        What the methods are run on.
+    methods : tuple of str
+        Names of methods.
+    runs : int
+        Seeds of each method.
+    evaluations : int
+        Evaluations of each run.
+    seed : int
+        First seed.
+    population : int, optional
+        Individuals of every method; each method's own by default.
+    settings : mapping of str to mapping
+        What a method is set to, by its name; ``population`` is for that method alone.
+    explain : bool
+        Whether the local minima of the problems are looked for as well.
+    workers : Workers
+        Where the runs are done.
+
+    Raises
+    ------
+    ValueError
+        When a method is unknown or a number out of range.
+    """
+
+    problems: tuple[NamedProblem, ...]
+    methods: tuple[str, ...]
+    runs: int = 31
+    evaluations: int = 20_000
+    seed: int = 0
+    population: int | None = None
+    settings: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
+    explain: bool = False
+    workers: Workers = HERE
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "methods", tuple(dict.fromkeys(self.methods)))
+        seeds_of(self.seed, self.runs)
+        number_of_evaluations(self.evaluations)
+        if self.population is not None:
+            number_of_individuals(self.population)
+        for entry in self.entries.values():
+            check_method(entry.method, entry.population, entry.settings)
+        if not self.keys:
+            raise ValueError(f"{self.left_out[0]}; give another method or problem")
+
+    @property
+    def entries(self) -> dict[str, Entry]:
+        """The methods as they take part, by what each is called."""
+        entries = [
+            Entry.of(method, self.settings.get(method, {}), self.population)
+            for method in self.methods
+        ]
+        return {entry.name: entry for entry in entries}
+
+    @property
+    def keys(self) -> list[Key]:
+        """All runs: every method from one seed, then from the next, on one problem after another.
+
+        So a contest that is stopped has as many runs of one method as of another.
+        """
+        return [
+            Key(problem.name, name, seed)
+            for problem in self.problems
+            for seed in seeds_of(self.seed, self.runs)
+            for name, entry in self.entries.items()
+            if entry.can_search(problem)
+        ]
+
+    @property
+    def left_out(self) -> list[str]:
+        """Which methods cannot search which problem, in words."""
+        return [
+            f"{name} cannot search {problem.name}, which has limits: it is left out there"
+            for problem in self.problems
+            for name, entry in self.entries.items()
+            if not entry.can_search(problem)
+        ]
+
+
+def check_alike(contents: Contents, contest: Contest) -> None:
+    """Refuse to add runs to those of a folder that cannot be compared with them.
+
+    Parameters
+    ----------
+    contents : Contents
+        What the folder holds.
+    contest : Contest
+        What is asked.
+
+    Raises
+    ------
+    ValueError
+        When a problem is another one there, or a run has other evaluations, another population or
+        box, was measured against another exact front, or is of another version of quietarm or
+        pymoo than the runs to come; in one line, with the remedy.
+    """
+    folder = contents.folder.path
+    for problem in contest.problems:
+        known = contents.yardsticks.get(problem.name)
+        if known is not None:
+            _check_problem(known, problem, folder)
+    for run in [*contents.runs.values(), *contents.imports.values()]:
+        _check_front(run, contents.yardsticks.get(run.problem), folder)
+    for run in contents.runs.values():
+        _check_amounts(run, contest, folder)
+    if any(key not in contents.runs for key in contest.keys):
+        _check_versions(contents.runs.values(), folder)
+
+
+def _check_problem(known: Yardstick, problem: NamedProblem, folder: Path) -> None:
+    name = problem.name
+    if known.bound != problem.bound:
+        raise ValueError(
+            f"{folder} has {name} with a box of {known.bound:g}, and here it is {problem.bound:g}; "
+            "give another --output"
+        )
+    if (known.front.task, known.front.profile) != (problem.task, problem.profile):
+        raise ValueError(f"{folder} has another move of the name {name}; give another --output")
+
+
+def _check_front(run: Run | Imported, yardstick: Yardstick | None, folder: Path) -> None:
+    if yardstick is None:
+        raise ValueError(
+            f"{folder} has runs on {run.problem} without its exact front; put back "
+            f"{folder / EXACT / run.problem}.json, or give another --output"
+        )
+    if yardstick.scale != run.scale:
+        raise ValueError(
+            f"{folder} has a run that was measured against another exact front ({run.words}); "
+            "remove the runs on this problem, or give another --output"
+        )
+    bound = run.front.settings.get("bound")
+    if bound != yardstick.bound:
+        raise ValueError(
+            f"{folder} has a run in a box of {bound} ({run.words}), and that of the problem is "
+            f"{yardstick.bound:g}; remove it, or give another --output"
+        )
+    if (run.front.task, run.front.profile) != (yardstick.front.task, yardstick.front.profile):
+        raise ValueError(f"{folder} has a run on another move ({run.words}); remove it")
+
+
+def _check_amounts(run: Run, contest: Contest, folder: Path) -> None:
+    if run.budget != contest.evaluations:
+        raise ValueError(
+            f"{folder} has runs of {run.budget} evaluations ({run.words}) and "
+            f"{contest.evaluations} are asked for; give --evaluations {run.budget}, or another "
+            "--output"
+        )
+    if run.population != contest.population and not sets_population(run.method):
+        theirs, asked = (
+            "the method's own" if size is None else size
+            for size in (run.population, contest.population)
+        )
+        raise ValueError(
+            f"{folder} has a run whose population is {theirs} ({run.words}) and {asked} is asked "
+            "for; give the same, or another --output"
+        )
+
+
+def _check_versions(runs: Iterable[Run], folder: Path) -> None:
+    ours = search_versions()
+    for run in runs:
+        for name in _CODE:
+            theirs = run.front.versions.get(name, "unknown")
+            if theirs != ours[name]:
+                raise ValueError(
+                    f"{folder} has runs of {name} {theirs} ({run.words}), and new ones would be of "
+                    f"{ours[name]}; install {name} {theirs}, or give another --output"
+                )

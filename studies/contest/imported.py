@@ -1,0 +1,177 @@
+"""Results of other tools in a contest: a file of coefficients for each run, evaluated here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import ClassVar, NamedTuple
+
+from metaheuristics import NamedProblem
+from metaheuristics.budget.record import Scale
+from ocp import Front, SolverFailedError
+from ocp.answers.documents import read_bytes
+from ocp.answers.provenance import Setting
+from ocp.answers.saved import Saved
+from ocp.base.printable import printable
+from ocp.base.ranges import CountFromOne
+from studies.contest.names import name_given
+from studies.contest.problems import Yardstick
+from studies.runs.foreign import read_found
+from studies.runs.importing import import_front
+
+
+class Source(NamedTuple):
+    """What an imported run is kept under: problem, method and the name of its file."""
+
+    problem: str
+    method: str
+    file: str
+
+
+@dataclass(frozen=True)
+class Imported(Saved):
+    """One run of another tool on one problem; only what it ended with is known.
+
+    Attributes
+    ----------
+    problem, method : str
+        Their names.
+    file : str
+        Name of the file that it came from.
+    digest : str
+        SHA-256 of that file.
+    evaluations : int or None
+        How many evaluations it took, as was stated; None where nobody said.
+    scale : Scale
+        Extent of the exact front that it is measured in.
+    front : Front
+        What it found, with the figures of CVODES.
+    claims : tuple of str
+        What the file states otherwise, in sentences.
+    """
+
+    kind: ClassVar[str] = "contest-import"
+    version: ClassVar[int] = 1
+
+    problem: str
+    method: str
+    file: str
+    digest: str
+    evaluations: CountFromOne | None
+    scale: Scale
+    front: Front
+    claims: tuple[str, ...] = ()
+
+    @property
+    def key(self) -> Source:
+        """What it is kept under."""
+        return Source(self.problem, self.method, self.file)
+
+    @property
+    def words(self) -> str:
+        """Which run it is, in words."""
+        return f"{self.file} of {self.method} on {self.problem}"
+
+
+def named_files(texts: Sequence[str]) -> dict[str, list[Path]]:
+    """Files of runs by the name of their method.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        Each a file or a folder of files, one a run; with ``NAME=`` before it where its own name is
+        not to be that of the method.
+
+    Returns
+    -------
+    dict of str to list of Path
+        The files.
+
+    Raises
+    ------
+    ValueError
+        When there is no such file, a name does not do, or two files of a method have one name.
+    """
+    found: dict[str, list[Path]] = {}
+    for text in texts:
+        name, path = _named(text)
+        files = found.setdefault(name, [])
+        for file in _files(path):
+            if any(other.name == file.name for other in files):
+                raise ValueError(f"{name} has two files {file.name}; rename one: each is a run")
+            files.append(file)
+    return found
+
+
+def _named(text: str) -> tuple[str, Path]:
+    path = Path(text)
+    name, equals, rest = text.partition("=")
+    if not equals or path.exists():
+        name = path.stem if path.suffix and not path.is_dir() else path.name
+    else:
+        path = Path(rest)
+    if not path.exists():
+        raise ValueError(f"there is no file or folder {printable(str(path))}; give one to --import")
+    return name_given(printable(name)), path
+
+
+def _files(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
+    files = sorted(p for p in path.iterdir() if p.is_file() and not p.name.startswith("."))
+    if not files:
+        raise ValueError(f"{path} has no files; give a folder with a file of coefficients a run")
+    return files
+
+
+def imported_run(
+    problem: NamedProblem, yardstick: Yardstick, method: str, path: Path, evaluations: int | None
+) -> Imported:
+    """Evaluate a file.
+
+    Parameters
+    ----------
+    problem : NamedProblem
+        What it was found for.
+    yardstick : Yardstick
+        Its exact front.
+    method : str
+        What found it.
+    path : Path
+        The file.
+    evaluations : int or None
+        How many evaluations that took; None where it is not known.
+
+    Returns
+    -------
+    Imported
+        The run.
+
+    Raises
+    ------
+    ValueError
+        When its coefficients do not fit the problem or its box.
+    QuietarmError
+        When it cannot be read, or no motion in it can be used.
+    """
+    found = read_found(path)
+    columns, size = found.coefficients.shape[1], problem.profile.size
+    if columns != size:
+        raise ValueError(f"{path} has {columns} coefficients a motion, and {problem.name} {size}")
+    settings: dict[str, Setting] = {"imported": printable(path.name), "bound": problem.bound}
+    try:
+        front, claims = import_front(problem.task, problem.profile, found, method, settings)
+    except (ValueError, SolverFailedError) as error:
+        raise type(error)(f"{path}: {error}") from None
+    return Imported(
+        problem=problem.name,
+        method=method,
+        file=printable(path.name),
+        digest=sha256(read_bytes(path)).hexdigest(),
+        evaluations=evaluations,
+        scale=yardstick.scale,
+        front=front,
+        claims=tuple(claim.line() for claim in claims if claim.differ),
+    )

@@ -1,0 +1,1 @@
+"""What a contest shows: tables, pictures, references and the page."""

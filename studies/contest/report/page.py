@@ -1,0 +1,147 @@
+"""The contest as one page of HTML that stands alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from studies.contest.landscape import CANDIDATES, LEVEL, Landscape
+from studies.contest.measures import Arena, methods_in
+from studies.contest.names import label_of
+from studies.contest.report.citations import bibtex
+from studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from studies.contest.report.notes import middle_of, missing_words, not_alike, unequal
+from studies.contest.report.paragraph import methods_paragraph, settings_lines
+from studies.contest.report.tables import (
+    effects_table,
+    summary_table,
+    visits_table,
+)
+from studies.contest.statistics import ALPHA, Ranking, pairs_on, ranking_on, ranking_over, why_none
+from studies.display.html_page import Markup, bullets, element, page, picture, table_element
+from studies.display.words import counted, millimetres, title_of
+
+_ANYTIME = (
+    "Share of the exact front's hypervolume that is missing, over evaluations and over time: "
+    "medians over the seeds in bands of the quartiles; dotted the targets of 1 % and 0.1 %."
+)
+_ATTAINMENT = (
+    "What half of the runs of each method attain, with the exact front in black; and where more "
+    "runs of the best method (blue) or of another (red) attain residual and energy."
+)
+_RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell apart."
+
+
+def contest_page(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> str:
+    """The contest as a page.
+
+    Parameters
+    ----------
+    arenas : sequence of Arena
+        The problems with their runs.
+    notes : sequence of str
+        What else is to be known, in sentences without a full stop.
+
+    Returns
+    -------
+    str
+        HTML with its style and pictures inside; it loads nothing and runs nothing.
+    """
+    methods = methods_in(arenas)
+    title = f"{counted(len(methods), 'method')} against the exact front"
+    sections = [_section(arena, methods) for arena in arenas]
+    return page(title, element("h1", title), _findings(arenas, notes), *sections, _methods(arenas))
+
+
+def _findings(arenas: Sequence[Arena], notes: Sequence[str]) -> Markup:
+    none, lines = why_none(arenas), list[str]()
+    for arena in arenas:
+        best = min(arena.alike, key=middle_of)
+        lines.append(
+            f"{arena.problem}: {label_of(best.method)} ends nearest to the exact front, with "
+            f"{missing_words(best, 'its')}."
+        )
+    lines += [f"{none}."] if none else []
+    over = None if none else ranking_over(arenas)
+    stated = [*unequal(arenas), *not_alike(arenas), *notes]
+    parts = [bullets([*lines, *(line if line.endswith(".") else f"{line}." for line in stated)])]
+    found = element("div", *parts, class_="findings")
+    if over is None:
+        return found
+    words = f"{_RANKS} Over {over.blocks} problems, by medians. {_verdict(over)}"
+    return element("div", found, picture(ranks_figure(over, "all problems"), words, words))
+
+
+def _verdict(found: Ranking) -> str:
+    says = "the methods differ" if found.differ else "no difference is shown"
+    return (
+        f"Friedman's test: chi2 = {found.statistic:.3g}, p = {found.p_value:.2g}, {says} at "
+        f"{100 * ALPHA:g} %; Nemenyi's critical difference is {found.critical:.2f}."
+    )
+
+
+def _section(arena: Arena, methods: Sequence[str]) -> Markup:
+    title, looks = title_of(arena.yardstick.front.task), looks_of(methods)
+    parts = [
+        element("h2", arena.problem),
+        element("p", title, class_="soft"),
+        picture(anytime_figure(arena, looks), f"{_ANYTIME} On {title}.", _anytime_words(arena)),
+        table_element(summary_table(arena)),
+        picture(attainment_figure(arena, looks), f"{_ATTAINMENT} On {title}.", _ATTAINMENT),
+        *_statistics(arena),
+        table_element(visits_table(arena)),
+        *([bullets(explanation(arena.landscape))] if arena.landscape else []),
+    ]
+    return element("section", *parts, id=arena.problem)
+
+
+def _anytime_words(arena: Arena) -> str:
+    if not arena.imports:
+        return _ANYTIME
+    names = " and ".join(label_of(one.method) for one in arena.imports)
+    return f"{_ANYTIME} Of {names} only the end is known, so that there are no curves."
+
+
+def explanation(found: Landscape) -> list[str]:
+    """What makes a problem hard, in sentences."""
+    level = millimetres(LEVEL)
+    lines = [
+        f"Of {found.starts} random starts in the box, the gradient ended at a minimum of the "
+        f"energy within {level} from {found.solved:.0%}, and at the best of these from "
+        f"{found.best:.0%}; of the minima, {found.minima} differ by more than 0.1 % in energy.",
+        f"Over {CANDIDATES} random candidates, energy and distance to the cheapest motion "
+        f"correlate by {found.candidates:.2f} (1 where better candidates lie nearer to it).",
+    ]
+    if found.correlation is not None:
+        lines.append(
+            f"Over the minima found, energy and distance to the best one correlate by "
+            f"{found.correlation:.2f}."
+        )
+    for share, ratio in found.boxes:
+        of = f"With a box {share:g} times as large the least energy within {level} is"
+        lines.append(
+            f"{of} not found." if ratio is None else f"{of} {ratio:.4g} times that in this one."
+        )
+    return lines
+
+
+def _statistics(arena: Arena) -> list[Markup]:
+    none = why_none([arena])
+    if none:
+        return [element("p", f"{none[0].upper()}{none[1:]}.")]
+    parts, found = list[Markup](), ranking_on(arena)
+    if found is not None:
+        words = f"{_RANKS} Over {found.blocks} seeds. {_verdict(found)}"
+        parts.append(picture(ranks_figure(found, arena.problem), words, words))
+    return [*parts, table_element(effects_table(arena, pairs_on(arena)))]
+
+
+def _methods(arenas: Sequence[Arena]) -> Markup:
+    references = bibtex(methods_in(arenas), statistics=not why_none(arenas))
+    return element(
+        "section",
+        element("h2", "Methods"),
+        element("p", methods_paragraph(arenas)),
+        bullets(settings_lines(arenas)),
+        element("h3", "References"),
+        element("pre", references, class_="soft"),
+    )

@@ -1,0 +1,37 @@
+"""What a picture is given: a refusal names the value and the remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from ocp import Front, Polish, Robustness
+from ocp.base.checks import of_kind
+
+_A_FRONT = "a Front, as of epsilon_front, search or Front.load"
+
+
+def front_given(front: Front) -> Front:
+    """A front; ValueError where it is something else."""
+    return of_kind("front", front, Front, _A_FRONT)
+
+
+def polish_given(polish: Polish) -> Polish:
+    """What polishing gained; ValueError where it is something else."""
+    return of_kind("polish", polish, Polish, "what ocp.polish_front returns")
+
+
+def fronts_given(fronts: Sequence[Front]) -> list[Front]:
+    """Fronts; ValueError where there is none, or one is something else."""
+    listed = list(of_kind("fronts", fronts, Iterable, "a list of fronts"))
+    if not listed:
+        raise ValueError("there is no front to draw; give a list of one front or more")
+    return [of_kind(f"front {i}", front, Front, _A_FRONT) for i, front in enumerate(listed, 1)]
+
+
+def robustness_given(plans: Mapping[str, Robustness]) -> Mapping[str, Robustness]:
+    """Figures by label; ValueError where there are none, or some are something else."""
+    if not of_kind("plans", plans, Mapping, "figures of robustness by label"):
+        raise ValueError("there is no plan to draw; give the figures of one or more by label")
+    for label, plan in plans.items():
+        of_kind(f"plan {label!r}", plan, Robustness, "what ocp.evaluate_robustness returns")
+    return plans

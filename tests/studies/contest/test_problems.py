@@ -1,0 +1,63 @@
+"""The problems of a contest: the named ones, with the exact fronts that come with them."""
+
+import pytest
+from small_contest import LINE, NAME, documents, rows_of
+
+from metaheuristics import PROBLEMS
+from studies.contest.folder import Contents
+from studies.contest.problems import Yardstick, problems_of
+from studies.contest.report import files, page
+from studies.display.html_page import element
+from studies.paper.printed import CONDITIONS
+
+LIMITS, THIRD = "single-link-30deg-0.8s-limits", "single-link-30deg-0.8s-torque"
+
+
+@pytest.fixture(autouse=True)
+def _no_pictures(monkeypatch):
+    """They are drawn elsewhere, and take long."""
+    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
+    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
+
+
+def test_without_a_name_they_are_the_papers_conditions():
+    found = problems_of(())
+    assert [problem.task for problem in found] == [case.task for case in CONDITIONS]
+    assert [problem.bound for problem in found] == [case.bound for case in CONDITIONS]
+    assert {problem.profile.size for problem in found} == {6}
+    assert problems_of((NAME, NAME)) == (PROBLEMS[NAME],)
+
+
+def test_the_yardstick_is_the_front_that_comes_with_the_problem(held):
+    found = Contents.of(held).yardsticks[NAME]
+    assert (found.front,) == PROBLEMS[NAME].fronts()
+    assert found == Yardstick.of(PROBLEMS[NAME])
+
+
+def test_a_third_objective_is_refused(call, folder):
+    code, out, err = call(f"contest {NAME} {THIRD} --output new")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert f"{THIRD} has a third objective, and a contest compares residual and energy" in err
+    assert list(folder.iterdir()) == []
+
+
+def test_a_method_without_limits_is_left_out_where_there_are_some(call, folder):
+    line = LINE.replace("vepso", "moead").replace("--runs 2", "--runs 1")
+    code, out, err = call(f"{line.replace(NAME, f'{NAME} {LIMITS}')} --output held")
+    assert (code, err) == (0, "")
+    words = f"moead cannot search {LIMITS}, which has limits: it is left out there"
+    assert words in out
+    assert words in (folder / "held/contest.html").read_text()
+    assert set(documents(folder / "held")) == {("nsga2", 0), ("moead", 0)}
+    assert set(documents(folder / "held", LIMITS)) == {("nsga2", 0)}
+    assert [(row["problem"], row["method"]) for row in rows_of(folder / "held", "runs")] == [
+        (NAME, "moead"), (NAME, "nsga2"), (LIMITS, "nsga2"),
+    ]  # fmt: skip
+
+
+def test_where_no_method_can_search_it_is_refused(call, folder):
+    code, out, err = call(f"contest {LIMITS} --methods moead --output new")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert f"moead cannot search {LIMITS}, which has limits" in err
+    assert "give another method or problem" in err
+    assert list(folder.iterdir()) == []

@@ -1,0 +1,100 @@
+"""Methods that are set to something take part under names of their own."""
+
+import json
+import shutil
+
+import pytest
+from small_contest import LINE, METHODS, NAME, documents
+
+import studies.contest.work as work
+from metaheuristics.budget.run import search_within
+from metaheuristics.problems.catalogue import problem_of
+from studies.contest.asked import Contest
+from studies.contest.names import label_of, name_of
+from studies.contest.report import files, page
+from studies.display.html_page import element
+
+SET = "nsga2(crossover=0.5, population=16)"
+
+
+@pytest.fixture(autouse=True)
+def _no_pictures(monkeypatch):
+    """They are drawn elsewhere, and take long."""
+    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
+    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
+
+
+def contest(methods, **settings):
+    return Contest((problem_of(NAME),), methods, 2, 130, settings=settings)
+
+
+def test_a_setting_is_part_of_the_name_unless_it_is_the_default():
+    asked = contest(METHODS, nsga2={"crossover": 0.5, "mutation": 1, "population": 16})
+    assert list(asked.entries) == [SET, "vepso"]
+    assert {key.method for key in asked.keys} == {SET, "vepso"}
+    entry = asked.entries[SET]
+    assert (entry.method, entry.settings, entry.population) == ("nsga2", {"crossover": 0.5}, 16)
+    assert list(contest(METHODS, nsga2={"crossover": 0.8}).entries) == list(METHODS)
+
+
+def test_names_and_labels():
+    assert name_of("gde3", {"jitter": 1e-4, "variant": "DE/best/1/bin"}) == (
+        "gde3(jitter=0.0001, variant=DE/best/1/bin)"
+    )
+    assert name_of("omni", {"objective_crowding": False}) == "omni(objective_crowding=false)"
+    assert label_of(SET) == "NSGA-II (crossover=0.5, population=16)"
+    assert label_of("nsga2+polish(crossover=0.5)") == "NSGA-II, then polished (crossover=0.5)"
+    assert label_of("my tool (v2)") == "my tool (v2)"
+
+
+def test_it_takes_part_beside_the_same_method_without(call, held, folder):
+    copy = shutil.copytree(held, folder / "held")
+    given = "--setting nsga2.crossover=0.5 --setting nsga2.population=16"
+    code, out, err = call(f"{LINE} {given} --output held")
+    assert (code, err) == (0, "")
+    assert "(crossover=0.5," in out
+    kept = documents(copy)
+    assert {method for method, _ in kept} == {*METHODS, SET}
+    # exactly what a search with these settings finds
+    problem = problem_of(NAME)
+    scale = work.Contents.of(copy).yardsticks[NAME].scale
+    alone = search_within(
+        problem.task, "nsga2", 130, scale, profile=problem.profile, bound=problem.bound,
+        population=16, settings={"crossover": 0.5}, seed=1,
+    )  # fmt: skip
+    points = kept[SET, 1]["front"]["points"]
+    assert [tuple(p["coefficients"]) for p in points] == [
+        p.coefficients for p in alone.front.points
+    ]
+    assert points != kept["nsga2", 1]["front"]["points"]
+    assert kept[SET, 1]["front"]["settings"]["crossover"].startswith("SBX(prob=0.5, ")
+    text = (copy / "contest.html").read_text()
+    assert "NSGA-II (crossover=0.5, population=16): bound 0.2" in text
+    # the same line again runs nothing
+    before = json.dumps(kept[SET, 1])
+    assert call(f"{LINE} {given} --output held")[0] == 0
+    assert json.dumps(documents(copy)[SET, 1]) == before
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("crossover=0.5", "setting crossover names no method that runs; give it as nsga2.cross"),
+        ("gde3.crossover=0.5", "setting gde3.crossover names no method that runs"),
+        ("nsga2.crosover=0.5", "nsga2 has no setting 'crosover'; did you mean 'crossover'"),
+        ("nsga2.crossover=2", "crossover is 2; give a number from 0 to 1"),
+        ("nsga2.population=1", "population is 1"),
+    ],
+)
+def test_settings_that_do_not_fit_are_refused(call, folder, given, words):
+    code, out, err = call(f"{LINE} --setting {given} --output new")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert words in err
+    assert list(folder.iterdir()) == []
+
+
+def test_multistart_has_no_settings(call, folder):
+    line = LINE.replace("nsga2,vepso", "multistart")
+    code, _, err = call(f"{line} --setting multistart.population=20 --output new")
+    assert code == 2
+    assert "multistart has no settings; leave population out" in err
