@@ -48,9 +48,8 @@ class ExactDuplicates(DuplicateElimination):
         return is_duplicate
 
     def _rows(self, individuals: Any) -> list[bytes]:
-        # one by one: pymoo's Population.get takes several times as long, a fifth of a search
-        X = np.array([one.X for one in individuals], dtype=float) + 0.0  # -0.0 equals 0.0
-        return [row.tobytes() for row in X]
+        X = np.array([individual.X for individual in individuals], dtype=float)
+        return [row.tobytes() for row in X + 0.0]  # -0.0 becomes 0.0, which it equals
 
 
 class PaperNSGA2(NSGA2):

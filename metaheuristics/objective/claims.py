@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from metaheuristics.objective.population import BLOCK, PopulationObjective
 from ocp import Front, FrontPoint, JointProfile, Plan, PointToPoint
@@ -21,11 +23,28 @@ _SAMPLE = BLOCK
 """Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves
 all of these as they were."""
 
+FIGURES = (("residual", "m", REST), ("energy", "J", 0.0))
+"""Name and unit of both objectives, and the difference within which they always agree."""
+T = TypeVar("T", float, NDArray[np.float64])
+
+
+def agrees(stated: T, gives: T, least: float) -> Any:
+    """Whether a stated figure is what a motion gives, element by element; what is NaN is not.
+
+    Parameters
+    ----------
+    stated, gives : float or ndarray
+        Both figures.
+    least : float
+        The difference within which they always agree; beyond it `AGREEMENT` of the figure does.
+    """
+    return abs(stated - gives) <= AGREEMENT * abs(gives) + least
+
 
 @lru_cache(maxsize=4)
 def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
     """The objective at the steps that fronts are verified with; made once for a task."""
-    return PopulationObjective(task, profile, steps=default_steps(task), few=True)
+    return PopulationObjective(task, profile, steps=default_steps(task), often=False)
 
 
 def check_figures(front: Front, name: str) -> None:
@@ -72,12 +91,11 @@ def check_plan(plan: Plan, name: str) -> None:
         When CVODES cannot follow the motion.
     """
     found = resimulate(plan.task, plan.profile, plan.coefficients)
-    figures = [("residual", "m", REST), ("energy", "J", 0.0)]
-    peaks = [(figure, QUANTITIES[figure].unit, 0.0) for figure in QUANTITIES]
-    for figure, unit, least in figures + peaks:
+    peaks = ((figure, QUANTITIES[figure].unit, 0.0) for figure in QUANTITIES)
+    for figure, unit, least in (*FIGURES, *peaks):
         stated, gives = plan.motion.peak(figure), found.peak(figure)
         known = math.isfinite(stated) and math.isfinite(gives)  # older files lack the jerk
-        if known and not abs(stated - gives) <= AGREEMENT * abs(gives) + least:
+        if known and not agrees(stated, gives, least):
             figure = f"peak {figure}" if figure in QUANTITIES else figure
             raise ValueError(
                 f"{name} states {figure} {stated:.4g} {unit}, but its coefficients give "
@@ -118,11 +136,9 @@ def check_points(
     rows = zip(places, values.residual, values.energy, values.violations, strict=True)
     for i, residual, energy, violations in rows:
         which = f"point {i + 1} of {count}"
-        for figure, unit, stated, found, least in (
-            ("residual", "m", points[i].residual, residual, REST),
-            ("energy", "J", points[i].energy, energy, 0.0),
-        ):
-            if not abs(stated - found) <= AGREEMENT * abs(found) + least:
+        both = (points[i].residual, residual), (points[i].energy, energy)
+        for (figure, unit, least), (stated, found) in zip(FIGURES, both, strict=True):
+            if not agrees(stated, found, least):
                 gives = f"{found:.4g} {unit}" if np.isfinite(found) else "no finite figure"
                 raise ValueError(
                     f"{which} states {figure} {stated:.4g} {unit}, but its coefficients give "

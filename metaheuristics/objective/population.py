@@ -70,9 +70,9 @@ class PopulationObjective:
         Number of steps; by default `CANDIDATE_STEPS`, or more where the plant's modes need them.
     threads : int
         Blocks of candidates that are evaluated at the same time.
-    few : bool
-        Whether few candidates are to be evaluated. Common subexpressions are then not looked for:
-        with many steps that takes as long as some thousand candidates.
+    often : bool
+        Whether it is called often. If not, the function is built several times as soon, and takes
+        up to twice as long for the same figures.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class PopulationObjective:
         *,
         steps: int | None = None,
         threads: int = 1,
-        few: bool = False,
+        often: bool = True,
     ) -> None:
         self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
         default = default_steps(task, least=CANDIDATE_STEPS)
@@ -96,9 +96,7 @@ class PopulationObjective:
         self._tip_of_state = residual_rows(task).T
         self._limits = np.array(list(task.limits.values()))
         self._idle: list[_Workspace] = []
-        self._function = _compiled(
-            task.plant, profile, self.steps, tuple(task.limits), eliminate=not few
-        )
+        self._function = _compiled(task.plant, profile, self.steps, tuple(task.limits), often)
 
     @keep_interrupts()
     def __call__(self, coefficients: ArrayLike) -> PopulationValues:
@@ -193,7 +191,7 @@ def _blocks(population: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
 
 @lru_cache(maxsize=16)
 def _compiled(
-    plant: Plant, profile: JointProfile, steps: int, limited: tuple[str, ...], *, eliminate: bool
+    plant: Plant, profile: JointProfile, steps: int, limited: tuple[str, ...], often: bool
 ) -> ca.Function:
     population = ca.MX.sym("a", BLOCK, profile.size)
     move, limits = ca.MX.sym("move", 3), ca.MX.sym("limits", len(limited))
@@ -204,7 +202,7 @@ def _compiled(
     at_nodes = [_at_nodes(plant, rollout, name) for name in limited]
     violations = [_row_peak(values) / limits[i] - 1 for i, values in enumerate(at_nodes)]
     outputs = [rollout.arrival, ca.horzcat(rollout.energy, *violations)]
-    return ca.Function("population", [population, move, limits], outputs, {"cse": eliminate})
+    return ca.Function("population", [population, move, limits], outputs, {"cse": often})
 
 
 def _at_nodes(plant: Plant, rollout: SymbolicRollout, name: str) -> list[Expression]:

@@ -12,9 +12,10 @@ from ocp import (
     QuietarmError,
     epsilon_front,
     non_dominated,
-    plan_move,
 )
+from ocp.answers.provenance import SolveSettings
 from ocp.front.points import LEVELS
+from ocp.plan.solver import plan_at_samples
 
 POINTS = 25
 """Points of an exact front, beside those at `LEVELS`."""
@@ -79,10 +80,12 @@ def _better(
 ) -> FrontPoint:
     """The best motion of a point's residual from some starts, or the point itself."""
     try:
-        plan = plan_move(
-            front.task, front.profile, residual_limit=point.residual, bound=bound,
-            starts=starts, seed=SEED, guess=None if guess is None else guess.coefficients,
+        settings = SolveSettings(
+            point.residual, bound, starts, SEED,
+            guess=None if guess is None else guess.coefficients,
         )  # fmt: skip
+        # not `plan_move`: a front's residual is that at the samples of an uncertain plant
+        plan = plan_at_samples(front.task, front.profile, settings)
     except QuietarmError:
         return point
     found = FrontPoint(plan.coefficients, plan.residual, plan.energy)

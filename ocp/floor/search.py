@@ -34,6 +34,7 @@ _MOST_COLD = 600
 _LEAST_LEVELS = 3
 """Two falls of the energy at least, to see whether they become smaller, and how fast."""
 _SAME = 1e-5
+"""Solutions whose energies differ by less than this share are refined once."""
 _ROUNDS, _KEPT = 4, 1e-6
 """Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
 
@@ -95,31 +96,11 @@ def energy_floor(
     settings = FloorSettings(smooth, starts, seed, tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)
-    fractions = first_grid(_first_steps(task))
-    tried, stopped = list[FreeSolution](), None
-    try:
-        for path in _paths(task, settings):
-            tried.append(program.solve(program.along(path, fractions), task.limits))
-        solved = _solved(program, tried)
-        improved = _refined_once(program, solved)
-    except KeyboardInterrupt:
-        solved = [found for found in tried if found.status.solved]
-        if not solved:
-            raise
-        with note_interrupts():  # the second grid tells what the first leaves
-            improved = _refined_once(program, [min(solved, key=_energy)])
-        stopped = f"{len(tried)} of {settings.starts} starts"
+    solved, improved, stopped = _from_starts(program, settings)
     grids = [min(solved, key=_energy), min(improved, key=_energy)]
     try:
-        while (
-            stopped is None
-            and not _settled(grids, settings.tolerance)
-            and 2 * grids[-1].free.steps <= MOST_INTERVALS
-        ):
-            following = _refined(program, grids[-1])
-            if not following.status.solved:
-                break
-            grids.append(following)
+        if stopped is None:
+            _refine(program, grids, settings.tolerance)
         best, simulation = _least_verified(program, grids)
     except KeyboardInterrupt:
         stopped = stopped or f"{len(grids)} grids"
@@ -151,6 +132,35 @@ def _first_steps(task: PointToPoint) -> int:
             f"a floor begins with up to {MOST_FIRST_INTERVALS}: give a shorter duration"
         )
     return steps
+
+
+def _from_starts(
+    program: FloorProgram, settings: FloorSettings
+) -> tuple[list[FreeSolution], list[FreeSolution], str | None]:
+    """The starts on the first grid and on the second; after Ctrl-C those until then, how many."""
+    task, tried = program.task, list[FreeSolution]()
+    fractions = first_grid(_first_steps(task))
+    try:
+        for path in _paths(task, settings):
+            tried.append(program.solve(program.along(path, fractions), task.limits))
+        solved = _solved(program, tried)
+        return solved, _refined_once(program, solved), None
+    except KeyboardInterrupt:
+        solved = [found for found in tried if found.status.solved]
+        if not solved:
+            raise
+        with note_interrupts():  # the second grid tells what the first leaves
+            improved = _refined_once(program, [min(solved, key=_energy)])
+        return solved, improved, f"{len(tried)} of {settings.starts} starts"
+
+
+def _refine(program: FloorProgram, grids: list[FreeSolution], tolerance: float) -> None:
+    """Append finer grids until the energy settles, a solve fails or the grid is the finest."""
+    while not _settled(grids, tolerance) and 2 * grids[-1].free.steps <= MOST_INTERVALS:
+        following = _refined(program, grids[-1])
+        if not following.status.solved:
+            return
+        grids.append(following)
 
 
 def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:

@@ -24,13 +24,13 @@ EXCESS = 0.05
 _ROUNDS, _ADDED = 6, 4
 """Most rounds of added samples, and most samples that one adds."""
 _TIGHTENINGS = 4
-"""How often at most what is left of the excess is taken off the limit."""
+"""Most times that the limit is tightened by what is left of the excess."""
 
 Solve = Callable[[PointToPoint, JointProfile, SolveSettings], Plan]
 
 
 def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
-    """The residual limit that counts where one is given, or none is.
+    """The residual limit of a plan, also where none is given.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
     Returns
     -------
     float
-        The same; where it is None 0, of an uncertain plant `tolerated_residual`.
+        The same; where it is None, 0, or for an uncertain plant its `tolerated_residual`.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
     -------
     Plan
         The plan with its `worst`, which is above the limit where no tighter one could be kept.
-        After Ctrl-C the last, and not ``complete``.
+        After Ctrl-C the last plan until then, not ``complete``.
 
     Raises
     ------

@@ -100,13 +100,33 @@ def plan_move(
     if profile.size == 0:
         return only_motion(task, profile, settings.residual_limit)
     settings = replace(settings, residual_limit=limit_of(task, residual_limit))
-    found = _solved(task, profile, settings)
+    found = plan_at_samples(task, profile, settings)
     uncertain = isinstance(task.plant, UncertainPlant)
-    return held_between(found, settings, _solved) if uncertain else found
+    return held_between(found, settings, plan_at_samples) if uncertain else found
 
 
-def _solved(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:
-    """The plan of a task whose residual limit holds at the plant's samples, if it has any."""
+def plan_at_samples(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:
+    """The plan of a task whose residual limit holds at the plant's samples, if it has any.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    settings : SolveSettings
+        What is asked of the solver.
+
+    Returns
+    -------
+    Plan
+        The plan; between the samples of an uncertain plant its residual may be larger.
+
+    Raises
+    ------
+    SolverFailedError
+        When no start ended at an optimum.
+    """
     began = time.perf_counter()
     program = TaskProgram(task, profile, first_steps(task, profile, settings))
     guesses = start_coefficients(profile, settings)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 
 import casadi as ca
@@ -161,19 +162,20 @@ def _hull(points: NDArray[np.float64]) -> list[int]:
     """Indices of points in the plane that lie, or whose negatives lie, on their common hull."""
     both = np.vstack([points, -points])
     order = np.lexsort(both.T[::-1])
+    at: list[list[float]] = both.tolist()  # NumPy's own numbers take much longer one by one
     corners: set[int] = set()
     for direction in (order, order[::-1]):  # Andrew's monotone chain: lower hull, then upper
         chain: list[int] = []
         for i in direction.tolist():
-            while len(chain) > 1 and _left_turn(both[chain[-2]], both[chain[-1]], both[i]) <= 0:
+            while len(chain) > 1 and _left_turn(at[chain[-2]], at[chain[-1]], at[i]) <= 0:
                 chain.pop()
             chain.append(i)
         corners.update(index % len(points) for index in chain)
     return sorted(corners)
 
 
-def _left_turn(a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]) -> float:
-    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+def _left_turn(a: Sequence[float], b: Sequence[float], c: Sequence[float]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def _numbers(entries: list[list[float]]) -> NDArray[np.float64]:

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from metaheuristics import MoveFunction
+from metaheuristics.objective.claims import FIGURES, agrees
+from metaheuristics.objective.population import UNUSABLE
 from ocp import Front, JointProfile, PointToPoint, SolverFailedError
-from ocp.answers.provenance import AGREEMENT, REST, Setting
+from ocp.answers.provenance import REST, Setting
 from ocp.base.checks import whole
 from ocp.front.evaluation import refuse_beyond_box
 from studies.display.progress import working
@@ -31,8 +33,7 @@ MOST_MOTIONS = 1_000_000
 _NEAR = 1e-3
 """Motions that another beats by more than this share are not evaluated a second time."""
 _NEAR_REST = 1e-6
-"""Nor do residuals count [m] that differ by less."""
-_FIGURES = (("residual", "m", REST), ("energy", "J", 0.0))
+"""They leave more than it does by this much [m] as well: near rest a share says little."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,7 @@ def import_front(
     refuse_beyond_box(profile, rows, settings.get("bound"))
     widest = max(float(np.abs(rows).max()), 1e-3)  # any box: the function needs one
     objectives, violations = MoveFunction(task, profile, bound=min(widest, 1e6))(rows)
-    failed = (objectives >= 1e30).any(axis=1)
+    failed = (objectives >= UNUSABLE).any(axis=1)
     broken = ~failed & (violations > _NEAR).any(axis=1)
     usable = np.flatnonzero(~failed & ~broken)
     near = usable[_not_beaten(objectives[usable])]
@@ -167,13 +168,13 @@ def _not_beaten(F: Array) -> NDArray[np.bool_]:
 
 def _claims(stated: Array, figures: Array) -> list[Claim]:
     found: list[Claim] = []
-    for column, (figure, unit, least) in enumerate(_FIGURES):
+    for column, (figure, unit, least) in enumerate(FIGURES):
         theirs, ours = stated[:, column], figures[:, column]
         known = ~np.isnan(theirs)
         if not known.any():
             continue
         gap = np.where(known, np.abs(theirs - ours) - least, 0.0)
-        wrong = known & ~(gap <= AGREEMENT * np.abs(ours))
+        wrong = known & ~agrees(theirs, ours, least)
         worst = int(np.argmax(np.where(wrong, gap / np.maximum(np.abs(ours), 1e-300), -1.0)))
         telling = known & (ours > 100 * REST)
         factor = float(np.median(theirs[telling] / ours[telling])) if telling.any() else np.nan

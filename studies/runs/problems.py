@@ -11,7 +11,7 @@ from metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from ocp import Front
 from studies.display.progress import progress
 from studies.display.saving import Together, finish, inside, interruption
-from studies.display.words import print_lines
+from studies.display.words import error_words, print_lines
 
 
 def run_problems(names: Sequence[str], again: bool, output: Path | None, quiet: bool) -> None:
@@ -74,10 +74,12 @@ def _find_again(chosen: Sequence[NamedProblem], fronts: dict[str, Front], quiet:
 
 
 def _line(problem: NamedProblem) -> str:
+    errors = error_words(problem.task.plant)
     limits = ", ".join(f"{name} {most:g}" for name, most in problem.task.limits.items())
     words = [
         f"{problem.name}: {problem.profile.size} coefficients up to {problem.bound:g}",
         f"limits {limits}" if limits else "",
         f"third objective peak {problem.peak}" if problem.peak else "",
+        f"the largest residual with {errors}" if errors else "",
     ]
     return ", ".join(filter(None, words))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from ocp import Plan, evaluate_robustness
+from ocp import Plan, Robustness, evaluate_robustness
 from ocp.robustness.plants import checked_ranges
 from studies.display.progress import count
 from studies.display.saving import finish
@@ -58,7 +58,7 @@ def run_robustness(
             checked_ranges(plan.task.plant, ranges)
         except ValueError as error:
             raise ValueError(f"{label}: {error}") from None
-    figured: Figured = _evaluated(plans, ranges, samples, seed, quiet)
+    figured = _evaluated(plans, ranges, samples, seed, quiet)
     files = [] if output is None else robustness_files(output, figured)
     finish(files, partial(print_robustness, plans=figured), quiet=quiet)
 
@@ -66,8 +66,8 @@ def run_robustness(
 def _evaluated(
     plans: Mapping[str, Plan], ranges: Mapping[str, float], samples: int, seed: int, quiet: bool
 ) -> Figured:
-    each, figured = samples, {}
-    with count(each * len(plans), "evaluations", Console(stderr=True), quiet=quiet) as report:
+    figured: dict[str, tuple[Plan, Robustness]] = {}
+    with count(samples * len(plans), "evaluations", Console(stderr=True), quiet=quiet) as report:
         for number, (label, plan) in enumerate(plans.items()):
 
             def told(done: int, total: int, number: int = number) -> None:

@@ -36,7 +36,7 @@ def test_every_point_keeps_the_limits(method):
     task = LIMITED[method]
     for name, limit in task.limits.items():
         assert max(motion.peak(name) for motion in free) > limit  # it bites
-    front = run(method, task, population=30, generations=30)
+    front = run(method, task, population=30, generations=20)
     assert len(front.points) > 3
     assert_is_a_front(front)
     for point in front.points:

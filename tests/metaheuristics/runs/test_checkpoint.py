@@ -83,7 +83,7 @@ states = st.dictionaries(
 
 
 @given(given_state=states)
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_any_nested_state_comes_back(path, given_state):
     save_checkpoint(path, HEADER, given_state)
     header, found = load_checkpoint(path)

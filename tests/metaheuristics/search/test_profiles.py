@@ -1,4 +1,4 @@
-"""Searches over other profiles than the polynomial: each in its own box, on every plant."""
+"""Searches over other profiles than the polynomial: each in its own box, on a plant each."""
 
 import math
 
@@ -29,9 +29,9 @@ def profile(request):
 
 
 @pytest.mark.parametrize("method", ["vepso", "nsga2"])
-@pytest.mark.parametrize("name", TASKS)
-def test_a_search_stays_in_the_profiles_box_and_finds_what_it_says(profile, method, name):
-    task = TASKS[name]
+@pytest.mark.parametrize(("kind", "name"), [*zip(PROFILES, TASKS, strict=True)])
+def test_a_search_stays_in_the_profiles_box_and_finds_what_it_says(kind, method, name):
+    task, profile = TASKS[name], PROFILES[kind]
     found = search(task, method, profile=profile, population=20, generations=10, seed=1)
     assert found.profile == profile
     assert found.settings["bound"] == profile.default_bound

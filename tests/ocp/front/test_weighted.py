@@ -142,8 +142,8 @@ def test_ctrl_c_keeps_what_was_found():
 def test_a_limit_that_the_solvers_steps_pass_is_kept_by_solving_again():
     """The solve that follows is of least energy, another form than that of the weighted sum."""
     task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8, torque_limit=0.15)
-    front = weighted_front(task, CycloidPolynomial(4), bound=0.2, points=8)
-    assert len(front.points) >= 5
+    front = weighted_front(task, CycloidPolynomial(4), bound=0.2, points=5)
+    assert len(front.points) >= 3
     for point in front.points:  # CVODES again; docs/accuracy.md
         motion = evaluate_coefficients(task, point.coefficients).motion
         assert motion.peak_torque <= 0.15 * 1.001

@@ -50,8 +50,9 @@ def test_a_plan_of_a_row_is_optimal_in_its_box(planned, row):
     assert np.abs(plan.coefficients).max() <= ROWS[row][-1] * (1 + 1e-7)
 
 
-@pytest.mark.parametrize("in_box", [True, False])
-@pytest.mark.parametrize("row", ROWS)
+@pytest.mark.parametrize(
+    ("row", "in_box"), [*((row, False) for row in ROWS), *((row, True) for row in (*ROWS,)[::3])]
+)
 def test_finer_steps_do_not_find_less_energy(planned, row, in_box):
     # Ten times the steps or more, from the plan itself; both verified by CVODES.
     plan = planned(row, in_box)
@@ -59,8 +60,8 @@ def test_finer_steps_do_not_find_less_energy(planned, row, in_box):
     fine = plan_move(
         plan.task, plan.profile, bound=bound, starts=1, steps=400, guess=plan.coefficients
     )
-    # Eleven of the twelve are within 6e-7. The arm's second row without a box is 5.7e-6 above: at
-    # 48 steps the solver's own energy is off by less than what asks for more of them.
+    # All others are within 6e-7. The arm's second row without a box is 5.7e-6 above: at 48 steps
+    # the solver's own energy is off by less than what asks for more of them.
     rough = not in_box and row == "arm, -pi/2 to pi/4 in 1.0 s"
     assert plan.energy <= fine.energy * (1 + (6e-6 if rough else 1e-6))
     middle = plan_move(

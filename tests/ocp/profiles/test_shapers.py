@@ -9,7 +9,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ocp import CycloidPolynomial, ShapedCycloid
@@ -122,6 +122,7 @@ def test_what_is_left_by_two_shapers_is_the_product(shaper, first, second):
 
 
 @names
+@settings(max_examples=20)
 @given(pairs=modes, share=st.floats(LEAST_SHARE, 0.9), fraction=st.floats(0, 1))
 def test_it_is_a_sum_of_plain_cycloids(shaper, pairs, share, fraction):
     profile = _profile(shaper, pairs)
@@ -138,6 +139,7 @@ def test_it_is_a_sum_of_plain_cycloids(shaper, pairs, share, fraction):
 
 
 @names
+@settings(max_examples=20)
 @given(pairs=modes, share=st.floats(LEAST_SHARE, 0.9), start=st.floats(-3, 3))
 def test_the_joint_rests_at_both_ends_and_does_not_turn_back(shaper, pairs, share, start):
     profile = _profile(shaper, pairs)

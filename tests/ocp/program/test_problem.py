@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -36,6 +37,12 @@ def _with_all_limits(task):
 
 def _simulated(task, solution, steps=STEPS):
     return rollout(task, PROFILE, solution.coefficients, steps=steps).motion
+
+
+@pytest.fixture(scope="module")
+def cheapest_of(problem):
+    """The cheapest motion of a task that arrives at rest, solved once."""
+    return cache(lambda task: problem(task, AT_REST).solve(START))
 
 
 # -- figures --
@@ -122,7 +129,7 @@ def test_a_correction_can_ask_for_tighter_limits(problem, task):
 # -- the residual --
 
 
-@pytest.mark.parametrize("limit", [1e-4, 1e-3, 5e-3])
+@pytest.mark.parametrize("limit", [1e-4, 5e-3])
 def test_a_residual_limit_is_met_exactly(problem, task, limit):
     solution = problem(task, {RESIDUAL: limit}).solve(START)
     assert solution.status is SolveStatus.OPTIMAL
@@ -139,9 +146,9 @@ def test_a_free_residual_costs_least(problem, task):
     assert abs(free.slope) < 1e-20  # IPOPT leaves some 1e-29 where there is no limit
 
 
-@pytest.mark.parametrize("limit", [1e-3, 5e-3])
-def test_the_slope_is_the_change_of_the_energy_with_the_limit(problem, task, limit):
+def test_the_slope_is_the_change_of_the_energy_with_the_limit(problem, task):
     # The multiplier of the limit against a central difference of the least energy.
+    limit = 5e-3
     change = 4e-3 * limit
     below, at, above = (
         problem(task, {RESIDUAL: limit + d}, 0.5).solve(START) for d in (-change, 0.0, change)
@@ -184,9 +191,9 @@ def test_the_least_residual_of_enough_terms_is_none(problem, task):
 
 
 @pytest.mark.parametrize("name", QUANTITIES)
-def test_a_peak_can_be_minimised(problem, task, name):
+def test_a_peak_can_be_minimised(problem, cheapest_of, task, name):
     task = _with_all_limits(task)
-    cheapest = problem(task, AT_REST).solve(START)
+    cheapest = cheapest_of(task)
     least = problem(task, AT_REST).solve(cheapest.coefficients, {name: 1.0})
     assert least.status.solved
     assert least.peaks[name] == pytest.approx(_simulated(task, least).peak(name), rel=1e-9)
@@ -196,9 +203,9 @@ def test_a_peak_can_be_minimised(problem, task, name):
 
 
 @pytest.mark.parametrize("name", QUANTITIES)
-def test_a_limit_on_a_peak_is_kept_and_costs_energy(problem, task, name):
+def test_a_limit_on_a_peak_is_kept_and_costs_energy(problem, cheapest_of, task, name):
     task = _with_all_limits(task)
-    cheapest = problem(task, AT_REST).solve(START)
+    cheapest = cheapest_of(task)
     limit = 0.97 * cheapest.peaks[name]
     limited = problem(task, {**AT_REST, name: limit}).solve(START)
     assert limited.status is SolveStatus.OPTIMAL
@@ -209,10 +216,10 @@ def test_a_limit_on_a_peak_is_kept_and_costs_energy(problem, task, name):
 
 
 @pytest.mark.parametrize("name", ["torque", "acceleration"])
-def test_energy_and_a_peak_are_weighed(problem, task, name):
+def test_energy_and_a_peak_are_weighed(problem, cheapest_of, task, name):
     # Less of the peak than the cheapest motion, less energy than that of the least peak.
     task = _with_all_limits(task)
-    cheapest = problem(task, AT_REST).solve(START)
+    cheapest = cheapest_of(task)
     weight = 0.2 * cheapest.energy / cheapest.peaks[name]
     both = problem(task, AT_REST).solve(START, {"energy": 1.0, name: weight})
     assert both.status.solved

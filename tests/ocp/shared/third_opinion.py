@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from math import cos, sin
 
 import numpy as np
 from scipy.integrate import quad, solve_ivp
@@ -30,18 +29,25 @@ COEFFICIENTS = {"single link": SINGLE_LINK, "arm": ARM}
 pi = math.pi
 
 
-def _joint(a, start, target, duration, t):
-    """Eqs (1)-(3) (mended), (6), (7), with numpy's polynomials."""
+def _joint(a, start, target, duration):
+    """Eqs (1)-(3) (mended), (6), (7), with numpy's polynomials, as a function of time."""
     in_T = np.polynomial.Polynomial([1, 0, -1]) * np.polynomial.Polynomial(a or [0.0])
-    T, rate, span = -1 + 2 * t / duration, 2 / duration, target - start
-    U = t / duration + in_T(T)
-    dU = 1 / duration + rate * in_T.deriv(1)(T)
-    ddU = rate**2 * in_T.deriv(2)(T)
-    return (
-        span * (U - sin(2 * pi * U) / (2 * pi)) + start,
-        2 * span * sin(pi * U) ** 2 * dU,
-        2 * span * sin(pi * U) * (2 * pi * cos(pi * U) * dU**2 + sin(pi * U) * ddU),
-    )
+    coefficients = [in_T.deriv(order).coef for order in range(3)]
+    rate, span = 2 / duration, target - start
+
+    def at(t):
+        T = -1 + rate * t
+        of_T = [np.polynomial.polynomial.polyval(T, c, tensor=False) for c in coefficients]
+        U = t / duration + of_T[0]
+        dU = 1 / duration + rate * of_T[1]
+        ddU = rate**2 * of_T[2]
+        return (
+            span * (U - np.sin(2 * pi * U) / (2 * pi)) + start,
+            2 * span * np.sin(pi * U) ** 2 * dU,
+            2 * span * np.sin(pi * U) * (2 * pi * np.cos(pi * U) * dU**2 + np.sin(pi * U) * ddU),
+        )
+
+    return at
 
 
 def _single_link(q, dq, ddq, W, dW):
@@ -57,20 +63,28 @@ def _single_link(q, dq, ddq, W, dW):
 
 def _arm(q, dq, ddq, W, dW):
     """W'' and torque by eqs (13)-(15)."""
-    push = (-9.949e-3 + 5.256e-2 * cos(q)) * ddq
-    turn = (7.634e-2 * dW * dq - 5.256e-2 * dq**2) * sin(q)
-    acceleration = -(2 * 1.5e-3 * 7.32 * dW + 7.32**2 * W + push + turn) / (1 - 1.055e-1 * cos(q))
-    coupling = -4.944e-3 + 2.399e-2 * cos(q)
+    push = (-9.949e-3 + 5.256e-2 * np.cos(q)) * ddq
+    turn = (7.634e-2 * dW * dq - 5.256e-2 * dq**2) * np.sin(q)
+    acceleration = -(2 * 1.5e-3 * 7.32 * dW + 7.32**2 * W + push + turn) / (
+        1 - 1.055e-1 * np.cos(q)
+    )
+    coupling = -4.944e-3 + 2.399e-2 * np.cos(q)
     return acceleration, 5.366e-3 * ddq + 1.965e-2 * dq + coupling * acceleration[0]
+
+
+TWO_LINKS = [
+    (12.68 * 0.993, 15.49e-3 * 1.214, 0.2266 * 0.984, 2.004e-3 * 1.020),
+    (10.71 * 0.993, 14.27e-3 * 1.071, 0.2570 * 1.003, 5.822e-3 * 1.006),
+]
+"""Frequency, damping ratio, a and b of either mode."""
 
 
 def two_links(q, dq, ddq, W, dW):
     """W'' and torque of docs/physics.md's third plant."""
-    omega = np.array([12.68, 10.71]) * 0.993
-    zeta = np.array([15.49e-3 * 1.214, 14.27e-3 * 1.071])
-    a = np.array([0.2266 * 0.984, 0.2570 * 1.003])
-    b = np.array([2.004e-3 * 1.020, 5.822e-3 * 1.006])
-    acceleration = -2 * zeta * omega * dW - omega**2 * W - a * ddq - b * dq**2 * W
+    acceleration = []
+    for i, (omega, zeta, a, b) in enumerate(TWO_LINKS):
+        spring = 2 * zeta * omega * dW[i] + omega**2 * W[i]
+        acceleration.append(-spring - a * ddq - b * dq**2 * W[i])
     inertia = 2.996e-2 * 1.016 * ddq + 6.652e-2 * 1.018 * acceleration[0]
     return acceleration, inertia + 5.237e-2 * 1.052 * acceleration[1] + 4.202e-2 * 1.131 * dq
 
@@ -84,14 +98,12 @@ class ThirdOpinion:
 
     def __init__(self, name, a, start, target, duration):
         self.equations, self.phi, self.modes = EQUATIONS[name], PHI[name], 1 + (name == "two links")
-        self.move, self.a, self.duration = (start, target, duration), a, duration
+        self.duration = duration
+        self.joint = _joint(a, start, target, duration)
         still = np.zeros(2 * self.modes)
         self.during = self._solve(self.joint, 0.0, duration, still)
         arrival, rest = self.during.y[:, -1], lambda t: (target, 0.0, 0.0)
         self.after = self._solve(rest, duration, duration + 1, arrival)
-
-    def joint(self, t):
-        return _joint(self.a, *self.move, t)
 
     def _solve(self, joint, begin, end, state):
         def rates(t, x):
@@ -102,16 +114,20 @@ class ThirdOpinion:
             rates, (begin, end), state, "DOP853", rtol=1e-13, atol=1e-15, dense_output=True
         )
 
+    def torque(self, joint, x):
+        """Of the joint's angle, speed and acceleration and of the states, at any times."""
+        return self.equations(*joint, x[: self.modes], x[self.modes :])[1]
+
     def power(self, t):
-        x = self.during.sol(t)
         joint = self.joint(t)
-        return self.equations(*joint, x[: self.modes], x[self.modes :])[1] * joint[1]
+        torque = self.torque(joint, self.during.sol(t))
+        return np.reshape(torque * joint[1], np.shape(t))[()]
 
     @property
     def energy(self):
         """Adaptive quadrature between the zeros of the power: a grid's, then sharpened."""
         grid = np.linspace(0.0, self.duration, 4001)
-        power = np.array([self.power(t) for t in grid])
+        power = self.power(grid)
         change = np.flatnonzero(power[:-1] * power[1:] < 0)
         zeros = [brentq(self.power, grid[k], grid[k + 1], xtol=1e-14) for k in change]
         edges = [0.0, *zeros, self.duration]

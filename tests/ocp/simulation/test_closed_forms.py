@@ -36,7 +36,7 @@ def test_braking_costs_as_much_as_driving(a, turns):
     assert np.abs(np.diff(np.sign(speed[1:-1]))).sum() / 2 >= turns  # back and forth on the way
     assert motion.energy == pytest.approx(np.abs(np.diff(kinetic)).sum(), rel=1e-9)
     assert motion.net_work == pytest.approx(0.0, abs=1e-10)
-    assert motion.overshoot == pytest.approx(path(grid).max() - 1.0, abs=1e-5)
+    assert motion.overshoot == pytest.approx(path(grid[::100]).max() - 1.0, abs=1e-5)
 
 
 def test_the_power_may_change_its_sign_where_two_steps_meet():

@@ -5,7 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
@@ -128,6 +128,7 @@ outside = st.floats(1.05, 3.0) | st.floats(-2.0, -0.05)
 heights = st.floats(0.5, 5.0) | st.floats(-5.0, -0.5)
 
 
+@settings(max_examples=30)
 @given(first=inside, second=inside | outside, height=heights)
 def test_the_gradient_is_the_limit_of_differences(first, second, height):
     assume(abs(first - second) > 0.05)
@@ -213,7 +214,7 @@ def test_the_gradient_does_not_jump_where_a_zero_passes_into_the_next_step(step)
 @pytest.mark.parametrize("step", range(1, STEPS))
 def test_with_terms_beyond_the_quadratic_it_would_jump(step):
     # Why the solver's energy leaves them out: the cubic is not zero where a step ends.
-    coarse, fine = (_largest_jump(_change_with_terms_beyond, step, count) for count in (101, 401))
+    coarse, fine = (_largest_jump(_change_with_terms_beyond, step, count) for count in (26, 101))
     assert fine > 0.6 * coarse
 
 

@@ -82,7 +82,7 @@ def test_default_steps_are_as_accurate_as_stated(plants, name, start, target, du
     # F2 within 1e-5 relative and W at arrival within 1e-7 m of CVODES, coefficients in the box.
     task = PointToPoint(plants[name], target, duration, start=start)
     random, profile, box = np.random.default_rng(20), CycloidPolynomial(6), BOXES[name]
-    inside, corners = random.uniform(-box, box, (40, 6)), random.choice([-box, box], (10, 6))
+    inside, corners = random.uniform(-box, box, (12, 6)), random.choice([-box, box], (6, 6))
     energy, arrival = [], []
     for a in np.vstack([inside, corners]):
         fixed, reference = rollout(task, profile, a), resimulate(task, profile, a)
