@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.answers.provenance import SolveSettings
-from ocp.base.errors import SolverFailedError
+from ocp.base.errors import InfeasibleTaskError, SolverFailedError
 from ocp.plan.answer import Plan
 from ocp.plan.verification import OVERRUN
 from ocp.profiles.joint_profile import JointProfile
 from ocp.robustness.measures import tolerated_residual
-from ocp.robustness.uncertain import UncertainPlant, with_samples
+from ocp.robustness.uncertain import UncertainPlant, with_halves, with_samples
 from ocp.robustness.worst import peaks_between
 from ocp.task.point_to_point import PointToPoint
 
@@ -24,13 +24,13 @@ EXCESS = 0.05
 _ROUNDS, _ADDED = 6, 4
 """Most rounds of added samples, and most samples that one adds."""
 _TIGHTENINGS = 4
-"""How often at most what is left of the excess is taken off the limit."""
+"""Most times that the limit is tightened by what is left of the excess."""
 
 Solve = Callable[[PointToPoint, JointProfile, SolveSettings], Plan]
 
 
 def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
-    """The residual limit that counts where one is given, or none is.
+    """The residual limit of a plan, also where none is given.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
     Returns
     -------
     float
-        The same; where it is None 0, of an uncertain plant `tolerated_residual`.
+        The same; where it is None, 0, or for an uncertain plant its `tolerated_residual`.
 
     Raises
     ------
@@ -59,6 +59,43 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
             "leave it out (5 % of the plain cycloid's residual) or give one above 0"
         )
     return residual_limit
+
+
+def robust_plan(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, solve: Solve
+) -> Plan:
+    """The plan of an uncertain plant, with its residual limit held between the samples.
+
+    Where that fails, the solver starts again with samples half way to those that there are.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        A move of an `UncertainPlant`.
+    profile : JointProfile
+        How the joint moves.
+    settings : SolveSettings
+        What was asked for.
+    solve : callable
+        Gives the plan of a task, a profile and settings.
+
+    Returns
+    -------
+    Plan
+        As `held_between`.
+
+    Raises
+    ------
+    SolverFailedError
+        When there is no plan.
+    """
+    try:
+        return held_between(solve(task, profile, settings), settings, solve)
+    except InfeasibleTaskError:  # more samples make it no easier
+        raise
+    except SolverFailedError:
+        finer = with_halves(task)
+    return held_between(solve(finer, profile, settings), settings, solve)
 
 
 def held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
@@ -80,7 +117,7 @@ def held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
     -------
     Plan
         The plan with its `worst`, which is above the limit where no tighter one could be kept.
-        After Ctrl-C the last, and not ``complete``.
+        After Ctrl-C the last plan until then, not ``complete``.
 
     Raises
     ------

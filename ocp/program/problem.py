@@ -14,8 +14,8 @@ from ocp.program.run import Run
 from ocp.program.solution import LEAST_ENERGY, Solution
 from ocp.program.task_program import TaskProgram
 
-_LEAST_STEPS, _STEPS_A_TERM = 24, 6
-"""Least steps of cold runs: with fewer, some end at other minima."""
+_LEAST_COLD_STEPS, _COLD_STEPS_A_TERM = 24, 6
+"""Least steps of cold runs, in all and for each term: with fewer, some end at other minima."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Problem:
         second mode bends the power more.
         """
         task, profile, steps = self.program.task, self.program.profile, self.program.steps
-        coarse = max(_LEAST_STEPS, steps // 2, _STEPS_A_TERM * (profile.size - 2))
+        coarse = max(_LEAST_COLD_STEPS, steps // 2, _COLD_STEPS_A_TERM * (profile.size - 2))
         if task.limits or task.plant.modes > 1 or coarse >= steps:
             return self.program
         return TaskProgram(task, profile, coarse)

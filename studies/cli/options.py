@@ -146,12 +146,12 @@ _OF_CYCLOIDS = (
     "quintic spline"
 )
 profile_option = click.option(
-    "--profile", type=click.Choice(PROFILES), default=POLYNOMIAL, show_default=True,
+    "--profile", type=Named("profile", PROFILES), default=POLYNOMIAL, show_default=True,
     help=f"{_OF_CYCLOIDS}; or the plain cycloid through an input shaper for the plant's "
     "frequencies at the target.",
 )  # fmt: skip
 family_option = click.option(
-    "--profile", type=click.Choice(list(FAMILIES)), default=POLYNOMIAL, show_default=True,
+    "--profile", type=Named("profile", FAMILIES), default=POLYNOMIAL, show_default=True,
     help=f"{_OF_CYCLOIDS}.",
 )  # fmt: skip
 terms_option = click.option(

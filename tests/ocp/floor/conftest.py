@@ -4,12 +4,30 @@ from functools import cache
 
 import pytest
 
-from ocp import (
-    energy_floor,
-)
+from ocp import energy_floor
+from ocp.floor import search
 
 
 @pytest.fixture(scope="session")
 def floor_of():
     """`energy_floor` that solves nothing twice."""
     return cache(lambda task, **settings: energy_floor(task, **settings))
+
+
+@pytest.fixture
+def coarse(monkeypatch):
+    """Coarser grids, where it is not asked how low a floor is."""
+    monkeypatch.setattr(search, "FIRST_INTERVALS", 24)
+
+
+@pytest.fixture(scope="session")
+def coarse_of():
+    """`energy_floor` on such grids, that solves nothing twice."""
+
+    @cache
+    def solve(task, **settings):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(search, "FIRST_INTERVALS", 24)
+            return energy_floor(task, **settings)
+
+    return solve

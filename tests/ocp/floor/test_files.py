@@ -14,8 +14,8 @@ from ocp import (
 # -- files --
 
 
-def test_a_saved_floor_is_equal(floor_of, tmp_path):
-    floor = floor_of(replace(ARM, acceleration_limit=200.0), **SHORT)
+def test_a_saved_floor_is_equal(coarse_of, tmp_path):
+    floor = coarse_of(replace(ARM, acceleration_limit=200.0), **SHORT)
     floor.save(tmp_path / "floor.json")
     again = Floor.load(tmp_path / "floor.json")
     assert again == floor
@@ -42,9 +42,9 @@ def test_a_saved_floor_is_equal(floor_of, tmp_path):
         lambda d: d.update(version=99),
     ],
 )
-def test_a_damaged_file_is_refused(floor_of, tmp_path, damage):
+def test_a_damaged_file_is_refused(coarse_of, tmp_path, damage):
     path = tmp_path / "floor.json"
-    floor_of(ARM, **SHORT).save(path)
+    coarse_of(ARM, **SHORT).save(path)
     document = json.loads(path.read_text())
     damage(document)
     path.write_text(json.dumps(document))

@@ -8,6 +8,8 @@ import pytest
 import ocp.floor.search as search
 from ocp import Floor, energy_floor
 
+pytestmark = pytest.mark.usefixtures("coarse")
+
 
 @pytest.fixture
 def ctrl_c_in(monkeypatch):

@@ -41,12 +41,12 @@ def test_limited_to_200_the_arm_needs_what_other_transcriptions_find(floor_of):
 
 @pytest.mark.parametrize(
     "limits",
-    [{}, {"torque_limit": 0.5, "speed_limit": 3.6}],
-    ids=["no limit", "torque and speed"],
+    [{}, {"torque_limit": 0.5, "speed_limit": 3.6}, {"deflection_limit": 5e-3}],
+    ids=["no limit", "torque and speed", "deflection"],
 )
-def test_no_plan_is_cheaper(solved, floor_of, limits):
+def test_no_plan_is_cheaper(solved, coarse_of, limits):
     task = replace(ARM, **limits)
-    floor = floor_of(task, **SHORT)
+    floor = coarse_of(task, **SHORT)
     plan = solved(task, 6, starts=1)
     assert floor.energy < plan.energy
     for name, limit in task.limits.items():
@@ -87,18 +87,18 @@ def test_a_smooth_motion_comes_to_the_same_floor(floor_of):
     assert a[0] == 0.0
 
 
-def test_a_plant_of_two_modes_has_a_floor(tasks, solved):
+def test_a_plant_of_two_modes_has_a_floor(tasks, solved, coarse_of):
     task = replace(tasks["two links"], acceleration_limit=60.0)
-    floor = energy_floor(task, **SHORT)
+    floor = coarse_of(task, **SHORT)
     assert floor.residual < 1e-8
     assert 0.9 * solved(task, 10, starts=1).energy < floor.energy
     assert floor.energy < solved(task, 10, starts=1).energy
 
 
-def test_a_mirrored_move_needs_the_same(floor_of):
+def test_a_mirrored_move_needs_the_same(coarse_of):
     # Eqs (13), (14) are odd in (theta, W) together.
-    back = energy_floor(replace(ARM, target=-ARM.target), **SHORT)
-    assert back.energy == pytest.approx(floor_of(ARM, **SHORT).energy, rel=1e-3)
+    there, back = (coarse_of(replace(ARM, target=s * ARM.target), **SHORT) for s in (1, -1))
+    assert back.energy == pytest.approx(there.energy, rel=1e-3)
 
 
 # -- what it says of itself --
@@ -119,7 +119,7 @@ def test_the_figures_are_those_of_the_independent_integrator(floor_of):
 
 def test_what_is_left_is_what_finer_grids_gain(floor_of):
     # Against a much finer grid: the estimate is of the right size, and errs to the safe side.
-    rough, fine = floor_of(ARM, **SHORT), floor_of(ARM, tolerance=1.5e-4, **SHORT)
+    rough, fine = floor_of(ARM, **SHORT), floor_of(ARM, tolerance=3e-4, **SHORT)
     assert fine.levels[: len(rough.levels)] == rough.levels
     assert len(fine.levels) > len(rough.levels)
     gained = rough.levels[-1].energy - fine.levels[-1].energy
@@ -153,8 +153,9 @@ def test_the_estimate_continues_the_falls_of_the_energy(floor_of, energies, rati
     assert missed > 0
 
 
-def test_where_a_finer_grid_needs_more_the_coarser_motion_is_kept(monkeypatch, floor_of):
-    usual, solve = floor_of(ARM, **SHORT), FloorProgram.solve
+@pytest.mark.usefixtures("coarse")
+def test_where_a_finer_grid_needs_more_the_coarser_motion_is_kept(monkeypatch, coarse_of):
+    usual, solve = coarse_of(ARM, **SHORT), FloorProgram.solve
     first, second = usual.levels[:2]
     fastest = usual.motion.peak_speed
 
@@ -175,18 +176,20 @@ def test_where_a_finer_grid_needs_more_the_coarser_motion_is_kept(monkeypatch, f
     assert floor.left > max(first.energy - second.energy, -floor.change)
 
 
-def test_a_floor_whose_refinement_failed_says_so(monkeypatch, floor_of):
-    assert floor_of(ARM, **SHORT).settled
-    solve = FloorProgram.solve
+@pytest.mark.usefixtures("coarse")
+def test_a_floor_whose_refinement_failed_says_so(monkeypatch, coarse_of):
+    usual, solve = coarse_of(ARM, **SHORT), FloorProgram.solve
+    assert usual.settled
+    second = usual.levels[1].steps
 
     def fail_when_fine(self, free, *arguments, **settings):
         found = solve(self, free, *arguments, **settings)
-        return replace(found, status=SolveStatus.ITERATION_LIMIT) if free.steps > 400 else found
+        return replace(found, status=SolveStatus.ITERATION_LIMIT) if free.steps > second else found
 
     monkeypatch.setattr(FloorProgram, "solve", fail_when_fine)
     stopped = energy_floor(ARM, tolerance=1e-3, **SHORT)
     assert not stopped.settled
-    assert stopped.levels == floor_of(ARM, **SHORT).levels[:2]
+    assert stopped.levels == usual.levels[:2]
     assert stopped.status is SolveStatus.OPTIMAL
     assert stopped.left > 1e-3 * stopped.energy
 
@@ -210,9 +213,9 @@ def test_starts_that_agree_are_counted(floor_of):
 
 def test_the_same_seed_gives_the_same_floor(floor_of):
     task = replace(ARM, acceleration_limit=100.0)
-    one, two = energy_floor(task, starts=2, seed=5), energy_floor(task, starts=2, seed=5)
+    one, two = energy_floor(task, starts=3, seed=5), energy_floor(task, starts=3, seed=5)
     assert one == two
-    assert len(one.starts) == 2
+    assert len(one.starts) == 3
     assert one.provenance.settings.seed == 5
 
 
@@ -232,6 +235,7 @@ def test_limits_that_nothing_meets_are_named_with_what_would_do(floor_of):
     assert floor_of(roomy, **SHORT).motion.peak_torque < 1.11 * enough
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_start_that_ends_nowhere_is_no_answer(monkeypatch):
     monkeypatch.setattr(SolveStatus, "from_ipopt", lambda status: SolveStatus.ITERATION_LIMIT)
     with pytest.raises(SolverFailedError, match="ran out of iterations"):

@@ -37,7 +37,7 @@ def densely(plan):
     run = solve_ivp(
         lambda at, state: rates(at, state).full()[:, 0], (0.0, task.duration),
         np.zeros(2 * modes), "DOP853", rtol=1e-11, atol=1e-14, dense_output=True,
-        max_step=task.duration / 400,
+        max_step=task.duration / 100,
     )  # fmt: skip
 
     def sampled(begin, end):

@@ -5,7 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ocp import MAX_TERMS, CycloidPolynomial
@@ -88,6 +88,7 @@ def test_joint_rests_before_and_after_the_move(a, order, outside):
 # -- derivatives --
 
 
+@settings(max_examples=40)
 @given(a=coefficients, start=angles, target=angles, duration=durations, fraction=st.floats(0, 1))
 def test_derivatives_are_those_of_the_angle(a, start, target, duration, fraction):
     # casadi's own derivatives of theta, of order 1 to 3, from the angle alone.
@@ -118,6 +119,7 @@ def test_derivatives_are_the_limits_of_differences(order):
 # -- symmetries --
 
 
+@settings(max_examples=40)
 @given(a=coefficients, factor=st.floats(0.1, 10.0), fraction=st.floats(0, 1))
 def test_a_slower_move_is_the_same_in_stretched_time(a, factor, fraction):
     fast, slow = _path(a, -1.0, 2.0, 1.0), _path(a, -1.0, 2.0, factor)

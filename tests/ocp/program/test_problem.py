@@ -129,7 +129,7 @@ def test_a_correction_can_ask_for_tighter_limits(problem, task):
 # -- the residual --
 
 
-@pytest.mark.parametrize("limit", [1e-4, 1e-3, 5e-3])
+@pytest.mark.parametrize("limit", [1e-4, 5e-3])
 def test_a_residual_limit_is_met_exactly(problem, task, limit):
     solution = problem(task, {RESIDUAL: limit}).solve(START)
     assert solution.status is SolveStatus.OPTIMAL
@@ -146,9 +146,9 @@ def test_a_free_residual_costs_least(problem, task):
     assert abs(free.slope) < 1e-20  # IPOPT leaves some 1e-29 where there is no limit
 
 
-@pytest.mark.parametrize("limit", [1e-3, 5e-3])
-def test_the_slope_is_the_change_of_the_energy_with_the_limit(problem, task, limit):
+def test_the_slope_is_the_change_of_the_energy_with_the_limit(problem, task):
     # The multiplier of the limit against a central difference of the least energy.
+    limit = 5e-3
     change = 4e-3 * limit
     below, at, above = (
         problem(task, {RESIDUAL: limit + d}, 0.5).solve(START) for d in (-change, 0.0, change)

@@ -100,7 +100,7 @@ def test_one_shaper_for_each_mode(call):
         (f"plan {MOVE} --profile zv --method vepso", 2, "--method is for polynomial, gaussians"),
         (f"evaluate {MOVE} --profile zv --coefficients=1", 2, "and spline, not for zv"),
         (f"evaluate {MOVE}", 2, "--coefficients"),
-        (f"plan {MOVE} --profile zvdd", 2, "zvd"),
+        (f"plan {MOVE} --profile zvdd", 2, "unknown profile 'zvdd'; did you mean 'zvd'?"),
         (f"plan {MOVE} --profile network --terms 0", 2, "terms is 0; give 1 to 32"),
         (f"plan {MOVE} --profile spline --terms 1", 2, "terms is 1; give 4 to 32"),
         (f"evaluate {MOVE} --profile gaussians --coefficients=1,2", 2, "give 4, 7, 10"),

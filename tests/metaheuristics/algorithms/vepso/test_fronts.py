@@ -34,7 +34,6 @@ def quality(F, true):
 @pytest.mark.parametrize(
     ("name", "iterations"),
     [
-        ("zdt1", 80),  # measured: 2e-4, 1.000
         ("zdt2", 80),  # measured: 4e-4, 1.000
         ("zdt3", 200),  # measured: 4e-4, 1.000
     ],
