@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.answers.provenance import SolveSettings
-from ocp.base.errors import SolverFailedError
+from ocp.base.errors import InfeasibleTaskError, SolverFailedError
 from ocp.plan.answer import Plan
 from ocp.plan.verification import OVERRUN
 from ocp.profiles.joint_profile import JointProfile
 from ocp.robustness.measures import tolerated_residual
-from ocp.robustness.uncertain import UncertainPlant, with_samples
+from ocp.robustness.uncertain import UncertainPlant, with_halves, with_samples
 from ocp.robustness.worst import peaks_between
 from ocp.task.point_to_point import PointToPoint
 
@@ -59,6 +59,43 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
             "leave it out (5 % of the plain cycloid's residual) or give one above 0"
         )
     return residual_limit
+
+
+def robust_plan(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, solve: Solve
+) -> Plan:
+    """The plan of an uncertain plant, with its residual limit held between the samples.
+
+    Where that fails, the solver starts again with samples half way to those that there are.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        A move of an `UncertainPlant`.
+    profile : JointProfile
+        How the joint moves.
+    settings : SolveSettings
+        What was asked for.
+    solve : callable
+        Gives the plan of a task, a profile and settings.
+
+    Returns
+    -------
+    Plan
+        As `held_between`.
+
+    Raises
+    ------
+    SolverFailedError
+        When there is no plan.
+    """
+    try:
+        return held_between(solve(task, profile, settings), settings, solve)
+    except InfeasibleTaskError:  # more samples make it no easier
+        raise
+    except SolverFailedError:
+        finer = with_halves(task)
+    return held_between(solve(finer, profile, settings), settings, solve)
 
 
 def held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:

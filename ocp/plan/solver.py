@@ -15,7 +15,7 @@ from ocp.base.interrupts import note_interrupts
 from ocp.plan.answer import Plan
 from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
-from ocp.plan.robust import held_between, limit_of
+from ocp.plan.robust import limit_of, robust_plan
 from ocp.plan.verification import HURRIED, MOST_SOLVER_STEPS, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.kinds import refuse_other_kinds
@@ -100,9 +100,9 @@ def plan_move(
     if profile.size == 0:
         return only_motion(task, profile, settings.residual_limit)
     settings = replace(settings, residual_limit=limit_of(task, residual_limit))
-    found = plan_at_samples(task, profile, settings)
-    uncertain = isinstance(task.plant, UncertainPlant)
-    return held_between(found, settings, plan_at_samples) if uncertain else found
+    if isinstance(task.plant, UncertainPlant):
+        return robust_plan(task, profile, settings, plan_at_samples)
+    return plan_at_samples(task, profile, settings)
 
 
 def plan_at_samples(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:

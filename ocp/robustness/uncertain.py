@@ -153,6 +153,12 @@ def uncertain_plant(plant: Plant) -> UncertainPlant:
     return plant
 
 
+def with_halves(task: PointToPoint) -> PointToPoint:
+    """The move with a sample more half way from the assumed plant to each there is."""
+    plant = uncertain_plant(task.plant)
+    return with_samples(task, [[error / 2 for error in sample] for sample in plant.samples])
+
+
 def with_samples(task: PointToPoint, more: Sequence[Sequence[float]]) -> PointToPoint:
     """The move with more samples of its uncertain plant; ValueError where it is not uncertain."""
     plant = uncertain_plant(task.plant)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Self
@@ -18,6 +18,7 @@ from studies.contest.imported import Imported
 from studies.contest.names import POPULATION, name_of, sets_population
 from studies.contest.problems import Yardstick
 from studies.contest.runs import Key, Run
+from studies.display.words import counted
 
 _CODE = ("quietarm", "pymoo")
 """What decides how a search goes; other libraries change its rounding."""
@@ -138,6 +139,13 @@ class Contest:
             for name, entry in self.entries.items()
             if entry.can_search(problem)
         ]
+
+    def how_far(self, runs: Container[Key], folder: Path) -> str:
+        """How many of the runs are there, in words."""
+        there = sum(key in runs for key in self.keys)
+        left = len(self.keys) - there
+        more = f"; {left} are to be done" if left else ""
+        return f"{there} of {counted(len(self.keys), 'run')} are in {folder}{more}"
 
     @property
     def left_out(self) -> list[str]:

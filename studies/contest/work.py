@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -142,12 +142,21 @@ def run_contest(
     Done
         What became of the pieces.
     """
+    kept = set[Hashable]()
 
-    def keep(key: object, answer: Run | Landscape) -> None:
-        with note_interrupts():
+    def keep(key: Hashable, answer: Run | Landscape) -> None:
+        with note_interrupts() as came:
             contents.keep(answer)
+            kept.add(key)
+        if came:
+            raise KeyboardInterrupt
 
-    return run_pieces(pieces, Listener(begin, ended=keep), workers=workers, note=QuietarmError)
+    done = run_pieces(pieces, Listener(begin, ended=keep), workers=workers, note=QuietarmError)
+    with note_interrupts():
+        for key, answer in done.answers.items():
+            if key not in kept:  # it was on its way when Ctrl-C came
+                contents.keep(answer)
+    return done
 
 
 def _landscape(problem: NamedProblem, seed: int, earlier: Done, say: Say) -> Landscape:

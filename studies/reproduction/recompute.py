@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from metaheuristics.ensemble import Spread, energies_at
 from metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener
 from metaheuristics.sharing.running import run_pieces
+from metaheuristics.sharing.workers import HERE, Workers
 from ocp import Floor, Front, Plan, evaluate_coefficients
 from ocp.base.interrupts import note_interrupts
 from studies.paper.case import Case
@@ -120,7 +121,7 @@ class Reproduction:
 
 
 def recompute_paper(
-    begin: Callable[[str], None] = lambda name: None, seeds: int = 1
+    begin: Callable[[str], None] = lambda name: None, seeds: int = 1, workers: Workers = HERE
 ) -> Reproduction:
     """Recompute the paper's tables with gradient, metaheuristics and floor beside them.
 
@@ -131,6 +132,8 @@ def recompute_paper(
         lists them.
     seeds : int
         Seeds of the metaheuristics.
+    workers : Workers
+        Where the work is done.
 
     Returns
     -------
@@ -141,10 +144,12 @@ def recompute_paper(
     ------
     ValueError
         When `seeds` is out of range.
+    QuietarmError
+        When a piece fails, or the workers cannot be reached.
     InterruptedPiece
-        When it was interrupted; its part is a `Done`.
+        When it was stopped before its end; its part is a `Done`, which says why.
     """
-    done = run_pieces(pieces_of_paper(seeds), Listener(begin))
+    done = run_pieces(pieces_of_paper(seeds), Listener(begin), workers=workers)
     if done.stopped:
         raise InterruptedPiece(done)
     with note_interrupts():  # nothing is left to be stopped

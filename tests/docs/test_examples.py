@@ -5,13 +5,19 @@ import re
 import shlex
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
 
-from ocp import Front, Plan
+import studies.runs.reports.comparison
+import studies.study.pieces
+from ocp import Front, Plan, energy_floor
 from studies import figures
+from studies.cli import main
+
+pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
 BIN = Path(sys.executable).parent
 (MOVE,) = blocks("moves", "python")
@@ -126,53 +132,77 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
     "contest": ["--runs", "1", "--evaluations", "150"],
     "floor": ["--starts", "1", "--tolerance", "0.05"],
 }
+QUIET = {
+    "animate", "compare", "contest", "front", "import", "plan", "polish", "problems", "robustness",
+    "study",
+}  # fmt: skip
 
 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
-    quiet = (
-        ["--quiet"]
-        if words[0]
-        in {
-            "animate",
-            "compare",
-            "contest",
-            "front",
-            "import",
-            "plan",
-            "polish",
-            "problems",
-            "robustness",
-            "study",
-        }
-        else []
-    )
+    quiet = ["--quiet"] * (words[0] in QUIET)
     fewer = SHORTER.get(words[0], [])
     if words[0] == "front":
         fewer = SHORTER.get(words[words.index("--method") + 1], SEARCH)
     return [*words, *quiet, *fewer]
 
 
-@pytest.mark.parametrize("lines", COMMAND_BLOCKS.values(), ids=COMMAND_BLOCKS)
-def test_the_commands_run_one_after_another(tmp_path, lines):
+@pytest.fixture
+def started():
+    """Start a command as the reader does; its status, standard output and standard error."""
+
+    def start(words):
+        ran = subprocess.run(
+            [BIN / "quietarm", *words], capture_output=True, text=True, timeout=600
+        )
+        return ran.returncode, ran.stdout, ran.stderr
+
+    return start
+
+
+@pytest.fixture
+def called(capfd, monkeypatch):
+    """Run a command in this process, with rough floors; status, standard output and error."""
+    rough = partial(energy_floor, starts=1, tolerance=0.05)
+    monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", rough)
+    monkeypatch.setattr(studies.study.pieces, "energy_floor", rough)
+
+    def call(words):
+        with pytest.raises(SystemExit) as ended:
+            main(words)
+        out, err = capfd.readouterr()
+        return ended.value.code, out, err
+
+    return call
+
+
+STARTED = [name for name in COMMAND_BLOCKS if name.startswith("README")][:1]
+"""Blocks whose commands are started as they stand; all others cost no process each."""
+
+
+@pytest.mark.parametrize("block", STARTED)
+def test_the_first_commands_run_one_after_another(tmp_path, monkeypatch, block, started):
+    run_block(block, tmp_path, monkeypatch, started)
+
+
+@pytest.mark.parametrize("block", [name for name in COMMAND_BLOCKS if name not in STARTED])
+def test_the_commands_run_one_after_another(tmp_path, monkeypatch, block, called):
+    run_block(block, tmp_path, monkeypatch, called)
+
+
+def run_block(block, folder, monkeypatch, run):
+    monkeypatch.chdir(folder)
     asked = set()
-    for line in lines:
+    for line in COMMAND_BLOCKS[block]:
         command, *words = shlex.split(line)
         assert command == ".venv/bin/quietarm"
         if "--plant-file" in words:  # the page says that its plant's lines are in it
             asked.add(words[words.index("--plant-file") + 1])
-            (tmp_path / "crane.py").write_text(CRANE)
-        ran = subprocess.run(
-            [BIN / "quietarm", *shortened(words)],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            timeout=600,
-        )
-        assert (ran.returncode, ran.stdout != "") == (0, True), ran.stderr
-        said = ran.stderr.splitlines()
+            (folder / "crane.py").write_text(CRANE)
+        status, out, err = run(shortened(words))
+        assert (status, out != "") == (0, True), err
         progress = ("generation ", "refining", "finding", "solving", "integrating")
-        assert [line for line in said if not line.startswith(progress)] == []
+        assert [line for line in err.splitlines() if not line.startswith(progress)] == []
         options = ("--output", "--csv", "--figure")
         asked |= {words[i + 1] for i, word in enumerate(words) if word in options}
-        assert {path.name for path in tmp_path.iterdir()} == asked
+        assert {path.name for path in folder.iterdir()} == asked

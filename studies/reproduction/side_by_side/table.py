@@ -47,10 +47,9 @@ class _Quantity:
 
 
 def seconds_in_words(seconds: float) -> str:
-    """Two digits, but no more than five characters: a faster machine must not widen the column."""
-    if seconds >= 10:
-        return f"{seconds:.0f}"
-    return f"{seconds:.2g}" if seconds >= 0.01 else f"{seconds:.3f}"
+    """Four characters at most: in a terminal of 80 there is room for no more."""
+    decimals = 2 if seconds < 0.995 else 1 if seconds < 9.95 else 0
+    return f"{seconds:.{decimals}f}"
 
 
 def _three_digits(value: float) -> str:

@@ -14,6 +14,7 @@ from ocp import (
     InfeasibleTaskError,
     Plan,
     PointToPoint,
+    SolverFailedError,
     UncertainPlant,
     evaluate_coefficients,
     evaluate_robustness,
@@ -126,3 +127,29 @@ def test_rest_is_not_asked_for(task):
 def test_what_cannot_be_met_says_what_can(task):
     with pytest.raises(InfeasibleTaskError, match="feasible with the rest kept: residual limit"):
         plan_move(task, CycloidPolynomial(1), bound=0.2, starts=1)
+
+
+def test_where_the_solver_fails_it_starts_again_with_samples_between(task, plan):
+    asked = []
+
+    def fails_at_first(task, profile, settings):
+        asked.append(task.plant.samples)
+        if len(asked) == 1:
+            raise SolverFailedError("none of 3 starts was solved")
+        return replace(plan, task=task)
+
+    found = robust.robust_plan(task, plan.profile, plan.provenance.settings, fails_at_first)
+    assert asked[:2] == [((-RANGE,), (RANGE,)), ((-RANGE,), (RANGE,), (-RANGE / 2,), (RANGE / 2,))]
+    assert found.excess <= robust.EXCESS
+
+
+def test_where_no_motion_is_there_it_does_not_start_again(task, plan):
+    asked = []
+
+    def infeasible(task, profile, settings):
+        asked.append(task)
+        raise InfeasibleTaskError("no motion")
+
+    with pytest.raises(InfeasibleTaskError, match="no motion"):
+        robust.robust_plan(task, plan.profile, plan.provenance.settings, infeasible)
+    assert len(asked) == 1

@@ -1,10 +1,9 @@
 """`quietarm contest`: what it writes and refuses, and how it goes on after a stop."""
 
-import json
 import shutil
 
 import pytest
-from small_contest import LINE, METHODS, NAME, documents, rows_of
+from small_contest import LINE, METHODS, NAME, found, rows_of
 
 import studies.contest.work as work
 from metaheuristics.budget.run import search_within
@@ -37,17 +36,6 @@ def searches(monkeypatch):
 
     monkeypatch.setattr(work, "search_within", noted)
     return begun
-
-
-def found(folder):
-    """What the runs of a folder found, without the time that it took."""
-    kept = {}
-    for key, document in documents(folder).items():
-        document["front"]["seconds"] = 0
-        for mark in document["marks"]:
-            mark["seconds"] = 0
-        kept[key] = json.dumps(document)
-    return kept
 
 
 def test_every_run_is_a_file_beside_tables_pictures_and_page(held):

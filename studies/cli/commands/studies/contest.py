@@ -116,6 +116,8 @@ def contest(
         contents = Contents.of(output)
         set_up(asked, contents, files, import_evaluations)
     pieces = pieces_of(asked, contents)
+    if not quiet and contents.runs:
+        print_lines(errors, asked.how_far(contents.runs, output))
     warn_of_workers(errors, workers, len(pieces))
     with progress(len(pieces), errors, quiet=quiet) as begin:
         done = run_contest(pieces, contents, asked.workers, begin)

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from studies.cli.options import FOLDER, quiet_option
+from studies.cli.options import FOLDER, quiet_option, workers_options
 
 
 @click.command()
@@ -19,15 +19,20 @@ from studies.cli.options import FOLDER, quiet_option
     show_default=True,
     help="Seeds of VEPSO and NSGA-II; 5 give medians and quartiles.",
 )
+@workers_options
 @quiet_option
-def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
+def reproduce(
+    output: Path | None, seeds: int, workers: int, scheduler: str | None, quiet: bool
+) -> None:
     """Recompute the paper's Tables 2, 3, 5 and 6 and its claims; compare every system.
 
     \b
-    Example:
+    Examples:
       quietarm reproduce --output results
+      quietarm reproduce --output results --workers 2
     """  # noqa: D301  # \b is click's: do not rewrap
     from metaheuristics.sharing.pieces import InterruptedPiece
+    from metaheuristics.sharing.workers import Workers
     from ocp import QuietarmError
     from studies.display.progress import progress
     from studies.display.saving import finish, inside
@@ -37,11 +42,17 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
     from studies.reproduction.recompute import recompute_paper
     from studies.reproduction.report import print_reproduction, reproduction_files
     from studies.reproduction.unfinished import FILE, unfinished_table
+    from studies.runs.files import warn_of_workers
 
-    pieces = pieces_of_paper(seeds)
+    pieces, where, errors = (
+        pieces_of_paper(seeds),
+        Workers(workers, scheduler),
+        Console(stderr=True),
+    )
+    warn_of_workers(errors, workers, len(pieces))
     try:
-        with progress(len(pieces), Console(stderr=True), quiet=quiet) as begin:
-            result = recompute_paper(begin, seeds)
+        with progress(len(pieces), errors, quiet=quiet) as begin:
+            result = recompute_paper(begin, seeds, where)
     except InterruptedPiece as stop:
         if not stop.part.answers:
             raise
@@ -50,7 +61,7 @@ def reproduce(output: Path | None, seeds: int, quiet: bool) -> None:
             [] if output is None else inside(output, {FILE: table.save_csv}),
             lambda console: print_lines(console, table.csv().rstrip()),
             trouble=QuietarmError(
-                f"interrupted: {stop.part.number} of {len(pieces)} pieces of work are done"
+                f"{stop.part.stopped}: {stop.part.number} of {len(pieces)} pieces of work are done"
             ),
         )
     else:

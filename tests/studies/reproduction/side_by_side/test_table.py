@@ -20,7 +20,7 @@ from studies.reproduction.side_by_side.table import (
 
 @pytest.mark.parametrize(
     ("seconds", "words"),
-    [(0.0084, "0.008"), (0.012, "0.012"), (3.456, "3.5"), (14.2, "14"), (123.4, "123")],
+    [(0.012, "0.01"), (0.346, "0.35"), (0.999, "1.0"), (9.97, "10"), (14.2, "14"), (123.4, "123")],
 )
 def test_seconds_take_little_room(seconds, words):
     assert seconds_in_words(seconds) == words

@@ -13,6 +13,7 @@ import studies.runs.loading
 import studies.runs.polishing
 import studies.runs.searching
 import studies.study.work
+from metaheuristics.sharing.workers import Workers
 from studies.paper.printed import ROWS
 from studies.reproduction.pieces import pieces_of_paper
 from studies.reproduction.report import reproduction_files
@@ -64,6 +65,19 @@ def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(call, reproduc
         path.relative_to(folder) for path in (folder / "results").iterdir()
     }
     assert (folder / "results" / "notes.txt").read_text() == "mine"
+
+
+def test_reproduce_is_shared_by_as_many_workers_as_are_asked_for(call, reproduction, monkeypatch):
+    asked = []
+
+    def note(begin, seeds, workers):
+        asked.append((seeds, workers))
+        return reproduction
+
+    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", note)
+    assert call("reproduce --quiet --workers 2 --seeds 5")[0] == 0
+    assert call("reproduce --quiet")[0] == 0
+    assert asked == [(5, Workers(2)), (1, Workers())]
 
 
 def test_reproduce_makes_the_folder(call, reproduced, folder, monkeypatch):

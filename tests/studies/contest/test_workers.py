@@ -1,0 +1,54 @@
+"""A contest whose runs are shared by processes of this machine."""
+
+import multiprocessing
+import re
+import signal
+
+import pytest
+from small_contest import LINE, found
+
+from studies.contest.folder import Contents
+from studies.contest.report import files, page
+from studies.contest.runs import Run
+from studies.display.html_page import element
+
+
+@pytest.fixture(autouse=True)
+def _no_pictures(monkeypatch):
+    """They are drawn elsewhere, and take long."""
+    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
+    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
+
+
+def test_it_stops_and_goes_on_to_the_runs_of_one_process(call, folder, held, monkeypatch):
+    keep, kept = Contents.keep, []
+
+    def keep_and_interrupt(self, what):
+        keep(self, what)
+        if isinstance(what, Run):
+            kept.append(what.key)
+            if len(kept) == 1:
+                signal.raise_signal(signal.SIGINT)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Contents, "keep", keep_and_interrupt)
+        code, _, err = call(f"{LINE} --workers 2 --output shared")
+    assert code == 1
+    said = re.fullmatch(
+        r"quietarm: interrupted: (\d) of 4 pieces of work are done; give the same line again to go "
+        r"on\n",
+        err,
+    )
+    # what was on its way when Ctrl-C came is kept as well
+    there = set(found(folder / "shared"))
+    assert 1 <= int(said[1]) == len(there) < 4
+    assert {(key.method, key.seed) for key in kept} <= there
+    assert (folder / "shared/contest.html").exists()
+    code, _, err = call(f"{LINE.removesuffix(' --quiet')} --workers 2 --output shared")
+    assert code == 0
+    assert (
+        err.splitlines()[0]
+        == f"{len(there)} of 4 runs are in shared; {4 - len(there)} are to be done"
+    )
+    assert found(folder / "shared") == found(held)
+    assert multiprocessing.active_children() == []
