@@ -128,14 +128,15 @@ class Contest:
 
     @property
     def keys(self) -> list[Key]:
-        """All runs: every method from one seed, then from the next, on one problem after another.
+        """All runs: every method on every problem from one seed, then from the next.
 
-        So a contest that is stopped has as many runs of one method as of another.
+        So a contest that is stopped has as many runs of one method, and on one problem, as of
+        another.
         """
         return [
             Key(problem.name, name, seed)
-            for problem in self.problems
             for seed in seeds_of(self.seed, self.runs)
+            for problem in self.problems
             for name, entry in self.entries.items()
             if entry.can_search(problem)
         ]

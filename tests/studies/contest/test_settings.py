@@ -4,7 +4,7 @@ import json
 import shutil
 
 import pytest
-from small_contest import LINE, METHODS, NAME, documents
+from small_contest import LINE, METHODS, NAME, OTHER, documents
 
 import studies.contest.work as work
 from metaheuristics.budget.run import search_within
@@ -35,6 +35,16 @@ def test_a_setting_is_part_of_the_name_unless_it_is_the_default():
     entry = asked.entries[SET]
     assert (entry.method, entry.settings, entry.population) == ("nsga2", {"crossover": 0.5}, 16)
     assert list(contest(METHODS, nsga2={"crossover": 0.8}).entries) == list(METHODS)
+
+
+def test_one_seed_is_run_on_all_problems_before_the_next():
+    asked = Contest((problem_of(NAME), problem_of(OTHER)), METHODS, 2, 130, seed=4)
+    assert [(key.seed, key.problem, key.method) for key in asked.keys] == [
+        (seed, problem, method)
+        for seed in (4, 5)
+        for problem in (NAME, OTHER)
+        for method in METHODS
+    ]
 
 
 def test_names_and_labels():
