@@ -156,7 +156,7 @@ def test_the_picture_at_the_top_moves_and_is_what_its_commands_make():
         assert (picture.format, picture.n_frames, picture.width) == ("GIF", 46, 800)
     section = DOCS["pictures"].split("## Pictures that move\n", 1)[1]
     assert "quietarm plan single-link --target 30deg --duration 0.8" in section
-    assert README.index("(docs/move.gif)") < README.index("\n## ")
+    assert README.index("(docs/images/move.gif)") < README.index("\n## ")
 
 
 def test_the_python_that_it_asks_for_is_the_packages():

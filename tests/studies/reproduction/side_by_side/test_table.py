@@ -18,6 +18,11 @@ from studies.reproduction.side_by_side.table import (
 )
 
 
+WHOLE = ("plain cycloid", "ZV", "ZVD", "EI", "paper", "boxed gradient", "gradient")
+"""Systems that are not cut short in these tests."""
+PAGES = Path(__file__).parents[4]
+
+
 @pytest.mark.parametrize(
     ("seconds", "words"),
     [(0.012, "0.01"), (0.346, "0.35"), (0.999, "1.0"), (9.97, "10"), (14.2, "14"), (123.4, "123")],
@@ -79,7 +84,7 @@ def test_markdown_has_a_table_for_each_move_and_what_is_missing(reproduction):
 
 
 def test_the_readme_shows_what_is_computed(reproduction):
-    readme = (Path(__file__).parents[4] / "README.md").read_text()
+    readme = (PAGES / "README.md").read_text()
     cells = {
         line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]]
         for line in readme.split("## What it finds\n")[1].split("\n## ")[0].splitlines()
@@ -89,8 +94,7 @@ def test_the_readme_shows_what_is_computed(reproduction):
         {found.name: found for found in reproduction.systems[case]}
         for case in (SINGLE_LINK_SIXTH, ARM_HALF, DUAL_LINK_HALF)
     ]
-    # The others are cut short in these tests.
-    for name in ("plain cycloid", "ZV", "ZVD", "EI", "paper", "boxed gradient", "gradient"):
+    for name in WHOLE:
         shown = [None if cell == "-" else float(cell) for cell in cells[name][1:]]
         for energy, residual, wrong, found in zip(
             shown[::3], shown[1::3], shown[2::3], [move[name] for move in moves], strict=True
@@ -101,3 +105,22 @@ def test_the_readme_shows_what_is_computed(reproduction):
             assert energy == pytest.approx(found.energy, abs=1e-4)
             assert residual == pytest.approx(found.motion.residual * 1e3, abs=0.011)
             assert wrong == pytest.approx(found.wrong_residual * 1e3, abs=0.011)
+
+
+def test_the_page_of_systems_shows_what_is_computed(reproduction):
+    page = (PAGES / "docs" / "systems.md").read_text()
+    parts = {part.split("\n", 1)[0]: part for part in page.split("\n## ")[1:]}
+    assert list(parts) == [case.name for case in reproduction.systems]
+    for case, systems in reproduction.systems.items():
+        table = systems_table(case, systems)
+        heading, _, *lines = table.markdown().split("\n\n")[1].splitlines()
+        assert heading in parts[case.name]
+        for line in lines:
+            name, *_ = cells = [cell.strip() for cell in line.split("|")[1:-1]]
+            (shown,) = [one for one in parts[case.name].splitlines() if f"| {name} |" in one]
+            if name in WHOLE:  # without the time; the last digits are another machine's
+                for mine, theirs in zip(cells[1:-1], shown.split("|")[2:-2], strict=True):
+                    assert theirs.strip() == mine or float(theirs) == pytest.approx(
+                        float(mine), rel=0.01, abs=0.011
+                    )
+        assert all(f"- {why}\n" in page for why in why_not(systems) if why.split(":")[0] in WHOLE)
