@@ -141,7 +141,7 @@ def test_the_order_of_the_packages_is_that_of_the_contract():
 
 def test_the_picture_says_what_is_computed():
     # The picture's text: the plain cycloid leaves so much, the plan needs such a share.
-    (alt,) = re.findall(r"!\[([^]]*)\]\(docs/move\.gif\)", README)
+    (alt,) = re.findall(r"!\[([^]]*)\]\(docs/images/move\.gif\)", README)
     task = SINGLE_LINK_SIXTH.task
     cycloid, plan = evaluate_coefficients(task, []), plan_move(task)
     assert re.search(r"ringing by (\d+) mm", alt).group(1) == f"{cycloid.residual * 1e3:.0f}"
@@ -151,7 +151,7 @@ def test_the_picture_says_what_is_computed():
 
 
 def test_the_picture_at_the_top_moves_and_is_what_its_commands_make():
-    with Image.open(ROOT / "docs" / "move.gif") as picture:
+    with Image.open(ROOT / "docs" / "images" / "move.gif") as picture:
         # 0.8 s and the second after it, 25 frames a second, and the first
         assert (picture.format, picture.n_frames, picture.width) == ("GIF", 46, 800)
     section = DOCS["pictures"].split("## Pictures that move\n", 1)[1]

@@ -28,8 +28,8 @@ DEATHS = 3
 _CONFIG = {
     "distributed.scheduler.allowed-failures": DEATHS - 1,
     "distributed.admin.low-level-log-length": 100,  # of every topic the scheduler keeps so many
-    # A hundred samples of the stack a second and fifty ticks take the interpreter from a search each
-    # time: it took more than twice as long.
+    # A hundred samples of the stack a second and fifty ticks each take the interpreter from a
+    # search, which took more than twice as long.
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
     # On a busy machine everything takes long: dask's warnings about that are left out.

@@ -17,7 +17,6 @@ from studies.reproduction.side_by_side.table import (
     why_not,
 )
 
-
 WHOLE = ("plain cycloid", "ZV", "ZVD", "EI", "paper", "boxed gradient", "gradient")
 """Systems that are not cut short in these tests."""
 PAGES = Path(__file__).parents[4]
