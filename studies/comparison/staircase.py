@@ -79,6 +79,8 @@ def within(front: Array, residuals: Sequence[float] | Array, missing: float = np
     ndarray, shape (n,)
         Energies [J].
     """
+    if not len(front):
+        return np.full(np.shape(residuals), missing)
     count = np.searchsorted(front[:, 0], residuals, side="right")
     return np.where(count > 0, front[np.maximum(count - 1, 0), 1], missing)
 

@@ -76,7 +76,7 @@ class Outcome:
         Shape (runs, 3): still, middle, cheap. Both hypervolumes are up to the corner in the energy.
         """
         scale = self.yardstick.scale
-        exact = _over_thirds(scale.scaled(objectives(self.yardstick.front)))
+        exact = _over_thirds(scale.scaled(self.yardstick.filled))
         found = [_over_thirds(scale.scaled(objectives(run.front))) for run in self.runs]
         return 1.0 - np.array(found) / exact
 

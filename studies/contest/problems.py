@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from metaheuristics import PROBLEMS, NamedProblem, problem_of
 from metaheuristics.budget.record import Scale
@@ -89,3 +93,8 @@ class Yardstick(Saved):
         scale = Scale.of(front)
         volume = scale.hypervolume(filled(front, _FILL))
         return cls(problem.name, problem.bound, front, scale, volume)
+
+    @cached_property
+    def filled(self) -> NDArray[np.float64]:
+        """Residual [m] and energy [J] of the front and of the motions between, shape (n, 2)."""
+        return filled(self.front, _FILL)

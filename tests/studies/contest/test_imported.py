@@ -126,6 +126,18 @@ def test_tests_compare_those_of_as_many_evaluations_alone(call, copy, results):
     assert "results: results from elsewhere" in bibtex(["nsga2", "results"], statistics=False)
 
 
+def test_motions_all_along_the_exact_front_miss_nothing_of_it(call, copy, folder):
+    shares = np.arange(8)[:, None, None] / 8
+    save(folder / "mine.csv", (X[:-1] * (1 - shares) + X[1:] * shares).reshape(-1, 2))
+    assert call(f"{LINE} --import mine.csv --output held")[0] == 0
+    (arena,) = arenas_of(Contents.of(copy))
+    (found,) = arena.imports
+    # a staircase misses half of each step; the exact front's 28 points alone miss 2.6 %
+    assert np.abs(found.final) == pytest.approx(0, abs=4e-3)
+    assert found.missing_by_thirds == pytest.approx(np.zeros((1, 3)), abs=8e-3)
+    assert (found.missing_by_thirds > -1e-4).all()
+
+
 def test_the_same_line_again_changes_nothing(call, copy, results):
     line = f"{LINE} --import=results --output held"
     assert call(line)[0] == 0

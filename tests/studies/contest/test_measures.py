@@ -2,13 +2,14 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from small_contest import METHODS, NAME, area, documents, least_energy, median_of, rows_of, scaled
 
 from studies.contest.folder import Contents
-from studies.contest.measures import Field, arenas_of
+from studies.contest.measures import Field, Outcome, arenas_of
 
 LEVELS = (1e-4, 1e-3, 5e-3)
 
@@ -85,3 +86,13 @@ def test_over_time_a_run_keeps_what_it_had(arena):
     assert found[0, 1] == field.missing[0, 0]
     assert found[:, 2].tolist() == field.final.tolist()
     assert (np.diff(field.missing, axis=1) <= 0).all()
+
+
+def test_a_run_that_found_nothing_misses_everything(arena):
+    # as under limits that no candidate keeps
+    field = arena.fields[0]
+    empty = replace(field.runs[0], front=replace(field.runs[0].front, points=()))
+    nothing = Outcome("nothing", field.yardstick, (empty,))
+    assert nothing.final.tolist() == [1.0]
+    assert nothing.energies.tolist() == [[math.inf] * len(LEVELS)]
+    assert nothing.missing_by_thirds.tolist() == [[1.0] * 3]
