@@ -11,7 +11,7 @@ import nbformat
 
 sys.path.insert(0, str(Path(__file__).parent / "shared"))
 
-from notebook_files import PATHS, SOLUTION, execute, slide_type, solutions
+from notebook_files import PATHS, SOLUTION, execute, slide_types, solutions
 
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -23,11 +23,11 @@ def refresh(path):
     with tempfile.TemporaryDirectory() as folder:
         notebook, shown = execute(path, folder)
     waiting = iter(shown)
-    for number, cell in enumerate(notebook.cells, 1):
+    places = slide_types(notebook.cells)
+    for number, (cell, place) in enumerate(zip(notebook.cells, places, strict=True), 1):
         cell.id = f"cell-{number:02}"
         for found in solutions(cell.source) if cell.cell_type == "markdown" else []:
             cell.source = cell.source.replace(found[0], _with_text(found[0], next(waiting)))
-        place = slide_type(cell)
         tags = {"tags": cell.metadata.tags} if cell.metadata.get("tags") else {}
         slide = {"slideshow": {"slide_type": place}} if place != "-" else {}
         cell.metadata = nbformat.from_dict({**slide, **tags})

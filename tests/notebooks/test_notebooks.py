@@ -12,7 +12,7 @@ from notebook_files import (
     pictures,
     printed,
     read,
-    slide_type,
+    slide_types,
     solutions,
 )
 from same_numbers import differences
@@ -105,10 +105,10 @@ def test_it_is_committed_without_errors_or_the_traces_of_one_run(path):
 
 
 @each_notebook
-def test_its_slides_follow_its_headings_and_pictures(path):
+def test_its_slides_follow_its_headings_and_answers(path):
     cells = read(path).cells
     placed = [cell.metadata.get("slideshow", {}).get("slide_type", "-") for cell in cells]
-    assert placed == [slide_type(cell) for cell in cells]
+    assert placed == slide_types(cells)
 
 
 @each_notebook

@@ -24,6 +24,9 @@ ATTEMPT = "# Your attempt"
 WIDGET = "application/vnd.jupyter.widget-view+json"
 """What a slider shows where a kernel runs; a file keeps the picture that stands beside it."""
 
+A_REMARK = 250
+"""Characters of a text that stays on the slide of the answer that it follows."""
+
 STRICT = """
 import warnings
 
@@ -69,15 +72,31 @@ def pictures(notebook):
     return [base64.b64decode(picture) for picture in found if picture]
 
 
-def slide_type(cell):
-    """Place a cell on the slides: a slide for each heading, another below it for each picture."""
-    if cell.cell_type == "markdown":
-        heading = re.match(r"#+ ", cell.source)
-        return {None: "-", "# ": "slide", "## ": "slide"}.get(heading and heading[0], "subslide")
-    if cell.source.startswith(("%matplotlib", ATTEMPT)):
-        return "skip"
-    shows_a_picture = any("image/png" in output.get("data", {}) for output in cell.outputs)
-    return "subslide" if shows_a_picture else "-"
+def slide_types(cells):
+    """Place cells on slides: one for each heading, others below it for answers and what follows.
+
+    So a question stands before its answer, and few slides are higher than the wall.
+    """
+    places, answered = [], False  # whether an answer is on the slide
+    for cell in cells:
+        place = _slide_type(cell, answered)
+        if cell.cell_type == "code" and place != "skip":
+            answered = bool(cell.outputs)
+        elif place in ("slide", "subslide"):
+            answered = False
+        places.append(place)
+    return places
+
+
+def _slide_type(cell, answered):
+    if cell.cell_type == "code":
+        if cell.source.startswith(("%matplotlib", ATTEMPT)):
+            return "skip"
+        return "subslide" if cell.outputs else "-"
+    if cell.source.startswith(("# ", "## ")):
+        return "slide"
+    below = cell.source.startswith("#") or (answered and len(cell.source) > A_REMARK)
+    return "subslide" if below else "-"
 
 
 def execute(path, folder):
