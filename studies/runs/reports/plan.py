@@ -12,6 +12,7 @@ from ocp.robustness.uncertain import assumed_plant
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
 from studies.display.words import millimetres, move_of, plant_words
+from studies.runs.reports.worst import worst_in_words
 
 Row = tuple[str, str]
 
@@ -44,8 +45,7 @@ def _worst_rows(plan: Plan) -> list[Row]:
     """Where within the errors of its plant a plan leaves most; none where it has no errors."""
     if plan.worst is None:
         return []
-    errors = ", ".join(f"{name} {100 * error:+.3g} %" for name, error in plan.worst.errors.items())
-    words = f"{millimetres(plan.worst.residual)} with {errors}"
+    words = worst_in_words(plan.worst)
     if plan.excess is not None:
         side = "above" if plan.excess > 0 else "below"
         words += f", {abs(plan.excess):.1%} {side} the limit"

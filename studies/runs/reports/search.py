@@ -9,6 +9,7 @@ from rich.console import Console
 from metaheuristics.ensemble import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from ocp import Front
 from studies.display.words import counted, millimetres, print_lines
+from studies.runs.reports.worst import point_in_words
 
 
 def print_fronts(console: Console, fronts: Sequence[Front]) -> None:
@@ -59,8 +60,5 @@ def _front_lines(front: Front) -> list[str]:
     ]
     if front.points:
         chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
-        lines += [
-            f"  {name:9}{point.energy:.4g} J at {millimetres(point.residual)}"
-            for name, point in chosen.items()
-        ]
+        lines += [f"  {name:9}{point_in_words(front, point)}" for name, point in chosen.items()]
     return lines

@@ -9,6 +9,7 @@ from ocp import FailedPoint, Front
 from ocp.front.checking import RESIDUAL_LIMIT
 from ocp.front.points import LEVELS
 from studies.display.words import counted, millimetres, print_lines
+from studies.runs.reports.worst import point_in_words
 
 
 def print_sweep(console: Console, front: Front, asked_for: int) -> None:
@@ -40,10 +41,7 @@ def point_lines(front: Front) -> list[str]:
     chosen = {"stillest": front.stillest(), "knee": front.knee(), "cheapest": front.cheapest()}
     if len(front.points) < 3:
         del chosen["knee"]  # it would be an end
-    lines = [
-        f"  {name:15}{point.energy:.4g} J at {millimetres(point.residual)}"
-        for name, point in chosen.items()
-    ]
+    lines = [f"  {name:15}{point_in_words(front, point)}" for name, point in chosen.items()]
     for level in LEVELS:
         energy, name = energy_at(front, level), f"within {millimetres(level)}"
         found = f"{energy:.4g} J" if energy == energy else "none"  # NaN where there is none

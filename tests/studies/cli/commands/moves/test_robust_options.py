@@ -4,7 +4,7 @@ import pytest
 from lines import MOVE, TWO_TERMS
 
 from models import SingleLinkManipulator
-from ocp import Plan, UncertainPlant
+from ocp import Front, Plan, UncertainPlant, evaluate_coefficients
 
 
 def test_a_robust_plan_says_where_it_leaves_most(call):
@@ -47,3 +47,23 @@ def test_a_shaper_is_that_of_the_assumed_plant(call, shaper):
     assert (code, err) == (0, "")
     assert "2 impulses" in out
     assert Plan.load("plan.json").excess is None  # no limit was asked for
+
+
+@pytest.mark.parametrize(
+    "method", ["nsga2 --population 8 --generations 2", "epsilon --points 2 --starts 1"]
+)
+def test_a_front_says_what_its_points_leave_between_the_samples(call, method):
+    line = f"front {MOVE} --terms 4 --bound 0.5 --robust frequency=10% --quiet --output f.json"
+    code, out, err = call(f"{line} --method {method}")
+    assert (code, err) == (0, "")
+    front = Front.load("f.json")
+    for name in ("stillest", "cheapest"):
+        point = getattr(front, name)()
+        plan = evaluate_coefficients(front.task, point.coefficients, profile=front.profile)
+        (said,) = [line for line in out.splitlines() if line.startswith(f"  {name} ")]
+        error = 100 * plan.worst.errors["frequency"]
+        assert plan.worst.residual >= point.residual * (1 - 1e-3)
+        assert said.endswith(
+            f" J at {1e3 * point.residual:.3g} mm; at worst {1e3 * plan.worst.residual:.3g} mm "
+            f"with frequency {error:+.3g} %"
+        )
