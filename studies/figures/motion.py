@@ -250,13 +250,16 @@ def _leave_out_jolts(ax: Axes, quantity: str, lines: Sequence[Line]) -> list[str
     """Cut off a floor's jolts, a thousand times the rest for a moment, and say so in words."""
     peaks, usual = [0.0], [0.0]
     for line in lines:
-        sizes = np.abs(_values(quantity, line.plan.trajectory)).max(axis=1)
-        held, order = np.gradient(line.plan.trajectory.time), np.argsort(sizes)
+        time = line.plan.trajectory.time
+        moving = time <= line.plan.task.duration  # at rest afterwards, nothing is usual
+        sizes = np.abs(_values(quantity, line.plan.trajectory)).max(axis=1)[moving]
+        held, order = np.gradient(time)[moving], np.argsort(sizes)
         most_of_the_time = np.searchsorted(np.cumsum(held[order]), _SHOWN * held.sum())
         peaks.append(float(sizes.max()))
         usual.append(float(sizes[order][min(most_of_the_time, len(order) - 1)]))
     highest = _ABOVE * max(usual)
     if max(peaks) <= highest or not any(isinstance(line.plan, Floor) for line in lines):
         return []
-    ax.set_ylim(-highest, highest)
+    low, high = ax.get_ylim()
+    ax.set_ylim(max(low, -highest), min(high, highest))
     return ["jolts left out"]
