@@ -98,8 +98,8 @@ def energy_floor(
     settings = FloorSettings(smooth, starts, seed, tolerance)
     if settings.tolerance < LEAST_TOLERANCE:
         raise ValueError(
-            f"tolerance is {settings.tolerance:g}; give {LEAST_TOLERANCE:g} or more: grids of up to "
-            f"{MOST_INTERVALS} intervals come no closer"
+            f"tolerance is {settings.tolerance:g}; give {LEAST_TOLERANCE:g} or more: grids of up "
+            f"to {MOST_INTERVALS} intervals come no closer"
         )
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)

@@ -85,6 +85,11 @@ class JointProfile(ABC):
         """Where the gradient's random starts lie, as `box`, but finite."""
         return self.box(UNBOUNDED_SPREAD if bound is None else bound)
 
+    def breaks(self, duration: float) -> tuple[float, ...]:
+        """Fractions of the duration, rising between 0 and 1, at which the motion is not smooth."""
+        del duration
+        return ()
+
     @abstractmethod
     def derivatives(
         self,

@@ -101,6 +101,12 @@ class ShapedCycloid(JointProfile):
         """The shaper's length, and the least share of the duration for the cycloid [s]."""
         return self.length / (1 - LEAST_SHARE)
 
+    def breaks(self, duration: float) -> tuple[float, ...]:
+        """Where a cycloid begins or ends."""
+        begins = self.impulses.times
+        ends = (begin + duration - self.length for begin in begins)
+        return tuple(sorted({at / duration for at in (*begins, *ends) if 0 < at < duration}))
+
     def derivatives(
         self,
         coefficients: Sequence[Expression],

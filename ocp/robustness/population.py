@@ -5,9 +5,10 @@ The same symbolic rollout as that of searches, with a plant in each row in the p
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import casadi as ca
 import numpy as np
@@ -24,6 +25,9 @@ from ocp.task.point_to_point import PointToPoint
 
 _BLOCK = 100
 """Plants a call: their intermediate values fit the processor's cache."""
+
+_LEAST_STEPS = 6
+"""Least steps between two times at which the motion is not smooth: no step crosses one."""
 
 _STEPS_OF_CSE = 2 * ROLLOUT_STEPS
 """Common terms are looked for up to these steps: that takes a third off a call, but a time that
@@ -88,8 +92,9 @@ class ErrorPopulation:
         resolved = default_steps(task, least=1)
         steps = max(ROLLOUT_STEPS, int(np.ceil(faster * resolved)))
         self._samples = int(np.ceil(faster * residual_samples(task)))
-        self._joint = _joint_at_nodes(task, profile, coefficients, steps)
-        self._function = _compiled(task.plant, steps, self.names)
+        times, self._length = _mesh(profile.breaks(task.duration), steps)
+        self._joint = _joint_at(times, task, profile, coefficients)
+        self._function = _compiled(task.plant, self._length.shape[1], self.names)
 
     @keep_interrupts()
     def __call__(
@@ -130,8 +135,9 @@ class ErrorPopulation:
         padded = np.zeros((_BLOCK, block.shape[1]))
         padded[:count] = block
         between = window / (self._samples - 1)
-        inputs = ca.DM(padded), self._joint, self._task.target, self._task.duration, between
-        values = [value.full()[:count] for value in self._function(*inputs)]
+        move = self._task.target, self._task.duration
+        found = self._function(ca.DM(padded), self._joint, self._length, *move, between)
+        values = [value.full()[:count] for value in found]
         arrival, transition, tips, energy, torque = values
         size = arrival.shape[1]
         of_window = _marched(
@@ -152,29 +158,42 @@ def _marched(
     return state[:, :, :samples]
 
 
-def _joint_at_nodes(
-    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, steps: int
+def _mesh(breaks: Sequence[float], steps: int) -> tuple[list[ca.DM], ca.DM]:
+    """As `node_times`, with an end of a step at every break: there the motion is not smooth."""
+    times: list[list[ca.DM]] = []
+    lengths: list[ca.DM] = []
+    for begin, end in pairwise((0.0, *breaks, 1.0)):
+        share = end - begin
+        of_part, length = node_times(max(_LEAST_STEPS, int(np.ceil(share * steps))))
+        times.append([begin + share * at for at in of_part])
+        lengths.append(share * length)
+    return [ca.horzcat(*of_node) for of_node in zip(*times, strict=True)], ca.horzcat(*lengths)
+
+
+def _joint_at(
+    times: Sequence[ca.DM], task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
 ) -> ca.DM:
     """Angle, speed and acceleration at every node of a step, shape (3 * NODES, steps)."""
-    checked, (times, _) = profile.checked(coefficients, task.duration), node_times(steps)
+    checked = profile.checked(coefficients, task.duration)
     return ca.vertcat(*(row for at in times for row in profile.motion(checked, at, *task.move)[:3]))
 
 
 @lru_cache(maxsize=16)
 def _compiled(plant: Plant, steps: int, names: tuple[str, ...]) -> ca.Function:
-    """(errors, joint at nodes, target, duration, time between samples) -> what `_evaluate` needs.
+    """(errors, joint at nodes, length of steps, target, duration, time between samples) -> figures.
 
     A row a plant: state on arrival; the transition of the state between two samples at rest and the
     tips of the modes, both row by row; energy; torque at the nodes.
     """
     errors, joint = ca.MX.sym("e", _BLOCK, len(names)), ca.MX.sym("joint", 3 * NODES, steps)
+    length = ca.MX.sym("length", 1, steps)
     target, duration, between = (ca.MX.sym(name) for name in ("target", "duration", "dt"))
     columns = dict(zip(names, ca.horzsplit(errors, 1), strict=True))
     moving = with_errors(plant, {n: ca.repmat(e, 1, steps) for n, e in columns.items()})
     resting, modes = with_errors(plant, columns), range(plant.modes)
     rows = [ca.repmat(row, _BLOCK, 1) for row in ca.vertsplit(joint)]
     joints = [JointMotion(*rows[3 * node : 3 * node + 3]) for node in range(NODES)]
-    rollout = rollout_along(moving, joints, duration * node_times(steps, _BLOCK)[1])
+    rollout = rollout_along(moving, joints, duration * ca.repmat(length, _BLOCK, 1))
     by_column = step(resting, [JointMotion(target, 0.0, 0.0)] * NODES, between).transition()[1]
     transition = [column[row] for row in range(2 * plant.modes) for column in by_column]
     of_mode = [resting.tip_displacements([float(i == j) for i in modes]) for j in modes]
@@ -183,7 +202,7 @@ def _compiled(plant: Plant, steps: int, names: tuple[str, ...]) -> ca.Function:
         rollout.arrival, _rows(transition), _rows(tips), rollout.energy,
         ca.horzcat(*rollout.torque),
     ]  # fmt: skip
-    inputs = [errors, joint, target, duration, between]
+    inputs = [errors, joint, length, target, duration, between]
     return ca.Function("errors", inputs, outputs, {"cse": steps <= _STEPS_OF_CSE})
 
 

@@ -203,11 +203,11 @@ def count(
         To be called with the number of pieces done and of all. Where there is no terminal, it
         prints a line every two seconds.
     """
-    said, now = time.monotonic(), 0
+    said, now, of = time.monotonic(), 0, total
 
     def line(done: int, total: int) -> None:
-        nonlocal said, now
-        now = done
+        nonlocal said, now, of
+        now, of = done, total
         if done == total or time.monotonic() - said >= PLAIN_SECONDS:
             said = time.monotonic()
             print_lines(console, f"{done} of {total} {what}")
@@ -218,7 +218,7 @@ def count(
 
     nothing = quiet or console.is_terminal
     with (
-        nullcontext() if nothing else _ticking(console, lambda: f"{now} of {total} {what}"),
+        nullcontext() if nothing else _ticking(console, lambda: f"{now} of {of} {what}"),
         shown(console, quiet, _COLUMNS, lambda done, total: None, line, bar) as report,
     ):
         yield report

@@ -35,7 +35,7 @@ def print_plan(console: Console, plan: Plan) -> None:
         *figure_rows(plan.task, motion),
         *_worst_rows(plan),
         ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
-        verified_row(plan.verification),
+        verified_row(plan.verification, *_remedy(plan)),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
     print_rows(console, rows)
@@ -52,12 +52,17 @@ def _worst_rows(plan: Plan) -> list[Row]:
     return [("at worst", words)]
 
 
+def _remedy(plan: Plan) -> list[str]:
+    """What brings the integrators together where a motion has no coefficients to be smaller."""
+    return ["a longer duration: the shaper's cycloids are short"] * (plan.profile.size == 0)
+
+
 def stopped_words(after: str | None) -> str:
     """That Ctrl-C came, and after what; nothing where it did not."""
     return f" Interrupted after {after}: the best of these." if after else ""
 
 
-def verified_row(check: Verification) -> Row:
+def verified_row(check: Verification, remedy: str = "smaller coefficients") -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
     differ = (
         f"{check.steps} fixed steps differ by {check.energy_share:.0e} in energy and "
@@ -67,7 +72,7 @@ def verified_row(check: Verification) -> Row:
         return "verified", f"by CVODES: {differ}"
     return "not verified", (
         f"the figures are by CVODES, and {differ}, where {AGREEMENT:g} of each is agreement; give "
-        "smaller coefficients"
+        f"{remedy}"
     )
 
 

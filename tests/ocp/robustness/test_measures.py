@@ -147,6 +147,24 @@ def test_the_insensitivity_of_shapers_is_that_of_the_closed_form(shaper, duratio
     assert sweep.open_ends == (False, False)
 
 
+@pytest.mark.parametrize(
+    ("plant", "target", "duration", "shaper"),
+    [
+        (DualLinkManipulator(), math.pi / 2, 1.148, "ei"),  # nine short cycloids
+        (SingleLinkManipulator(), math.pi / 6, 0.3171, "zv"),
+    ],
+)
+def test_the_shortest_shaped_moves_leave_what_cvodes_says(plant, target, duration, shaper):
+    task = PointToPoint(plant, target, duration)
+    profile = shaped_cycloid(task, shaper)
+    errors = [0.0, 0.07, -0.1]
+    found = ErrorPopulation(task, profile, [], {"frequency": 0.1})([[error] for error in errors])
+    wrong = [with_errors(plant, {"frequency": error}) for error in errors]
+    motions = [resimulate(replace(task, plant=one), profile, []) for one in wrong]
+    assert found.residual == pytest.approx([m.residual for m in motions], rel=2e-4)
+    assert found.energy == pytest.approx([m.energy for m in motions], rel=2e-4)
+
+
 def test_what_leaves_more_without_an_error_has_no_insensitivity_range():
     # EI leaves 5 % of what its own cycloid would, which is shorter and leaves more than the plain.
     task = PointToPoint(LINEAR, 1.0, 1.1)
