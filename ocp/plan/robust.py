@@ -66,7 +66,7 @@ def robust_plan(
 ) -> Plan:
     """The plan of an uncertain plant, with its residual limit held between the samples.
 
-    Where that fails, the solver starts again with samples half way to those that there are.
+    Where the solver fails, it starts again with more samples, half way to those that there are.
 
     Parameters
     ----------
@@ -82,7 +82,8 @@ def robust_plan(
     Returns
     -------
     Plan
-        As `held_between`.
+        The plan with its `worst`, which is above the limit where no tighter one could be kept.
+        After Ctrl-C the last plan until then, not ``complete``.
 
     Raises
     ------
@@ -90,39 +91,20 @@ def robust_plan(
         When there is no plan.
     """
     try:
-        return held_between(solve(task, profile, settings), settings, solve)
+        return _held_between(solve(task, profile, settings), settings, solve)
     except InfeasibleTaskError:  # more samples make it no easier
         raise
     except SolverFailedError:
         finer = with_halves(task)
-    return held_between(solve(finer, profile, settings), settings, solve)
+    return _held_between(solve(finer, profile, settings), settings, solve)
 
 
-def held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
-    """Hold the residual limit of a plan between the samples of its uncertain plant as well.
+def _held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
+    """The plan with its `worst`, solved on until the limit holds between the samples as well.
 
-    Where the residual passes the limit by more than `EXCESS`, its peaks become samples, and the
-    solver goes on from the plan. What is left of the excess is then taken off the limit.
-
-    Parameters
-    ----------
-    plan : Plan
-        A plan of an uncertain plant, within its residual limit at the samples.
-    settings : SolveSettings
-        What was asked for.
-    solve : callable
-        Gives the plan of a task, a profile and settings.
-
-    Returns
-    -------
-    Plan
-        The plan with its `worst`, which is above the limit where no tighter one could be kept.
-        After Ctrl-C the last plan until then, not ``complete``.
-
-    Raises
-    ------
-    SolverFailedError
-        When no motion keeps the limit at the samples that were added.
+    Where the residual passes the limit by more than `EXCESS`, its peaks become samples. What is
+    left of the excess is then taken off the limit; `worst` is above the limit where no tighter one
+    could be kept. After Ctrl-C it is the last plan until then, not ``complete``.
     """
     began = time.perf_counter() - plan.provenance.seconds
     stopped = plan.provenance.stopped
