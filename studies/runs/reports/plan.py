@@ -8,6 +8,7 @@ from rich.console import Console
 
 from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Verification
 from ocp.answers.provenance import AGREEMENT
+from ocp.plan.robust import EXCESS
 from ocp.robustness.uncertain import assumed_plant
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
@@ -48,8 +49,20 @@ def _worst_rows(plan: Plan) -> list[Row]:
     words = worst_in_words(plan.worst)
     if plan.excess is not None:
         side = "above" if plan.excess > 0 else "below"
-        words += f", {abs(plan.excess):.1%} {side} the limit"
+        words += f", {abs(plan.excess):.1%} {side} the limit{_not_held(plan)}"
     return [("at worst", words)]
+
+
+def _not_held(plan: Plan) -> str:
+    """That a robust plan passes its residual limit between the samples, and what would help."""
+    if plan.excess is None or plan.excess <= EXCESS:
+        return ""
+    remedy = (
+        "give a larger --residual-limit, more --terms or a smaller --robust error"
+        if plan.complete
+        else "let the plan run to its end"
+    )
+    return f"; not robust enough: more than {EXCESS:.0%} above; {remedy}"
 
 
 def _remedy(plan: Plan) -> list[str]:
@@ -59,7 +72,7 @@ def _remedy(plan: Plan) -> list[str]:
 
 def stopped_words(after: str | None) -> str:
     """That Ctrl-C came, and after what; nothing where it did not."""
-    return f" Interrupted after {after}: the best of these." if after else ""
+    return f" Interrupted after {after}; this is the best until then." if after else ""
 
 
 def verified_row(check: Verification, remedy: str = "smaller coefficients") -> Row:
