@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from metaheuristics.objective.population import BLOCK, PopulationObjective
 from ocp import Front, FrontPoint, JointProfile, Plan, PointToPoint
 from ocp.answers.provenance import AGREEMENT, REST
+from ocp.base.errors import SolverFailedError
 from ocp.front.evaluation import refuse_beyond_box
 from ocp.plan.verification import OVERRUN
+from ocp.robustness.worst import worst_at, worst_of
 from ocp.simulation.resimulation import resimulate
 from ocp.simulation.rollout import default_steps
 from ocp.task.quantities import QUANTITIES
@@ -85,12 +87,16 @@ def check_plan(plan: Plan, name: str) -> None:
     Raises
     ------
     ValueError
-        When the energy or a peak differs by more than `AGREEMENT`, or the residual by more than
-        that and `REST`.
+        When the energy or a peak differs by more than `AGREEMENT`, or the residual, also that at
+        worst, by more than that and `REST`, or the plan does not fit its task.
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    found = resimulate(plan.task, plan.profile, plan.coefficients)
+    try:
+        found = resimulate(plan.task, plan.profile, plan.coefficients)
+        _check_worst(plan, name)
+    except SolverFailedError as error:
+        raise SolverFailedError(f"{name}: {error}") from None
     peaks = ((figure, QUANTITIES[figure].unit, 0.0) for figure in QUANTITIES)
     for figure, unit, least in (*FIGURES, *peaks):
         stated, gives = plan.motion.peak(figure), found.peak(figure)
@@ -100,6 +106,27 @@ def check_plan(plan: Plan, name: str) -> None:
             raise ValueError(
                 f"{name} states {figure} {stated:.4g} {unit}, but its coefficients give "
                 f"{gives:.4g} {unit}; find the plan again"
+            )
+
+
+def _check_worst(plan: Plan, name: str) -> None:
+    """Look again for the errors of an uncertain plant at which a plan leaves most."""
+    if plan.worst is None:
+        return
+    where = plan.task, plan.profile, plan.coefficients
+    found, stated = worst_of(*where), plan.worst.residual
+    if found is None or list(found.errors) != list(plan.worst.errors):
+        what = ", ".join(plan.worst.errors) or "none"
+        raise ValueError(
+            f"{name} states a worst with errors of {what}, which its plant does not have; find the "
+            "plan again"
+        )
+    there = worst_at(*where, list(plan.worst.errors.values()))
+    for gives, words in (found.residual, "leave"), (there.residual, "leave there"):
+        if not agrees(stated, gives, REST):
+            raise ValueError(
+                f"{name} states residual {stated:.4g} m at worst, but its coefficients {words} "
+                f"{gives:.4g} m; find the plan again"
             )
 
 

@@ -5,6 +5,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+_ALIKE = 0.55
+"""Share of letters in common from which on a name is asked for."""
+_PART = 3
+"""So many letters of a longer name are enough."""
+
 
 def unknown(what: str, name: str, known: Iterable[str], also: str = "") -> str:
     """The message about a name that is not known.
@@ -71,8 +76,8 @@ def nearest(name: str, known: Iterable[str]) -> str:
         As ``"did you mean 'omega'? "``, with the space; empty where no name is like it.
     """
     known = list(known)
-    part = [other for other in known if name and name.lower() in other.lower()]
-    near = part or difflib.get_close_matches(name.lower(), known, n=1, cutoff=0.3)
+    part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
+    near = part or difflib.get_close_matches(name.lower(), known, n=1, cutoff=_ALIKE)
     return f"did you mean {near[0]!r}? " if near else ""
 
 

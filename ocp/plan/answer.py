@@ -175,7 +175,7 @@ def evaluate_coefficients(
     """
     began = time.perf_counter()
     if profile is None:
-        profile = CycloidPolynomial(numbers_of(coefficients).size)
+        profile = CycloidPolynomial.of_size(numbers_of(coefficients).size)
     refuse_other_kinds(task, profile)
     checked = profile.checked(coefficients)
     motion = resimulate(task, profile, checked)

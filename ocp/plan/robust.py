@@ -11,11 +11,18 @@ from numpy.typing import NDArray
 
 from ocp.answers.provenance import SolveSettings
 from ocp.base.errors import InfeasibleTaskError, SolverFailedError
-from ocp.plan.answer import Plan
+from ocp.base.interrupts import note_interrupts
+from ocp.plan.answer import Plan, evaluate_coefficients
 from ocp.plan.verification import OVERRUN
 from ocp.profiles.joint_profile import JointProfile
 from ocp.robustness.measures import tolerated_residual
-from ocp.robustness.uncertain import UncertainPlant, with_halves, with_samples
+from ocp.robustness.uncertain import (
+    UncertainPlant,
+    on_assumed,
+    uncertain_plant,
+    with_halves,
+    with_samples,
+)
 from ocp.robustness.worst import peaks_between
 from ocp.task.point_to_point import PointToPoint
 
@@ -23,6 +30,8 @@ EXCESS = 0.05
 """Share of the limit by which the residual between samples may pass it before more are added."""
 _ROUNDS, _ADDED = 6, 4
 """Most rounds of added samples, and most samples that one adds."""
+_SAME = 1e-6
+"""Errors that differ by less than this share of their range are one sample."""
 _TIGHTENINGS = 4
 """Most times that the limit is tightened by what is left of the excess."""
 
@@ -66,7 +75,8 @@ def robust_plan(
 ) -> Plan:
     """The plan of an uncertain plant, with its residual limit held between the samples.
 
-    Where the solver fails, it starts again with more samples, half way to those that there are.
+    The first start is the guess, or else the assumed plant's plan, at rest on arrival. Where the
+    solver fails, it starts again with samples half way to those that there are.
 
     Parameters
     ----------
@@ -82,29 +92,94 @@ def robust_plan(
     Returns
     -------
     Plan
+        As `held_between`. After Ctrl-C before there is a robust plan that of the assumed plant, not
+        ``complete``.
+
+    Raises
+    ------
+    SolverFailedError
+        When there is no plan.
+    KeyboardInterrupt
+        After Ctrl-C before there is any plan.
+    """
+    began = time.perf_counter()
+    assumed = None if settings.guess else _of_assumed(task, profile, settings, solve)
+    try:
+        if assumed is None:
+            plan = _from_samples(task, profile, settings, settings, solve)
+        elif assumed.complete:
+            first = replace(settings, guess=assumed.coefficients)
+            plan = _from_samples(task, profile, first, settings, solve)
+        else:
+            raise KeyboardInterrupt
+    except KeyboardInterrupt:
+        if assumed is None:
+            raise
+        with note_interrupts():
+            plan = _unheld(task, assumed, settings)
+    seconds = time.perf_counter() - began
+    return replace(plan, provenance=replace(plan.provenance, seconds=seconds))
+
+
+def _of_assumed(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, solve: Solve
+) -> Plan | None:
+    """The plan of the plant without errors, at rest on arrival; None where there is none."""
+    try:
+        return solve(on_assumed(task), profile, replace(settings, residual_limit=0.0))
+    except SolverFailedError:
+        return None
+
+
+def _from_samples(
+    task: PointToPoint,
+    profile: JointProfile,
+    first: SolveSettings,
+    settings: SolveSettings,
+    solve: Solve,
+) -> Plan:
+    try:
+        return held_between(solve(task, profile, first), settings, solve)
+    except InfeasibleTaskError:  # more samples make it no easier
+        raise
+    except SolverFailedError:
+        finer = with_halves(task)
+    return held_between(solve(finer, profile, first), settings, solve)
+
+
+def _unheld(task: PointToPoint, assumed: Plan, settings: SolveSettings) -> Plan:
+    """The assumed plant's plan with its figures on the uncertain one."""
+    plan = evaluate_coefficients(task, assumed.coefficients, profile=assumed.profile)
+    stopped = "the assumed plant's plan, before there was a robust one"
+    provenance = replace(assumed.provenance, settings=settings, stopped=stopped)
+    return replace(plan, status=assumed.status, provenance=provenance)
+
+
+def held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
+    """Hold the residual limit of a plan between the samples of its uncertain plant as well.
+
+    Where the residual passes the limit by more than `EXCESS`, its peaks become samples, and the
+    solver goes on from the plan. What is left of the excess is then taken off the limit.
+
+    Parameters
+    ----------
+    plan : Plan
+        A plan of an uncertain plant, within its residual limit at the samples.
+    settings : SolveSettings
+        What was asked for.
+    solve : callable
+        Gives the plan of a task, a profile and settings.
+
+    Returns
+    -------
+    Plan
         The plan with its `worst`, which is above the limit where no tighter one could be kept.
         After Ctrl-C the last plan until then, not ``complete``.
 
     Raises
     ------
     SolverFailedError
-        When there is no plan.
-    """
-    try:
-        return _held_between(solve(task, profile, settings), settings, solve)
-    except InfeasibleTaskError:  # more samples make it no easier
-        raise
-    except SolverFailedError:
-        finer = with_halves(task)
-    return _held_between(solve(finer, profile, settings), settings, solve)
-
-
-def _held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
-    """The plan with its `worst`, solved on until the limit holds between the samples as well.
-
-    Where the residual passes the limit by more than `EXCESS`, its peaks become samples. What is
-    left of the excess is then taken off the limit; `worst` is above the limit where no tighter one
-    could be kept. After Ctrl-C it is the last plan until then, not ``complete``.
+        When no motion keeps the limit at the samples that were added.
     """
     began = time.perf_counter() - plan.provenance.seconds
     stopped = plan.provenance.stopped
@@ -128,7 +203,10 @@ def _held(plan: Plan, settings: SolveSettings, solve: Solve) -> Iterator[Plan]:
     for _ in range(_ROUNDS):
         if _excess(plan, limit) <= EXCESS:
             break
-        task = with_samples(plan.task, peaks[peaks[:, 0] > limit, 1:].tolist())
+        more = _new_samples(plan.task, peaks[peaks[:, 0] > limit, 1:])
+        if not more:
+            break
+        task = with_samples(plan.task, more)
         plan, peaks = _checked(solve(task, plan.profile, _from(plan, settings)))
         yield plan
     for _ in range(_TIGHTENINGS):
@@ -141,6 +219,13 @@ def _held(plan: Plan, settings: SolveSettings, solve: Solve) -> Iterator[Plan]:
         except SolverFailedError:
             break
         yield plan
+
+
+def _new_samples(task: PointToPoint, errors: NDArray[np.float64]) -> list[list[float]]:
+    """Those of the errors that no sample of the uncertain plant has."""
+    plant = uncertain_plant(task.plant)
+    known, near = np.array(plant.samples), _SAME * np.array(list(plant.ranges.values()))
+    return [one.tolist() for one in errors if (np.abs(known - one) > near).any(axis=1).all()]
 
 
 def _checked(plan: Plan) -> tuple[Plan, NDArray[np.float64]]:

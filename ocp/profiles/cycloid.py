@@ -56,6 +56,12 @@ class Cycloid(JointProfile):
     @classmethod
     def of_size(cls, size: int) -> Self:
         """The family's member that has so many coefficients; ValueError where none has."""
+        if not cls.least_terms <= size <= cls.most_terms:
+            why = cls.why_no_more if size > cls.most_terms else ""
+            raise ValueError(
+                f"got {size} coefficients; {cls.name} has {cls.least_terms} to {cls.most_terms}"
+                f"{why and f': {why}'}; give so many numbers"
+            )
         return cls(size)
 
     @abstractmethod

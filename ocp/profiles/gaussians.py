@@ -21,8 +21,8 @@ class CycloidGaussians(CycloidOfUnits):
 
     U = t/TE + (1 - T^2) (w_0 + sum_j w_j exp(-(k_j (T - c_j))^2)), T = -1 + 2 t/TE. The
     coefficients are w_0 to w_n, the centres c_1 to c_n, and the inverse widths k_1 to k_n, which
-    may be any number, also zero. Every centre keeps to a cell of its own, so that no two Gaussians
-    can change places.
+    may be any number up to 200 either way, also zero. Every centre keeps to a cell of its own, so
+    that no two Gaussians can change places.
 
     Parameters
     ----------
@@ -36,6 +36,7 @@ class CycloidGaussians(CycloidOfUnits):
     """
 
     name: ClassVar[str] = "cycloid-gaussians"
+    sharpness: ClassVar[str] = "the inverse width of a Gaussian"
     terms: int = 5
 
     @property

@@ -22,7 +22,7 @@ class CycloidNetwork(CycloidOfUnits):
 
     U = t/TE + (1 - T^2) (v_0 + sum_j v_j tanh(b_j + k_j T)), T = -1 + 2 t/TE. The coefficients are
     v_0 to v_n, the biases b_1 to b_n, and the gains k_1 to k_n. Gains are positive: a negative one
-    is the same as other signs of its weight and bias.
+    is the same as other signs of its weight and bias. They may be up to 200.
 
     Parameters
     ----------
@@ -36,6 +36,7 @@ class CycloidNetwork(CycloidOfUnits):
     """
 
     name: ClassVar[str] = "cycloid-network"
+    sharpness: ClassVar[str] = "the gain of a hidden node"
     terms: int = 5
 
     @property

@@ -42,7 +42,8 @@ class ShapedCycloid(JointProfile):
     Raises
     ------
     ValueError
-        When the shaper is not known, a number is out of range, or the numbers do not match.
+        When the shaper is not known, a number is out of range, the numbers do not match, or the
+        shaper would have a negative impulse.
     """
 
     name: ClassVar[str] = "shaped-cycloid"
@@ -74,6 +75,7 @@ class ShapedCycloid(JointProfile):
             )
         object.__setattr__(self, "frequencies", frequencies)
         object.__setattr__(self, "damping_ratios", damping)
+        _impulses(self.shaper, frequencies, damping)  # which refuses what the shaper is not for
 
     @property
     def impulses(self) -> Impulses:

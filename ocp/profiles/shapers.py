@@ -12,6 +12,11 @@ from typing import NamedTuple
 TOLERATED = 0.05
 """Share of the unshaped vibration that EI leaves at the frequency that it is made for."""
 
+_LEAST_DECAY_OF_EI = math.sqrt(TOLERATED / (2 - TOLERATED))
+"""K at which EI's weight V' reaches 1, so that its middle impulse 2 (1 - V') K vanishes."""
+MOST_DAMPING_OF_EI = 1 / math.hypot(1, math.pi / math.log(_LEAST_DECAY_OF_EI))
+"""The damping ratio of that decay, about 0.504."""
+
 
 class Impulses(NamedTuple):
     """A shaper: impulses whose amplitudes sum to one, the first at time 0.
@@ -52,7 +57,18 @@ def zvd(frequency: float, damping_ratio: float) -> Impulses:
 
 
 def ei(frequency: float, damping_ratio: float) -> Impulses:
-    """Extra insensitive: `TOLERATED` of the vibration is left; arguments as for `zv`."""
+    """Extra insensitive: `TOLERATED` of the vibration is left; arguments as for `zv`.
+
+    Raises
+    ------
+    ValueError
+        When the damping ratio is above `MOST_DAMPING_OF_EI`: the middle impulse would be negative.
+    """
+    if damping_ratio > MOST_DAMPING_OF_EI:
+        raise ValueError(
+            f"damping ratio is {damping_ratio:g}, for which the ei shaper would have a negative "
+            f"impulse; it goes up to {MOST_DAMPING_OF_EI:.4g}: take zv or zvd"
+        )
     decay = _decay(damping_ratio)
     # So that TOLERATED is left at the frequency itself whatever the damping; undamped V = TOLERATED
     V = TOLERATED * (1 + decay) ** 2 / (4 * decay**2 - TOLERATED * (1 - decay) ** 2)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from models import Expression
 from ocp.profiles.cycloid import Cycloid, with_bump
@@ -19,6 +19,10 @@ middle beyond the ends of the move, where they act most."""
 _LIGHT = 0.1
 """Random starts have weights within this share of their bound: with large ones the joint swings
 back and forth, and IPOPT runs out of iterations."""
+
+SHARPEST = 200.0
+"""Largest inverse width or gain. CVODES has the energy of such a unit within 0.1 %; one that is ten
+times as sharp can lie between its steps, as it can between the fixed steps, which then agree."""
 
 
 class Range(NamedTuple):
@@ -53,6 +57,8 @@ class CycloidOfUnits(Cycloid):
     """
 
     default_bound: ClassVar[float | None] = 0.5
+    sharpness: ClassVar[str]
+    """What y is called in a message."""
 
     @property
     def size(self) -> int:
@@ -63,12 +69,24 @@ class CycloidOfUnits(Cycloid):
     def of_size(cls, size: int) -> Self:
         """The family's member that has so many coefficients; ValueError where none has."""
         terms, rest = divmod(size - 1, 3)
-        if rest or terms < 1:
+        if rest or not cls.least_terms <= terms <= cls.most_terms:
+            most = 1 + 3 * cls.most_terms
             raise ValueError(
                 f"got {size} coefficients; {cls.name} has one and three for each unit: give 4, 7, "
-                "10, ... numbers"
+                f"10, ... or {most} numbers"
             )
         return cls(terms)
+
+    def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
+        """As every profile's; ValueError, too, where a unit is sharper than `SHARPEST`."""
+        values = super().checked(coefficients, duration)
+        for place, value in enumerate(values[1 + 2 * self.terms :], start=2 + 2 * self.terms):
+            if abs(value) > SHARPEST:
+                raise ValueError(
+                    f"coefficient {place} is {value:g}, {self.sharpness}; give at most "
+                    f"{SHARPEST:g}: a sharper one acts between the integrators' steps"
+                )
+        return values
 
     @property
     @abstractmethod

@@ -35,6 +35,18 @@ SAMPLED = {**OPTIONS, "tol": 1e-5}
 UNBOXED = {**SAMPLED, "mu_strategy": "monotone", "mu_init": 1e-3}
 """Without a box the adaptive barrier does not converge with ten terms or more; with a box it takes
 a fifth fewer iterations."""
+CREEPING = {
+    **SAMPLED,
+    "acceptable_tol": 1e3,
+    "acceptable_dual_inf_tol": 1e10,
+    "acceptable_constr_viol_tol": 1e-6,
+    "acceptable_compl_inf_tol": 1e-4,
+    "acceptable_obj_change_tol": 1e-5,
+    "acceptable_iter": 10,
+}
+"""For several plants along a profile whose coefficients enter nonlinearly. There the minimum lies
+in a curved valley, along which the energy falls by 1e-6 an iteration, for ever: the iterations end
+when it has hardly changed ten times."""
 PEAK = OPTIONS
 """The least peak, from coefficients alone."""
 _BARRIER = 2e-9

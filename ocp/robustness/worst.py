@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,7 +63,8 @@ def peaks_between(
     Worst
         The largest.
     ndarray, shape (peaks, 1 + ranges)
-        Residual [m] by fixed steps, and errors of each peak, the largest first.
+        Residual [m] and errors of each peak, the largest first. Peaks are looked for by fixed
+        steps; what they are worth is by CVODES.
 
     Raises
     ------
@@ -80,11 +81,20 @@ def peaks_between(
     residuals = population(shares * largest).residual
     tops = np.flatnonzero(_is_peak(residuals.reshape([along] * len(largest))))
     tops = tops[np.argsort(-residuals[tops])][:most]
-    table = np.array([_zoomed(population, largest, shares[i], 2 / (along - 1)) for i in tops])
-    table = table[np.argsort(-table[:, 0])]
-    errors = dict(zip(plant.ranges, table[0, 1:].tolist(), strict=True))
-    there = replace(assumed, plant=with_errors(plant.assumed, errors))
-    return Worst(errors, resimulate(there, profile, coefficients).residual), table
+    peaks = [_zoomed(population, largest, shares[i], 2 / (along - 1)).tolist() for i in tops]
+    found = [worst_at(task, profile, coefficients, errors) for errors in peaks]
+    found.sort(key=lambda one: -one.residual)
+    return found[0], np.array([[one.residual, *one.errors.values()] for one in found])
+
+
+def worst_at(
+    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, errors: Sequence[float]
+) -> Worst:
+    """What a motion leaves with errors in the order of the ranges; else as `peaks_between`."""
+    plant = uncertain_plant(task.plant)
+    named = dict(zip(plant.ranges, errors, strict=True))
+    there = replace(on_assumed(task), plant=with_errors(plant.assumed, named))
+    return Worst(named, resimulate(there, profile, coefficients).residual)
 
 
 def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:
@@ -114,11 +124,8 @@ def _zoomed(
     peak: NDArray[np.float64],
     step: float,
 ) -> NDArray[np.float64]:
-    """Residual and errors of the largest residual beside a point of a grid."""
-    residual = 0.0
+    """Errors of the largest residual beside a point of a grid."""
     for zoom in range(_ZOOMS):
         around = np.clip(peak + step / 2**zoom * _grid(_BESIDE, len(peak)), -1, 1)
-        residuals = population(around * largest).residual
-        at = int(np.argmax(residuals))
-        peak, residual = around[at], residuals[at]
-    return np.array([residual, *(peak * largest)])
+        peak = around[int(np.argmax(population(around * largest).residual))]
+    return peak * largest

@@ -12,6 +12,7 @@ import click
 from models import Plant, load_plant_file
 from ocp.base.files import check_writable
 from ocp.base.names import unknown
+from ocp.profiles.shapers import SHAPERS
 from ocp.task.quantities import QUANTITIES, Quantity
 from studies.cli.plants import parse_error, parse_plant, parse_setting
 from studies.cli.quantities import (
@@ -20,10 +21,12 @@ from studies.cli.quantities import (
     parse_angle,
     parse_coefficients,
     parse_length,
+    parse_number,
     parse_rate,
     parse_share,
     parse_time,
     parse_weights,
+    parse_whole,
 )
 from studies.display.pictures import check_figure
 from studies.display.saving import STDOUT
@@ -60,14 +63,16 @@ class _Angle(Parsed):
 
 
 class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
-    """One of several names; an error suggests the nearest one."""
+    """One of several names; an error suggests the nearest one, or says why a name is none here."""
 
-    def __init__(self, what: str, names: Iterable[str]) -> None:
+    def __init__(self, what: str, names: Iterable[str], none: Mapping[str, str] | None = None):
         super().__init__(list(names))
-        self._what = what
+        self._what, self._none = what, none or {}
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name."""
+        if value in self._none:
+            self.fail(self._none[value], param, ctx)
         if isinstance(value, str) and value not in self.choices:
             self.fail(unknown(self._what, value, self.choices), param, ctx)
         return super().convert(value, param, ctx)
@@ -131,6 +136,8 @@ ANGLE = _Angle("angle", parse_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
 SHARE = Parsed("share", parse_share)
+WHOLE = Parsed("integer", parse_whole)
+NUMBER = Parsed("float", parse_number)
 COEFFICIENTS = Parsed("numbers", parse_coefficients)
 WEIGHTS = Parsed("weights", parse_weights)
 INPUT = Parsed("file", _is_input)
@@ -150,12 +157,18 @@ profile_option = click.option(
     help=f"{_OF_CYCLOIDS}; or the plain cycloid through an input shaper for the plant's "
     "frequencies at the target.",
 )  # fmt: skip
+_OF_SHAPERS = {
+    name: f"{name} is an input shaper: it has one motion for a move, and therefore no front; give "
+    f"one of {', '.join(FAMILIES)}, or quietarm plan"
+    for name in SHAPERS
+}
 family_option = click.option(
-    "--profile", type=Named("profile", FAMILIES), default=POLYNOMIAL, show_default=True,
+    "--profile", type=Named("profile", FAMILIES, _OF_SHAPERS), default=POLYNOMIAL,
+    show_default=True,
     help=f"{_OF_CYCLOIDS}.",
 )  # fmt: skip
 terms_option = click.option(
-    "--terms", type=int,
+    "--terms", type=WHOLE,
     help="Size of the profile: terms of the polynomial, Gaussians, hidden nodes, or control "
     f"points. [default: {_DEFAULT_TERMS}]",
 )  # fmt: skip
@@ -169,7 +182,7 @@ def _limit_option(quantity: Quantity) -> Callable[[F], F]:
         parse = partial(parse_rate, order=quantity.derivative)
         help_text = f"{words} [{quantity.unit}], or as 60deg."
         return click.option(option, type=Parsed(quantity.name, parse), help=help_text)
-    return click.option(option, type=float, help=f"{words} [{quantity.unit}].")
+    return click.option(option, type=NUMBER, help=f"{words} [{quantity.unit}].")
 
 
 def method_settings_option(example: str) -> Callable[[F], F]:
@@ -179,6 +192,18 @@ def method_settings_option(example: str) -> Callable[[F], F]:
         help=f"Metaheuristic: set one of its settings, {example}; may be repeated. "
         "docs/methods.md lists them.",
     )  # fmt: skip
+
+
+def settings_of_one(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | bool | str]:
+    """Settings of the only method that runs; ValueError where one is an option of its own."""
+    given = settings_given(pairs)
+    for name in given:
+        if name in ("population", "generations"):
+            raise ValueError(
+                f"{name} is no setting but an option of quietarm front: give it there, as --{name} "
+                f"{given[name]}"
+            )
+    return given
 
 
 def settings_given(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | bool | str]:
@@ -249,13 +274,13 @@ _OUTPUT_OPTIONS = (
     click.option("--output", type=OUTPUT,
                  help="Write the plan to this JSON file; - is standard output."),
     click.option("--csv", "csv_file", type=OUTPUT, help="Write the move to this CSV file."),
-    click.option("--sample-rate", type=float, default=1000.0, show_default=True,
+    click.option("--sample-rate", type=NUMBER, default=1000.0, show_default=True,
                  help="Rows per second of the CSV file [Hz]."),
     click.option("--figure", type=PICTURE,
                  help="Draw the move over the plain cycloid (.png, .pdf or .svg)."),
 )  # fmt: skip
 _WORKERS_OPTIONS = (
-    click.option("--workers", type=int, default=1, show_default=True,
+    click.option("--workers", type=WHOLE, default=1, show_default=True,
                  help="Processes of this machine that share the work; 1 stays in this one."),
     click.option("--scheduler", metavar="ADDRESS",
                  help="Let the workers of this dask scheduler share the work, as in "

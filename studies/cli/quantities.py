@@ -11,6 +11,7 @@ _PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%]*)")
 _LENGTHS = {"": 1.0, "m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
 _TIMES = {"": 1.0, "s": 1.0, "ms": 1e3}
 _ANGLES = {"": 1.0, "rad": 1.0, "deg": 180 / math.pi}
+_MOST_WHOLE = 1e15
 # Units a metre, second or radian: dividing by 1000 is exact where multiplying by 0.001 is not.
 
 
@@ -94,6 +95,27 @@ def parse_share(text: str) -> float:
     return _with_unit(text, {"": 1.0, "%": 100.0}, "a share", "10% or 0.1")
 
 
+def parse_whole(text: str) -> int:
+    """Read a whole number: ``1000`` or ``1e3``. ValueError when it is none."""
+    try:
+        return int(text)
+    except ValueError:
+        value = float(text) if is_number(text) else math.nan
+    if not value.is_integer():
+        raise ValueError(f"{text!r} is no whole number; give one, as 2 or 1e3")
+    if abs(value) > _MOST_WHOLE:
+        raise ValueError(f"{text!r} is more than any count here; give at most {_MOST_WHOLE:.0e}")
+    return int(value)
+
+
+def parse_number(text: str) -> float:
+    """Read a number; nan and inf, too, for the command to refuse. ValueError when it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{text!r} is no number; give one, as 0.2 or 1e3") from None
+
+
 def parse_coefficients(text: str) -> list[float]:
     """Read numbers that are separated by commas. ValueError when one is not a finite number."""
     values: list[float] = []
@@ -137,7 +159,7 @@ def literal(text: str) -> float | int | bool | str:
     words = {"true": True, "false": False}
     if text.lower() in words:
         return words[text.lower()]
-    for kind in (int, float):
+    for kind in (parse_whole, float):
         try:
             return kind(text)
         except ValueError:

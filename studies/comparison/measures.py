@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
 from ocp.front.points import LEVELS
+from ocp.robustness.uncertain import on_assumed
 from studies.comparison.groups import check_fronts, grouped
 from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
 from studies.registry.methods import Method, method_of
@@ -138,7 +139,8 @@ class Comparison:
     fill : int
         About how many points a filled front has; 0 where fronts were left as they were found.
     floor : float or None
-        Least energy [J] of any joint motion at rest on arrival, where it is known.
+        Least energy [J] of any joint motion at rest on arrival, where it is known; of an uncertain
+        plant that of the assumed one.
     """
 
     task: PointToPoint
@@ -157,6 +159,12 @@ class Comparison:
     def runs(self) -> tuple[Measured, ...]:
         """The runs of all groups."""
         return tuple(run for group in self.groups for run in group.runs)
+
+    @property
+    def of_floor(self) -> str:
+        """What the floor's motions do: all that is asked of an uncertain plant is not known."""
+        certain = on_assumed(self.task) is self.task
+        return "at rest" if certain else "at rest on the assumed plant"
 
     def group(self, label: str) -> Group:
         """The group of this label; KeyError where there is none."""

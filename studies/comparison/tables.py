@@ -178,9 +178,9 @@ def units(comparison: Comparison) -> list[str]:
     ]
     if comparison.floor is not None:
         lines.append(
-            "Floor: the least energy found over all joint motions that arrive at rest, not of "
-            f"polynomials only, is {comparison.floor:.4g} J. A front may go below it where it "
-            "leaves a residual."
+            "Floor: the least energy found over all joint motions that arrive "
+            f"{comparison.of_floor}, not of polynomials only, is {comparison.floor:.4g} J. A front "
+            "may go below it where it leaves a residual."
         )
     return lines
 

@@ -225,7 +225,7 @@ def _draw_fronts(
                 markeredgecolor="white", linestyle="", label=point.label, zorder=5,
             )  # fmt: skip
     if comparison.floor is not None:
-        label = "floor: any joint motion, at rest"
+        label = f"floor: any joint motion, {comparison.of_floor}"
         ax.axhline(comparison.floor, color="0.45", linewidth=1.2, linestyle="-.", label=label)
     ax.set_ylim(*_energies_shown(comparison, paper, right))
     ax.set_ylabel("energy F2 [J]")

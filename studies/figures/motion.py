@@ -120,7 +120,7 @@ def motion_figure(
     Returns
     -------
     matplotlib.figure.Figure
-        The panels, lettered, with one legend.
+        The panels, lettered where there are several, with one legend.
 
     Raises
     ------
@@ -136,7 +136,8 @@ def motion_figure(
     axes: list[Axes] = list(figure.subplots(rows, columns, sharex=True, squeeze=False).flat)
     for i, quantity in enumerate(quantities):
         ax = draw_quantity(lines, quantity, axes[i])
-        ax.set_title(f"({'abcdefghi'[i]}) {ax.get_title(loc='left')}", **TITLE)
+        if count > 1:
+            ax.set_title(f"({'abcdefghi'[i]}) {ax.get_title(loc='left')}", **TITLE)
         ax.tick_params(labelbottom=True)
         if i + columns < count:  # another stands below it
             ax.set_xlabel("")

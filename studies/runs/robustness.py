@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from rich.console import Console
 from ocp import Plan, Robustness, evaluate_robustness
 from ocp.robustness.plants import checked_ranges
 from studies.display.progress import count
-from studies.display.saving import finish
+from studies.display.saving import finish, interruption
 from studies.runs.loading import load_plans
 from studies.runs.reports.robustness import Figured, print_robustness, robustness_files
 
@@ -53,21 +54,35 @@ def run_robustness(
     """
     ranges = dict(ranges) or dict(DEFAULT_RANGES)
     plans = load_plans(paths)
-    for label, plan in plans.items():
+    for path, plan in zip(paths, plans.values(), strict=True):
         try:
             checked_ranges(plan.task.plant, ranges)
         except ValueError as error:
-            raise ValueError(f"{label}: {error}") from None
-    figured = _evaluated(plans, ranges, samples, seed, quiet)
+            raise ValueError(f"{path}: {error}") from None
+    figured, trouble = _evaluated(plans, ranges, samples, seed, quiet), None
+    if len(figured) < len(plans):
+        trouble = interruption(f"{len(figured)} of {len(plans)} plans")
     files = [] if output is None else robustness_files(output, figured)
-    finish(files, partial(print_robustness, plans=figured), quiet=quiet)
+    finish(files, partial(print_robustness, plans=figured), trouble=trouble, quiet=quiet)
+
+
+@contextmanager
+def _keeping(found: Mapping[str, object]) -> Iterator[None]:
+    """Let Ctrl-C end the block, but raise it where nothing was found."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not found:
+            raise
 
 
 def _evaluated(
     plans: Mapping[str, Plan], ranges: Mapping[str, float], samples: int, seed: int, quiet: bool
 ) -> Figured:
+    """The figures of every plan; after Ctrl-C those of the plans until then, if there are any."""
     figured: dict[str, tuple[Plan, Robustness]] = {}
-    with count(samples * len(plans), "evaluations", Console(stderr=True), quiet=quiet) as report:
+    words = samples * len(plans), "evaluations", Console(stderr=True)
+    with _keeping(figured), count(*words, quiet=quiet) as report:
         for number, (label, plan) in enumerate(plans.items()):
 
             def told(done: int, total: int, number: int = number) -> None:

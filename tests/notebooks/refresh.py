@@ -11,7 +11,8 @@ import nbformat
 
 sys.path.insert(0, str(Path(__file__).parent / "shared"))
 
-from notebook_files import PATHS, SOLUTION, execute, slide_types, solutions
+from notebook_files import PATHS, SOLUTION, execute, solutions
+from slides import slide_types
 
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},

@@ -12,10 +12,13 @@ from notebook_files import (
     pictures,
     printed,
     read,
-    slide_types,
     solutions,
 )
 from same_numbers import differences
+from slides import WALL, slide_heights, slide_types
+
+A_FEW_LINES = 100
+"""Of pixels: a slide with less on it belongs to its neighbour."""
 
 each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
 
@@ -112,6 +115,13 @@ def test_its_slides_follow_its_headings_and_answers(path):
 
 
 @each_notebook
+def test_its_slides_are_neither_higher_than_the_wall_nor_nearly_empty(path):
+    heights = slide_heights(read(path).cells)
+    assert max(heights) <= WALL
+    assert min(heights) >= A_FEW_LINES
+
+
+@each_notebook
 def test_its_pictures_are_pictures_and_it_is_small_enough_to_be_committed(path):
     assert path.stat().st_size < 700_000
     found = pictures(read(path))
@@ -121,7 +131,7 @@ def test_its_pictures_are_pictures_and_it_is_small_enough_to_be_committed(path):
         assert len(picture) > 10_000  # something is drawn
 
 
-def test_the_picture_of_the_readme_is_the_last_of_the_first_notebook():
+def test_the_picture_of_the_documentation_is_the_last_of_the_first_notebook():
     first = read(NOTEBOOKS / "01_plan_a_move.ipynb")
     assert (NOTEBOOKS / "move.png").read_bytes() == pictures(first)[-1]
 

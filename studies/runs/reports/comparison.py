@@ -12,6 +12,7 @@ from ocp import QuietarmError
 from ocp.base.files import write_whole
 from ocp.base.printable import printable
 from ocp.floor.search import energy_floor
+from ocp.robustness.uncertain import on_assumed
 from studies.comparison.measures import Comparison
 from studies.comparison.tables import how_to_read, runs_table, tables, units
 from studies.display.saving import File, drawing, inside
@@ -26,9 +27,12 @@ REPORT, PICTURE = "report.md", "fronts.png"
 
 
 def with_floor(comparison: Comparison, console: Console) -> Comparison:
-    """The comparison with the floor of its task; the console says so if it is not found."""
+    """The comparison with the floor of its task, of an uncertain plant that of the assumed one.
+
+    The console says so if it is not found.
+    """
     try:
-        floor = energy_floor(comparison.task)
+        floor = energy_floor(on_assumed(comparison.task))
     except QuietarmError as error:
         console.print(f"no floor: {error}", highlight=False, soft_wrap=True)
         return comparison

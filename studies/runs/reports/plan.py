@@ -6,8 +6,9 @@ import math
 
 from rich.console import Console
 
-from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid
+from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Verification
 from ocp.answers.provenance import AGREEMENT
+from ocp.plan.robust import EXCESS
 from ocp.robustness.uncertain import assumed_plant
 from ocp.task.quantities import QUANTITIES
 from studies.display.tables import print_rows
@@ -35,7 +36,7 @@ def print_plan(console: Console, plan: Plan) -> None:
         *figure_rows(plan.task, motion),
         *_worst_rows(plan),
         ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
-        _verified_row(plan),
+        verified_row(plan.verification, *_remedy(plan)),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
     print_rows(console, rows)
@@ -48,25 +49,40 @@ def _worst_rows(plan: Plan) -> list[Row]:
     words = worst_in_words(plan.worst)
     if plan.excess is not None:
         side = "above" if plan.excess > 0 else "below"
-        words += f", {abs(plan.excess):.1%} {side} the limit"
+        words += f", {abs(plan.excess):.1%} {side} the limit{_not_held(plan)}"
     return [("at worst", words)]
+
+
+def _not_held(plan: Plan) -> str:
+    """That a robust plan passes its residual limit between the samples, and what would help."""
+    if plan.excess is None or plan.excess <= EXCESS:
+        return ""
+    remedy = (
+        "give a larger --residual-limit, more --terms or a smaller --robust error"
+        if plan.complete
+        else "let the plan run to its end"
+    )
+    return f"; not robust enough: more than {EXCESS:.0%} above; {remedy}"
+
+
+def _remedy(plan: Plan) -> list[str]:
+    """What brings the integrators together where a motion has no coefficients to be smaller."""
+    return ["a longer duration: the shaper's cycloids are short"] * (plan.profile.size == 0)
 
 
 def stopped_words(after: str | None) -> str:
     """That Ctrl-C came, and after what; nothing where it did not."""
-    return f" Interrupted after {after}: the best of these." if after else ""
+    return f" Interrupted after {after}; this is the best until then." if after else ""
 
 
-def _verified_row(plan: Plan) -> Row:
+def verified_row(check: Verification, remedy: str = "smaller coefficients") -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
-    check = plan.verification
     differ = (
         f"{check.steps} fixed steps differ by {check.energy_share:.0e} in energy and "
         f"{millimetres(abs(check.residual_difference))} in residual"
     )
     if check.agrees:
         return "verified", f"by CVODES: {differ}"
-    remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
     return "not verified", (
         f"the figures are by CVODES, and {differ}, where {AGREEMENT:g} of each is agreement; give "
         f"{remedy}"

@@ -18,14 +18,8 @@ FOLDED = re.compile(r"<details>\n<summary>Solution</summary>\n(.*?)</details>", 
 SOLUTION = re.compile(r"```python\n(?P<code>.*?)```\n+```text\n(?P<shown>.*?)```", re.DOTALL)
 """What a solution computes and what that prints; `refresh.py` writes the second."""
 
-ATTEMPT = "# Your attempt"
-"""How the cells begin that wait for a reader's lines."""
-
 WIDGET = "application/vnd.jupyter.widget-view+json"
 """What a slider shows where a kernel runs; a file keeps the picture that stands beside it."""
-
-A_REMARK = 250
-"""Characters of a text that stays on the slide of the answer that it follows."""
 
 STRICT = """
 import warnings
@@ -70,33 +64,6 @@ def pictures(notebook):
     outputs = [output for cell in code_cells(notebook) for output in cell.outputs]
     found = [output.get("data", {}).get("image/png") for output in outputs]
     return [base64.b64decode(picture) for picture in found if picture]
-
-
-def slide_types(cells):
-    """Place cells on slides: one for each heading, others below it for answers and what follows.
-
-    So a question stands before its answer, and few slides are higher than the wall.
-    """
-    places, answered = [], False  # whether an answer is on the slide
-    for cell in cells:
-        place = _slide_type(cell, answered)
-        if cell.cell_type == "code" and place != "skip":
-            answered = bool(cell.outputs)
-        elif place in ("slide", "subslide"):
-            answered = False
-        places.append(place)
-    return places
-
-
-def _slide_type(cell, answered):
-    if cell.cell_type == "code":
-        if cell.source.startswith(("%matplotlib", ATTEMPT)):
-            return "skip"
-        return "subslide" if cell.outputs else "-"
-    if cell.source.startswith(("# ", "## ")):
-        return "slide"
-    below = cell.source.startswith("#") or (answered and len(cell.source) > A_REMARK)
-    return "subslide" if below else "-"
 
 
 def execute(path, folder):

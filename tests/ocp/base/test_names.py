@@ -25,6 +25,13 @@ def test_the_nearest_name_is_asked_for_where_there_is_one(name, message):
     [
         ("omga", ["omega", "zeta"], "; did you mean 'omega'? (it has: omega, zeta)"),
         ("qqq", ["omega", "zeta"], " (it has: omega, zeta)"),
+        ("mass", ["omega", "alpha1"], " (it has: omega, alpha1)"),
+        ("m", ["omega", "zeta"], " (it has: omega, zeta)"),
+        (
+            "freq",
+            ["zeta", "frequency"],
+            "; did you mean 'frequency'? (it has: zeta, frequency)",
+        ),
         ("omga", [], " (it has: none)"),
     ],
 )

@@ -24,6 +24,7 @@ from ocp import (
 )
 from ocp.plan import robust
 from ocp.robustness.uncertain import on_assumed
+from ocp.robustness.worst import peaks_between
 
 RANGE = 0.1
 
@@ -110,10 +111,59 @@ def test_it_saves_and_loads_equal(plan, tmp_path):
 
 def test_ctrl_c_keeps_the_last_round(task, plan, rounds, monkeypatch):
     monkeypatch.setattr(robust, "_checked", lambda _: (_ for _ in ()).throw(KeyboardInterrupt))
-    found = robust._held_between(rounds[0], plan.provenance.settings, lambda *_: None)
+    found = robust.held_between(rounds[0], plan.provenance.settings, lambda *_: None)
     assert not found.complete
     assert "before the residual was held between the samples" in found.provenance.stopped
     assert found.coefficients == rounds[0].coefficients
+
+
+@pytest.fixture(scope="module")
+def at_rest(task):
+    return plan_move(on_assumed(task), CycloidPolynomial(2), starts=1)
+
+
+@pytest.mark.parametrize("complete", [True, False])
+def test_it_begins_with_the_assumed_plant_s_plan_and_ctrl_c_keeps_it(task, plan, at_rest, complete):
+    settings, asked = plan.provenance.settings, []
+    stopped = replace(at_rest.provenance, stopped=None if complete else "1 of 4 starts")
+
+    def interrupted(task, profile, settings):
+        asked.append((task, settings.residual_limit, settings.guess))
+        if len(asked) == 2:
+            raise KeyboardInterrupt
+        return replace(at_rest, provenance=stopped)
+
+    found = robust.robust_plan(task, at_rest.profile, settings, interrupted)
+    first = [(on_assumed(task), 0.0, None)]
+    then = [(task, settings.residual_limit, at_rest.coefficients)] * complete
+    assert asked == first + then
+    assert not found.complete
+    assert found.provenance.stopped == "the assumed plant's plan, before there was a robust one"
+    assert (found.task, found.coefficients) == (task, at_rest.coefficients)
+    assert found.worst == evaluate_coefficients(task, at_rest.coefficients).worst
+    assert found.excess > robust.EXCESS
+    assert found.provenance.settings == settings
+
+
+def test_ctrl_c_before_there_is_any_plan_is_told(task, plan):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        robust.robust_plan(task, plan.profile, plan.provenance.settings, interrupted)
+
+
+def test_peaks_are_judged_by_one_integrator(plan):
+    worst, peaks = peaks_between(plan.task, plan.profile, plan.coefficients, 4)
+    assert len(peaks) > 1
+    assert residuals(plan, peaks[:, 1]) == peaks[:, 0].tolist()
+    assert peaks[0].tolist() == [worst.residual, worst.errors["frequency"]]
+    assert peaks[:, 0].tolist() == sorted(peaks[:, 0], reverse=True)
+
+
+def test_a_sample_that_is_there_is_not_added_again(task):
+    beside = np.array([[-RANGE], [0.5 * RANGE], [RANGE * (1 - 1e-9)]])
+    assert robust._new_samples(task, beside) == [[0.5 * RANGE]]
 
 
 # -- bad input --
@@ -138,7 +188,8 @@ def test_where_the_solver_fails_it_starts_again_with_samples_between(task, plan)
             raise SolverFailedError("none of 3 starts was solved")
         return replace(plan, task=task)
 
-    found = robust.robust_plan(task, plan.profile, plan.provenance.settings, fails_at_first)
+    settings = replace(plan.provenance.settings, guess=plan.coefficients)
+    found = robust.robust_plan(task, plan.profile, settings, fails_at_first)
     assert asked[:2] == [((-RANGE,), (RANGE,)), ((-RANGE,), (RANGE,), (-RANGE / 2,), (RANGE / 2,))]
     assert found.excess <= robust.EXCESS
 
@@ -152,4 +203,4 @@ def test_where_no_motion_is_there_it_does_not_start_again(task, plan):
 
     with pytest.raises(InfeasibleTaskError, match="no motion"):
         robust.robust_plan(task, plan.profile, plan.provenance.settings, infeasible)
-    assert len(asked) == 1
+    assert [one.plant for one in asked] == [task.plant.assumed, task.plant]

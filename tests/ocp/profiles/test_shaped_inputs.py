@@ -30,6 +30,7 @@ from ocp import (
 from ocp.answers.provenance import SolveSettings
 from ocp.plan.solver import start_coefficients
 from ocp.profiles.spline import DEGREE, b_splines
+from ocp.profiles.units import SHARPEST
 from ocp.program.pieces import ProfilePieces
 
 UNITS = {"gaussians": CycloidGaussians, "network": CycloidNetwork}
@@ -267,3 +268,21 @@ def test_a_wide_gaussian_is_a_constant():
     wanted = CycloidPolynomial(1).path([0.1 + 0.2], 0.0, 1.0, 0.8)(times)
     assert found == pytest.approx(wanted, abs=1e-14)
     assert math.isfinite(found.sum())
+
+
+@pytest.mark.parametrize("share", [1.0, -1.0])
+def test_the_sharpest_unit_is_still_seen(of_units, share, tasks):
+    profile, gain = of_units(1), share * SHARPEST
+    at = 0.137 if of_units is CycloidGaussians else -0.137 * gain
+    sharp = [0.0, 0.01, at, gain]
+    found = resimulate(tasks["single link"], profile, sharp)
+    fine = rollout(tasks["single link"], profile, sharp, steps=3000).motion
+    assert found.energy == pytest.approx(fine.energy, rel=1e-3)
+    assert found.residual == pytest.approx(fine.residual, rel=1e-4)
+
+
+def test_a_sharper_unit_is_refused(of_units):
+    with pytest.raises(ValueError, match=r"coefficient 6 is 201, the .*; give at most 200: a sh"):
+        of_units(2).checked([0.0, 0.1, 0.1, 0.0, 0.0, 201.0, 1.0])
+    with pytest.raises(ValueError, match=r"coefficient 4 is -1e\+06"):
+        of_units(1).checked([0.0, 0.1, 0.1, -1e6])

@@ -209,11 +209,21 @@ def test_the_least_duration_is_named_and_is_enough(shaper):
         (("zv", (10.0,), (1.0,)), "damping ratio is 1; give one between -1 and 1"),
         (("zv", (10.0,), (math.nan,)), "damping ratio is nan"),
         (("zvd", (10.0,) * 6, (0.0,) * 6), "729 impulses"),
+        (("ei", (10.0,), (0.6,)), r"0\.6, for which the ei .* up to 0\.5037: take zv or zvd"),
+        (("ei", (10.0, 8.0), (0.1, 0.51)), r"damping ratio is 0\.51"),
     ],
 )
 def test_bad_numbers_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         ShapedCycloid(*arguments)
+
+
+@pytest.mark.parametrize(("shaper", "most"), [("zv", 0.99), ("zvd", 0.99), ("ei", 0.5037)])
+def test_impulses_are_positive_up_to_the_largest_damping(shaper, most):
+    for zeta in np.linspace(-most, most, 100):
+        amplitudes = ShapedCycloid(shaper, (10.0,), (zeta,)).impulses.amplitudes
+        assert min(amplitudes) > 0
+        assert sum(amplitudes) == pytest.approx(1)
 
 
 def test_profiles_are_equal_by_their_numbers():

@@ -8,12 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from studies.cli.quantities import (
+    literal,
     parse_angle,
     parse_coefficients,
     parse_length,
+    parse_number,
     parse_rate,
     parse_time,
     parse_weights,
+    parse_whole,
 )
 
 WHOLE = st.integers(0, 100_000)
@@ -198,3 +201,29 @@ def test_weights_are_a_pair():
     for text in ("", "1", "1:2:3", "1:", "a:b", "1/3"):
         with pytest.raises(ValueError, match="is no pair of weights; give those of residual"):
             parse_weights(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "number"), [("2", 2), ("-3", -3), ("1e3", 1000), ("2.0", 2), (" 1_000 ", 1000)]
+)
+def test_whole_numbers_as_people_write_them(text, number):
+    for read in (parse_whole, literal):
+        found = read(text)
+        assert (found, type(found)) == (number, int)
+
+
+@pytest.mark.parametrize("text", ["two", "", "2.5", "1e-3", "nan", "inf", "0x10"])
+def test_what_is_no_whole_number_is_refused(text):
+    with pytest.raises(ValueError, match=rf"'{re.escape(text)}' is no whole number; give one, as"):
+        parse_whole(text)
+
+
+def test_a_whole_number_beyond_any_count_is_refused():
+    with pytest.raises(ValueError, match=r"'1e300' is more than any count here; give at most 1e"):
+        parse_whole("1e300")
+
+
+def test_what_is_no_number_is_refused():
+    assert parse_number("-1e3") == -1000.0
+    with pytest.raises(ValueError, match=r"'a lot' is no number; give one, as 0\.2"):
+        parse_number("a lot")

@@ -3,15 +3,26 @@
 import dataclasses
 import math
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import studies.comparison.measures
+import studies.runs.reports.comparison
 from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, epsilon_front, evaluate_coefficients
+from ocp import (
+    CycloidPolynomial,
+    PointToPoint,
+    UncertainPlant,
+    epsilon_front,
+    evaluate_coefficients,
+)
 from studies.comparison.measures import FILL
 from studies.comparison.staircase import evenly_spaced, filled
+from studies.comparison.tables import units
+from studies.runs.reports.comparison import with_floor
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
 compare = partial(studies.comparison.measures.compare_fronts, fill=0)
@@ -248,3 +259,26 @@ def test_motions_between_that_break_a_limit_do_not_count(real):
 
 def test_a_front_of_one_point_has_nothing_between(front_of):
     np.testing.assert_array_equal(filled(front_of([(1, 0.5)]), FILL), [[1e-3, 0.5]])
+
+
+@pytest.mark.parametrize("uncertain", [False, True])
+def test_the_floor_is_the_assumed_plants_and_says_so(good, poor, uncertain, monkeypatch):
+    asked = []
+
+    def floor_of(task):
+        asked.append(task)
+        return SimpleNamespace(complete=True, energy=0.3)
+
+    monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", floor_of)
+    comparison, task = compare([good, poor]), good.task
+    if uncertain:
+        uncertain_task = dataclasses.replace(
+            task, plant=UncertainPlant(task.plant, {"frequency": 0.1})
+        )
+        comparison = dataclasses.replace(comparison, task=uncertain_task)
+    comparison = with_floor(comparison, Console())
+    assert asked == [task]
+    said = "at rest on the assumed plant" if uncertain else "at rest"
+    (line,) = [line for line in units(comparison) if line.startswith("Floor")]
+    assert f"over all joint motions that arrive {said}, not of" in line
+    assert comparison.of_floor == said

@@ -60,6 +60,11 @@ def test_the_papers_panels_are_four_in_its_order(plan):
     ]
 
 
+def test_a_single_panel_has_no_letter(plan):
+    (axis,) = motion_figure(plan, quantities=("torque",)).axes
+    assert axis.get_title(loc="left") == TITLES[4]
+
+
 def test_the_title_is_the_task_where_none_is_given(plan, task):
     limited = dataclasses.replace(task, torque_limit=0.2)
     words = "single-link, 0 to 30 deg in 0.8 s"

@@ -11,16 +11,18 @@ from metaheuristics import PRESETS
 from studies.cli.arguments import refuse_idle, task_of
 from studies.cli.options import (
     INPUT,
+    NUMBER,
     OUTPUT,
     PICTURE,
     STATE,
     WEIGHTS,
+    WHOLE,
     Named,
     family_option,
     method_settings_option,
     quiet_option,
     robust_option,
-    settings_given,
+    settings_of_one,
     task_options,
     terms_option,
     workers_options,
@@ -55,14 +57,14 @@ _ONLY_FOR = {
 @family_option
 @terms_option
 @click.option(
-    "--bound", type=float, help="Largest coefficient; for polynomials a metaheuristic requires it."
+    "--bound", type=NUMBER, help="Largest coefficient; for polynomials a metaheuristic requires it."
 )
 @click.option(
-    "--points", type=int, default=50, show_default=True,
+    "--points", type=WHOLE, default=50, show_default=True,
     help="Gradient: points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
 )  # fmt: skip
 @click.option(
-    "--starts", type=int, default=4, show_default=True, help="Gradient: starts of its ends."
+    "--starts", type=WHOLE, default=4, show_default=True, help="Gradient: starts of its ends."
 )
 @click.option(
     "--weights", type=WEIGHTS, multiple=True, metavar="R:E",
@@ -70,14 +72,16 @@ _ONLY_FOR = {
     "place of --points; may be repeated, as in --weights 1:1 --weights 1:3.",
 )  # fmt: skip
 @click.option(
-    "--population", type=int,
+    "--population", type=WHOLE,
     help="Metaheuristic: individuals, or particles in a swarm; docs/methods.md has the defaults.",
 )  # fmt: skip
-@click.option("--generations", type=int, help="Metaheuristic: generations.")
+@click.option("--generations", type=WHOLE, help="Metaheuristic: generations.")
 @method_settings_option("as in --setting crossover=0.7")
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed; of several, the first.")
 @click.option(
-    "--runs", type=int, default=1, show_default=True, help="Metaheuristic: number of seeds."
+    "--seed", type=WHOLE, default=0, show_default=True, help="Seed; of several, the first."
+)
+@click.option(
+    "--runs", type=WHOLE, default=1, show_default=True, help="Metaheuristic: number of seeds."
 )
 @workers_options
 @click.option(
@@ -149,5 +153,5 @@ def front(
     else:
         from studies.runs.searching import run_front as run
 
-        options["settings"] = settings_given(options.pop("setting"))
+        options["settings"] = settings_of_one(options.pop("setting"))
     run(task, method, options, FrontFiles(output, csv_file, figure), quiet)

@@ -11,8 +11,10 @@ from ocp.base.printable import printable
 from studies.cli.arguments import task_of
 from studies.cli.options import (
     INPUT,
+    NUMBER,
     OUTPUT,
     PICTURE,
+    WHOLE,
     family_option,
     quiet_option,
     task_options,
@@ -25,8 +27,10 @@ from studies.runs.files import FrontFiles
 @click.argument("file", type=INPUT)
 @task_options
 @family_option
-@click.option("--terms", type=int, help="Refuse the file if it has another number of coefficients.")
-@click.option("--bound", type=float, help="Refuse coefficients beyond this box.")
+@click.option(
+    "--terms", type=WHOLE, help="Refuse the file if it has another number of coefficients."
+)
+@click.option("--bound", type=NUMBER, help="Refuse coefficients beyond this box.")
 @click.option("--method", help="What found them; by default the name of the file.")
 @click.option("--output", type=OUTPUT, help="Write the front to this JSON file.")
 @click.option("--csv", "csv_file", type=OUTPUT, help="Write its points to this CSV file.")

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import click
 
-from studies.cli.options import INPUT, OUTPUT, PICTURE, plant_file_option, quiet_option
+from studies.cli.options import INPUT, OUTPUT, PICTURE, WHOLE, plant_file_option, quiet_option
 from studies.runs.files import FrontFiles
 
 
 @click.command()
 @click.argument("front", type=INPUT, metavar="FRONT")
 @click.option(
-    "--points", type=int,
+    "--points", type=WHOLE,
     help="Only this many points, spread evenly along the front; all of them by default, which "
     "takes about 50 ms each.",
 )  # fmt: skip

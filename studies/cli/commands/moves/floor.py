@@ -12,7 +12,7 @@ from rich.console import Console
 from ocp import energy_floor
 from ocp.base.interrupts import note_interrupts
 from studies.cli.arguments import task_of
-from studies.cli.options import OUTPUT, PICTURE, quiet_option, task_options
+from studies.cli.options import NUMBER, OUTPUT, PICTURE, WHOLE, quiet_option, task_options
 from studies.display.progress import working
 from studies.display.saving import drawing, finish, interruption
 from studies.runs.files import refuse_same_file
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 @click.command()
 @task_options
 @click.option("--smooth", is_flag=True, help="Keep the acceleration continuous: the jerk is free.")
-@click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random starts.")
+@click.option("--starts", type=WHOLE, default=4, show_default=True, help="Starts of the solver.")
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random starts.")
 @click.option(
-    "--tolerance", type=float, default=0.005, show_default=True,
+    "--tolerance", type=NUMBER, default=0.005, show_default=True,
     help="Refine the grid until the energy changes by less than this share.",
 )  # fmt: skip
 @click.option("--output", type=OUTPUT, help="Write the floor to this JSON file.")

@@ -11,13 +11,15 @@ from ocp import plan_move
 from studies.cli.arguments import plan_files, refuse_idle, split_options
 from studies.cli.options import (
     LENGTH,
+    NUMBER,
+    WHOLE,
     Named,
     method_settings_option,
     output_options,
     profile_option,
     quiet_option,
     robust_option,
-    settings_given,
+    settings_of_one,
     task_options,
     terms_option,
 )
@@ -38,14 +40,14 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @task_options
 @profile_option
 @terms_option
-@click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
+@click.option("--bound", type=NUMBER, help="Largest coefficient; no bound by default.")
 @click.option(
     "--residual-limit", type=LENGTH,
     help="Largest tip displacement after arrival; 0, the default, is at rest. With --robust the "
     "default is 5 % of what the plain cycloid leaves.",
 )  # fmt: skip
-@click.option("--starts", type=int, default=4, show_default=True, help="Starts of the solver.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random starts.")
+@click.option("--starts", type=WHOLE, default=4, show_default=True, help="Starts of the solver.")
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random starts.")
 @click.option(
     "--method", type=Named("method", [IPOPT, *SEARCHES]), default=IPOPT, show_default=True,
     help="The gradient, or the cheapest point of a metaheuristic's front within the residual "
@@ -101,7 +103,7 @@ def plan(
 
         found = plan_by_search(
             task, METHODS[method], motions, bound, residual_limit, seed, polish, quiet,
-            settings_given(setting),
+            settings_of_one(setting),
         )  # fmt: skip
 
     def show(console: Console) -> None:

@@ -6,16 +6,18 @@ from pathlib import Path
 
 import click
 
-from studies.cli.options import FOLDER, INPUT, SHARE, plant_file_option, quiet_option
+from studies.cli.options import FOLDER, INPUT, SHARE, WHOLE, plant_file_option, quiet_option
 
 
 @click.command(context_settings={"ignore_unknown_options": True})
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="PLAN ... [--PARAMETER SHARE]")
-@click.option("--frequency", type=SHARE, help="Largest error of all natural frequencies, as 20%.")
-@click.option("--damping", type=SHARE, help="Largest error of all damping ratios, as 50%.")
-@click.option("--samples", type=int, default=10_000, show_default=True,
+@click.option("--frequency", type=SHARE, multiple=True,
+              help="Largest error of all natural frequencies, as 20%.")  # fmt: skip
+@click.option("--damping", type=SHARE, multiple=True,
+              help="Largest error of all damping ratios, as 50%.")  # fmt: skip
+@click.option("--samples", type=WHOLE, default=10_000, show_default=True,
               help="Monte Carlo samples of each plan, all errors at once.")  # fmt: skip
-@click.option("--seed", type=int, default=0, show_default=True, help="Of the samples.")
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="Of the samples.")
 @click.option("--output", type=FOLDER,
               help="Write table, picture, sweeps and samples to this folder.")  # fmt: skip
 @plant_file_option(expose_value=False)
@@ -24,8 +26,8 @@ from studies.cli.options import FOLDER, INPUT, SHARE, plant_file_option, quiet_o
 def robustness(
     context: click.Context,
     words: tuple[str, ...],
-    frequency: float | None,
-    damping: float | None,
+    frequency: tuple[float, ...],
+    damping: tuple[float, ...],
     samples: int,
     seed: int,
     output: Path | None,
@@ -47,8 +49,11 @@ def robustness(
     """  # noqa: D301  # \b is click's: do not rewrap
     from studies.runs.robustness import run_robustness
 
-    ranges = {"frequency": frequency, "damping": damping}
-    named = {name: share for name, share in ranges.items() if share is not None}
+    named: dict[str, float] = {}
+    for name, shares in {"frequency": frequency, "damping": damping}.items():
+        if len(shares) > 1:
+            raise ValueError(f"--{name} is given twice; give it once")
+        named.update((name, share) for share in shares)
     paths, others = _parted(context, words)
     run_robustness(paths, {**named, **others}, samples, seed, output, quiet)
 

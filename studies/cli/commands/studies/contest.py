@@ -10,6 +10,7 @@ from rich.console import Console
 
 from studies.cli.options import (
     FOLDER,
+    WHOLE,
     method_settings_option,
     quiet_option,
     settings_by_method,
@@ -27,12 +28,12 @@ if TYPE_CHECKING:
     help="Methods, with commas between them: those of quietarm front, as they are or with the "
     "gradient's help (nsga2+polish, nsga2+seeds); multistart is the gradient alone.",
 )  # fmt: skip
-@click.option("--runs", type=int, default=31, show_default=True, help="Seeds of each method.")
+@click.option("--runs", type=WHOLE, default=31, show_default=True, help="Seeds of each method.")
 @click.option(
-    "--evaluations", type=int, default=20_000, show_default=True, help="Evaluations of each run."
+    "--evaluations", type=WHOLE, default=20_000, show_default=True, help="Evaluations of each run."
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
-@click.option("--population", type=int, help="Of every method; each method's own by default.")
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="First seed.")
+@click.option("--population", type=WHOLE, help="Of every method; each method's own by default.")
 @method_settings_option(
     "as in --setting nsga2.crossover=0.7, or its population; it takes part beside the same method "
     "with others"
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
     "is called as the file or folder.",
 )  # fmt: skip
 @click.option(
-    "--import-evaluations", type=int,
+    "--import-evaluations", type=WHOLE,
     help="Evaluations that each imported run took. Where they are not known, or not as many as "
     "--evaluations, the runs are shown and marked, and left out of the tests.",
 )  # fmt: skip

@@ -7,14 +7,14 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from studies.cli.options import FOLDER, quiet_option, workers_options
+from studies.cli.options import FOLDER, WHOLE, quiet_option, workers_options
 
 
 @click.command()
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
 @click.option(
     "--seeds",
-    type=int,
+    type=WHOLE,
     default=1,
     show_default=True,
     help="Seeds of VEPSO and NSGA-II; 5 give medians and quartiles.",

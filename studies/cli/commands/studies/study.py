@@ -15,7 +15,9 @@ from studies.cli.arguments import task_of
 from studies.cli.options import (
     FOLDER,
     INPUT,
+    NUMBER,
     OUTPUT,
+    WHOLE,
     Named,
     method_settings_option,
     quiet_option,
@@ -36,13 +38,15 @@ def _not_required(command: click.Command) -> click.Command:
 @_not_required
 @click.command()
 @task_options
-@click.option("--bound", type=float, help="Largest coefficient; the paper's for its plants.")
-@click.option("--terms", type=int, default=6, show_default=True, help="Terms of the polynomial.")
+@click.option("--bound", type=NUMBER, help="Largest coefficient; the paper's for its plants.")
+@click.option("--terms", type=WHOLE, default=6, show_default=True, help="Terms of the polynomial.")
 @click.option(
-    "--points", type=int, default=50, show_default=True, help="Points of the gradient's fronts."
+    "--points", type=WHOLE, default=50, show_default=True, help="Points of the gradient's fronts."
 )
-@click.option("--runs", type=int, default=3, show_default=True, help="Seeds of each metaheuristic.")
-@click.option("--seed", type=int, default=0, show_default=True, help="First seed.")
+@click.option(
+    "--runs", type=WHOLE, default=3, show_default=True, help="Seeds of each metaheuristic."
+)
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="First seed.")
 @click.option(
     "--method", "methods", type=Named("metaheuristic", PRESETS), multiple=True,
     default=[method.name for method in PAPERS], show_default=True,
@@ -50,10 +54,10 @@ def _not_required(command: click.Command) -> click.Command:
 )  # fmt: skip
 @workers_options
 @click.option(
-    "--population", type=int,
+    "--population", type=WHOLE,
     help="Individuals, or particles in a swarm; docs/methods.md has the defaults.",
 )  # fmt: skip
-@click.option("--generations", type=int, help="Generations.")
+@click.option("--generations", type=WHOLE, help="Generations.")
 @method_settings_option("as in --setting nsga2.crossover=0.7")
 @click.option(
     "--output", type=OUTPUT, default="study.html", show_default=True, help="Write the report here."

@@ -72,7 +72,7 @@ BAD = [  # the line, the value that is named, the remedy
     (f"evaluate {MOVE} --coefficients=inf", "coefficient 1 is 'inf'", "give finite numbers"),
     (f"evaluate {MOVE} --coefficients=0.1,,2", "coefficient 2 is ''", "separated by commas"),
     (f"evaluate {MOVE} --coefficients=a", "coefficient 1 is 'a'", "separated by commas"),
-    (f"evaluate {MOVE} --coefficients=" + ",".join("0" * 33), "terms is 33", "to 32"),
+    (f"evaluate {MOVE} --coefficients=" + ",".join("0" * 33), "got 33 coefficients", "0 to 32"),
 ]  # fmt: skip
 
 

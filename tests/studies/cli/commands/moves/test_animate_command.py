@@ -70,7 +70,7 @@ def test_a_plant_of_ones_own_is_drawn_from_its_file(call, crane_file):
         ("plan.json --speed fast --output m.gif", "'fast' is not a share"),
         ("plan.json --speed 0 --output m.gif", "speed is 0; give a positive number"),
         ("plan.json --speed 1% --output m.gif", "make 4500 frames, where 500 are the most"),
-        ("plan.json --width 1e4 --output m.gif", "not a valid integer"),
+        ("plan.json --width wide --output m.gif", "'wide' is no whole number; give one"),
         ("plan.json --width 9 --output m.gif", "width is 9; give a whole number from 200 up"),
     ],
 )

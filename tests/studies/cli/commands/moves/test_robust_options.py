@@ -1,10 +1,17 @@
 """`--robust` of `plan` and `evaluate`: what they find, show and write."""
 
+import io
+import math
+from dataclasses import replace
+
 import pytest
 from lines import MOVE, TWO_TERMS
+from rich.console import Console
 
 from models import SingleLinkManipulator
-from ocp import Front, Plan, UncertainPlant, evaluate_coefficients
+from ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
+from ocp.answers.provenance import SolveSettings
+from studies.runs.reports.plan import print_plan
 
 
 def test_a_robust_plan_says_where_it_leaves_most(call):
@@ -37,6 +44,31 @@ def test_given_coefficients_are_evaluated_within_the_errors(call):
     assert plan.task.plant == UncertainPlant(SingleLinkManipulator(), {"zeta": 0.2, "omega": 0.05})
     assert plan.worst.residual >= plan.residual * (1 - 1e-6)
     assert f"{1e3 * plan.worst.residual:.3g} mm with zeta" in out
+
+
+@pytest.fixture(scope="module")
+def cycloid():
+    plant = UncertainPlant(SingleLinkManipulator(), {"frequency": 0.1})
+    return evaluate_coefficients(PointToPoint(plant, math.pi / 6, 0.8), [])
+
+
+@pytest.mark.parametrize(
+    ("excess", "stopped", "says"),
+    [
+        (0.2, None, "20.0% above the limit; not robust enough: more than 5% above; give a larger"),
+        (0.2, "some rounds", "more than 5% above; let the plan run to its end"),
+        (0.04, None, "4.0% above the limit"),
+        (-0.1, None, "10.0% below the limit"),
+    ],
+)
+def test_a_plan_that_is_not_robust_enough_says_so(cycloid, excess, stopped, says):
+    settings = SolveSettings(residual_limit=cycloid.worst.residual / (1 + excess))
+    provenance = replace(cycloid.provenance, settings=settings, stopped=stopped)
+    text = io.StringIO()
+    print_plan(Console(file=text, width=400), replace(cycloid, provenance=provenance))
+    (row,) = [line.strip() for line in text.getvalue().splitlines() if "at worst" in line]
+    assert says in row
+    assert ("not robust" in row) == (excess > 0.05)
 
 
 @pytest.mark.parametrize("shaper", ["zv"])

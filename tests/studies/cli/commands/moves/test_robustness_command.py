@@ -7,10 +7,20 @@ import math
 import numpy as np
 import pytest
 
+from metaheuristics.objective import claims
 from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import PointToPoint, evaluate_coefficients, evaluate_robustness, plan_move, shaped_cycloid
+from ocp import (
+    PointToPoint,
+    SolverFailedError,
+    UncertainPlant,
+    evaluate_coefficients,
+    evaluate_robustness,
+    plan_move,
+    shaped_cycloid,
+)
 from studies.cli import main
 from studies.figures import draw_robustness, robustness_figure
+from studies.runs import robustness as work
 
 FILES = {"report.md", "robustness.csv", "sweeps.csv", "samples.csv", "robustness.png"}
 RANGES = {"frequency": 0.1, "damping": 0.5}
@@ -25,6 +35,9 @@ def plans():
         "ours": plan_move(task, bound=0.2),
         "zv": plan_move(task, shaped_cycloid(task, "zv")),
         "arm": evaluate_coefficients(arm, []),
+        "robust": evaluate_coefficients(
+            PointToPoint(UncertainPlant(task.plant, {"frequency": 0.1}), math.pi / 6, 0.8), []
+        ),
     }
 
 
@@ -161,18 +174,21 @@ def test_plans_of_different_plants_share_what_both_have(call):
         ("ours.json ours.json", "ours.json is given twice"),
         (
             "ours.json --omga 10%",
-            "ours: single-link has no parameter 'omga'; did you mean 'omega'?",
+            "ours.json: single-link has no parameter 'omga'; did you mean 'omega'?",
         ),
-        ("ours.json arm.json --beta3 10%", "ours: single-link has no parameter 'beta3'"),
-        ("arm.json ours.json --beta3 10%", "ours: single-link has no parameter 'beta3'"),
+        ("ours.json arm.json --beta3 10%", "ours.json: single-link has no parameter 'beta3'"),
+        ("arm.json ours.json --beta3 10%", "ours.json: single-link has no parameter 'beta3'"),
         ("ours.json --frequency 100%", "makes the frequency 0; give less than 100 %"),
         ("ours.json --frequency 10", "1000 % makes the frequency negative"),
         ("ours.json --frequency 1O%", "'1O%' is not a share; give 10% or 0.1"),
         ("ours.json --omega ten", "--omega: 'ten' is not a share; give 10% or 0.1"),
         ("ours.json --omega", "--omega has no value; give one, as --omega 10%"),
         ("ours.json --omega 10% --omega 5%", "--omega is given twice"),
+        ("ours.json --frequency 10% --frequency 5%", "--frequency is given twice; give it once"),
         ("ours.json -x", "No such option"),
         ("ours.json --samples 0", "samples is 0; give a whole number from 1 up"),
+        ("ours.json --samples 1e9", "samples is 1000000000; give at most 1000000"),
+        ("ours.json --samples ten", "'ten' is no whole number; give one, as 2 or 1e3"),
         ("none.json", "none.json cannot be read"),
         ("ours.json --output ours.json", "ours.json is a file; give a folder"),
     ],
@@ -202,6 +218,56 @@ def test_a_plan_is_a_claim(call, folder, figure, told):
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert f"arm.json {told}" in err
     assert "find the plan again" in err
+
+
+@pytest.mark.parametrize(
+    ("entry", "value", "told"),
+    [
+        ("residual", 1e-3, "robust.json states residual 0.001 m at worst, but its coefficients "),
+        ("errors", {"frequency": 0.01}, "but its coefficients leave there "),
+        ("errors", {"damping": 0.01}, "robust.json states a worst with errors of damping, which"),
+    ],
+)
+def test_the_worst_of_a_plan_is_a_claim(call, plans, folder, entry, value, told):
+    plan = plans["robust"]
+    plan.save("robust.json")
+    assert call("robust.json --samples 1 --quiet")[0] == 0
+    document = json.loads((folder / "robust.json").read_text())
+    document["worst"][entry] = value
+    (folder / "robust.json").write_text(json.dumps(document))
+    code, out, err = call("robust.json --samples 1 --quiet")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert told in err
+
+
+def test_a_plan_that_no_integrator_follows_is_named(call, folder, monkeypatch):
+    def lost(*_):
+        raise SolverFailedError("CVODES could not follow this motion")
+
+    monkeypatch.setattr(claims, "resimulate", lost)
+    code, out, err = call("ours.json --quiet")
+    assert (code, out) == (1, "")
+    assert err == "quietarm: ours.json: CVODES could not follow this motion\n"
+
+
+def test_ctrl_c_keeps_the_plans_that_are_finished(call, folder, monkeypatch):
+    known = work.evaluate_robustness
+
+    def interrupted(task, *given, **others):
+        if task.plant.name == "arm-on-flexible-link":
+            raise KeyboardInterrupt
+        return known(task, *given, **others)
+
+    monkeypatch.setattr(work, "evaluate_robustness", interrupted)
+    code, out, err = call("zv.json arm.json ours.json --samples 10 --quiet --output out")
+    assert code == 1
+    assert "interrupted after 1 of 3 plans; what was found until then is kept" in err
+    assert "wrote out/report.md" in out.replace("\\", "/")
+    assert {path.name for path in (folder / "out").iterdir()} == FILES
+    assert [row["plan"] for row in rows(folder / "out/robustness.csv")] == ["zv"]
+    code, out, err = call("arm.json zv.json --samples 10 --quiet --output none")
+    assert (code, out, err.strip()) == (1, "", "quietarm: interrupted; nothing was written")
+    assert not (folder / "none").exists()
 
 
 def test_the_picture_has_a_panel_a_parameter_and_a_curve_a_plan(plans):
