@@ -119,6 +119,8 @@ class Condensed:
 
     Attributes
     ----------
+    plant : Plant
+        As given.
     size, steps, nodes : int
         Number of coefficients, steps and nodes.
     states, rows, scales : int
@@ -140,6 +142,7 @@ class Condensed:
     def __init__(
         self, plant: Plant, profile: JointProfile, steps: int, quantities: tuple[str, ...]
     ) -> None:
+        self.plant = plant
         self.size, self.steps, self.states = profile.size, steps, 2 * plant.modes
         self.nodes = NODES * steps
         lengths = mesh(ca.DM(np.arange(steps)).T, steps)[1]
