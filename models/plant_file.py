@@ -140,6 +140,8 @@ def _in_a_line(path: str, error: Exception | SystemExit) -> str:
     place = f", line {lines[-1]}" if lines and lines[-1] else ""
     if isinstance(error, SyntaxError):
         said = f"{error.msg}; mend it"
+        if "null bytes" in said or "utf-8" in said:
+            said = "it is no text in UTF-8; save it so"
     elif isinstance(error, ImportError):
         said = f"{error}; a plant is one file: put what it needs into it, or install that"
     elif isinstance(error, ValueError):  # `Plant` refused a class

@@ -43,13 +43,23 @@ def ready() -> bool:
     return was
 
 
-def in_the_way() -> str | None:
-    """What to say of a user's file that takes the place of a package; None where there is none."""
-    for package in (*_OURS, *_NEEDED):
+def in_the_way(error: BaseException) -> str | None:
+    """What to say of a user's file that takes the place of a package; None where there is none.
+
+    Parameters
+    ----------
+    error : BaseException
+        What went wrong. A file that has the name of a module of Python's is told of only where it
+        was loaded, or failed: many folders have a harmless one.
+    """
+    # Python's own first: they are needed to look for the others
+    for package in (*sorted(sys.stdlib_module_names), *_OURS, *_NEEDED):
         spec = PathFinder.find_spec(package)
         if spec is None or spec.origin is None or _home(package) is None:
             continue
-        if _home(package) not in Path(spec.origin).resolve().parents:
+        if _home(package) in Path(spec.origin).resolve().parents:
+            continue
+        if package not in sys.stdlib_module_names or _ran(package, spec.origin, error):
             return (
                 f"{spec.origin} takes the place of the package {package!r}; rename that file, or "
                 "take its folder out of PYTHONPATH"
@@ -57,10 +67,21 @@ def in_the_way() -> str | None:
     return None
 
 
+def _ran(module: str, origin: str, error: BaseException) -> bool:
+    """Whether a module was loaded from a file, or an error came from there."""
+    frames, trace = [getattr(error, "filename", None)], error.__traceback__
+    while trace is not None:
+        frames.append(trace.tb_frame.f_code.co_filename)
+        trace = trace.tb_next
+    return origin in (*frames, getattr(sys.modules.get(module), "__file__", None))
+
+
 def _home(package: str) -> Path | None:
     """The folder that a package is installed in; None where it is not."""
     if package in _OURS:
         return Path(__file__).resolve().parents[1]
+    if package in sys.stdlib_module_names:
+        return Path(sys.base_prefix).resolve()
     from importlib.metadata import PackageNotFoundError, distribution  # only after a failure
 
     try:
@@ -78,7 +99,7 @@ def _end(number: int, frame: FrameType | None) -> None:
 def _name_what_is_in_the_way(
     kind: type[BaseException], error: BaseException, trace: TracebackType | None
 ) -> None:
-    told = in_the_way() if issubclass(kind, ImportError | AttributeError) else None
+    told = in_the_way(error) if issubclass(kind, Exception) else None
     if told is None:
         sys.__excepthook__(kind, error, trace)
     else:

@@ -21,6 +21,7 @@ from models import Expression, Plant
 from ocp import JointProfile, PointToPoint, symbolic_rollout
 from ocp.base.checks import whole
 from ocp.base.interrupts import keep_interrupts
+from ocp.base.threads import one_at_a_time
 from ocp.simulation.residual import residual_rows
 from ocp.simulation.rollout import SymbolicRollout, default_steps
 from ocp.task.quantities import QUANTITIES, ask_for_jerk
@@ -80,6 +81,7 @@ class PopulationObjective:
         When `threads` is below 1.
     """
 
+    @one_at_a_time
     @keep_interrupts()  # casadi loses a Ctrl-C
     def __init__(
         self,

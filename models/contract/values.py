@@ -143,7 +143,7 @@ class Equations:
         matrices[:, :modes, modes:] = np.eye(modes)
         matrices[:, modes:] = resting.reshape(-1, 2 * modes, modes).transpose(0, 2, 1)
         values = np.linalg.eigvals(matrices)
-        self._check_stiff(np.abs(values))
+        self._check_stiff(np.abs(values), np.abs(np.linalg.det(matrices[:, modes:, :modes])))
         growth = values.real.max(axis=1)
         grows = np.flatnonzero(growth > _GROWTH * np.abs(values).max(axis=1))
         if grows.size:
@@ -155,11 +155,17 @@ class Equations:
                 "returns W'' = -2 zeta omega W' - omega^2 W - ..."
             )
 
-    def _check_stiff(self, sizes: Array) -> None:
+    def _check_stiff(self, sizes: Array, stiffness: Array) -> None:
         """Every mode comes back: no eigenvalue of the resting structure is 0."""
         loose = np.flatnonzero(sizes.min(axis=1) <= _TINY * sizes.max(axis=1))
         if loose.size:
             angle = self._points[_KINDS - 1 :: _KINDS, 0][self._defined][loose[0]]
+            if stiffness[loose[0]] > 0:
+                raise ValueError(
+                    f"plant {self._plant.name!r} has a mode that creeps: with the joint at rest at "
+                    f"{angle:.4g} rad damping stops it at {sizes[loose[0]].max():.3g} 1/s, and its "
+                    "stiffness hardly brings it back; give less damping or more stiffness"
+                )
             raise ValueError(
                 f"plant {self._plant.name!r} has a mode without stiffness: with the joint at rest "
                 f"at {angle:.4g} rad it has the frequency 0 and does not come back; give the "

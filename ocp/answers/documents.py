@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import reprlib
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -70,11 +71,14 @@ def read_document(
         When the file cannot be read, is not of this kind, not whole, or newer or too old.
     """
     try:
-        document = msgspec.json.decode(read_bytes(path))
+        document = msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
     except FileFormatError:
         raise
     except (ValueError, RecursionError):
-        raise FileFormatError(f"{path} is not a {name}: it is not whole, valid JSON") from None
+        raise FileFormatError(
+            f"{path} is not a {name}: it is not whole, valid JSON in UTF-8; "
+            f"write the {name} again, or save it so"
+        ) from None
     content = content_of(path, document, name, version, upgrades)
     with reading(path, name):
         return typed(content, kind)

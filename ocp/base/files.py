@@ -78,8 +78,7 @@ def check_writable(path: str | Path) -> Path:
     except FileNotFoundError:
         mode = None
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise ValueError(f"{target} cannot be written: {reason}") from None
+        raise _unwritable(target, error) from None
     if mode is not None and stat.S_ISDIR(mode):
         raise ValueError(f"{target} is a folder; give the name of a file in it")
     if mode is not None and not stat.S_ISREG(mode):
@@ -91,13 +90,19 @@ def check_writable(path: str | Path) -> Path:
     try:  # even with permission it may fail, as in /proc
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise ValueError(f"{target} cannot be written: {reason}; choose another place") from None
+        raise _unwritable(target, error) from None
     return target
+
+
+def _unwritable(target: Path, error: OSError) -> ValueError:
+    reason = (error.strerror or str(error)).lower()
+    return ValueError(f"{target} cannot be written: {reason}; choose another place")
 
 
 def write_whole(path: str | Path, content: str | bytes) -> None:
     """Write a temporary file beside it, then rename: a file is never half-written.
+
+    A file that was there keeps its permissions.
 
     Parameters
     ----------
@@ -116,8 +121,7 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
     try:
         _replace(target, data)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise ValueError(f"{target} cannot be written: {reason}") from error
+        raise _unwritable(target, error) from error
 
 
 def _replace(target: Path, data: bytes) -> None:
@@ -127,14 +131,17 @@ def _replace(target: Path, data: bytes) -> None:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        os.chmod(temporary, 0o666 & ~_umask())
+        os.chmod(temporary, _permissions(target))
         os.replace(temporary, target)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
 
 
-def _umask() -> int:
+def _permissions(target: Path) -> int:
+    """Those of the file that is replaced, or of a new one."""
+    if target.exists():
+        return stat.S_IMODE(target.stat().st_mode)
     mask = os.umask(0)
     os.umask(mask)
-    return mask
+    return 0o666 & ~mask

@@ -11,6 +11,7 @@ import numpy as np
 from ocp.answers.provenance import Provenance, Verification
 from ocp.base.errors import SolverFailedError
 from ocp.base.interrupts import note_interrupts
+from ocp.base.threads import one_at_a_time
 from ocp.floor.answer import Floor, FloorSettings, Level
 from ocp.floor.grid import finer, first_grid
 from ocp.floor.program import FloorProgram, FreeSolution
@@ -41,6 +42,7 @@ _ROUNDS, _KEPT = 4, 1e-6
 """Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
 
 
+@one_at_a_time
 def energy_floor(
     task: PointToPoint,
     *,

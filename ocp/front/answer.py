@@ -20,6 +20,7 @@ from ocp.base.checks import not_negative, of_kind
 from ocp.base.files import write_whole
 from ocp.base.ranges import Count, NotNegative, Positive
 from ocp.base.readonly import ReadOnlyDict
+from ocp.base.threads import one_at_a_time
 from ocp.front.evaluation import evaluated, table_of
 from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
 from ocp.profiles.joint_profile import JointProfile
@@ -165,6 +166,7 @@ class Front(Saved):
         write_whole(path, "\n".join(lines) + "\n")
 
     @classmethod
+    @one_at_a_time
     def from_coefficients(
         cls,
         task: PointToPoint,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
+from ocp.base.interrupts import note_interrupts
 from ocp.front.answer import Front, reference_corner
 from ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from ocp.front.sweep import Sweep
@@ -47,6 +48,8 @@ def front_of(
     Front
         The front.
     """
+    with note_interrupts():  # the points are found; the rest takes a moment
+        reference = reference_corner(sweep.task)
     failures = tuple(point for point in found if isinstance(point, FailedPoint))
     settings = sweep.settings
     return Front(
@@ -57,7 +60,7 @@ def front_of(
         settings={"bound": settings.bound, "points": points, "starts": settings.starts,
                   "steps": sweep.steps},
         seed=settings.seed,
-        reference=reference_corner(sweep.task),
+        reference=reference,
         iterations=sweep.iterations + iterations,
         failed=len(failures),
         failures=failures,

@@ -10,6 +10,7 @@ import numpy as np
 
 from ocp.answers.provenance import SolveSettings, number_of_points
 from ocp.base.checks import positive
+from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
 from ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
@@ -37,6 +38,7 @@ _Points = tuple[list[FrontPoint | FailedPoint], bool]
 """The points, and whether all were done."""
 
 
+@one_at_a_time
 def epsilon_front(
     task: PointToPoint,
     profile: JointProfile | None = None,

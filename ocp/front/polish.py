@@ -11,6 +11,7 @@ import numpy as np
 
 from ocp.answers.provenance import SolveSettings
 from ocp.base.checks import finite
+from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
 from ocp.front.checking import RESIDUAL_LIMIT, checked
@@ -65,6 +66,7 @@ class Polish:
         return self.front.complete
 
 
+@one_at_a_time
 def polish_front(front: Front, *, steps: int | None = None, report: Report = no_report) -> Polish:
     """Start the gradient from every point of a front, with the point's residual as the limit.
 

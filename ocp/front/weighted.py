@@ -8,6 +8,7 @@ import numpy as np
 
 from ocp.answers.provenance import SolveSettings, number_of_points
 from ocp.base.checks import finite
+from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
 from ocp.front.checking import RESIDUAL_LIMIT, all_checked
@@ -25,6 +26,7 @@ _FLAT = 1e-5
 _DIAGONAL = 2**0.5
 
 
+@one_at_a_time
 def weighted_front(
     task: PointToPoint,
     profile: JointProfile | None = None,

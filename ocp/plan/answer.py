@@ -21,6 +21,7 @@ from ocp.answers.provenance import Provenance, Setting, SolveSettings, Verificat
 from ocp.base.checks import positive
 from ocp.base.files import write_whole
 from ocp.base.status import SolveStatus
+from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
 from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
@@ -134,6 +135,7 @@ class Plan(MotionAnswer):
         write_whole(path, text.getvalue())
 
 
+@one_at_a_time
 def evaluate_coefficients(
     task: PointToPoint,
     coefficients: ArrayLike,

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from ocp.base.threads import one_at_a_time
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.profiles.shaped_cycloid import ShapedCycloid
 from ocp.robustness.uncertain import on_assumed
@@ -16,6 +17,7 @@ _SAMPLES = 200
 """Joint angles along the plain cycloid, at even times, over which `average` is taken."""
 
 
+@one_at_a_time
 def shaped_cycloid(
     task: PointToPoint, shaper: str, at: Literal["target", "average"] = "target"
 ) -> ShapedCycloid:

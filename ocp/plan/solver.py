@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ocp.answers.provenance import Provenance, SolveSettings, Verification
 from ocp.base.errors import SolverFailedError
 from ocp.base.interrupts import note_interrupts
+from ocp.base.threads import one_at_a_time
 from ocp.plan.answer import Plan
 from ocp.plan.feasibility import explain, rescued
 from ocp.plan.only_motion import only_motion
@@ -36,6 +37,7 @@ _HIDDEN = 5e-3
 """A sampled minimum can lie above the resolved one beside it by this share of the energy."""
 
 
+@one_at_a_time
 def plan_move(
     task: PointToPoint,
     profile: JointProfile | None = None,

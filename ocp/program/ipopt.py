@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
-from contextlib import redirect_stderr
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -13,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.base.interrupts import keep_interrupts
+from ocp.base.threads import silent_errors
 
 Options = Mapping[str, str | int | float]
 OPTIONS: dict[str, str | int | float] = {
@@ -194,7 +193,7 @@ def run_ipopt(
     known = {}
     if start.multipliers.size:
         known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
-    with keep_interrupts(), redirect_stderr(io.StringIO()):  # casadi warns of every failure
+    with keep_interrupts(), silent_errors():  # casadi warns of every failure
         result = solver(
             x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper, p=parameters,
             **known,

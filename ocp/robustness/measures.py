@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ocp.base.checks import not_negative, whole
 from ocp.base.readonly import ReadOnlyDict
+from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
@@ -140,6 +141,7 @@ def tolerated_residual(task: PointToPoint) -> float:
     return TOLERATED * resimulate(on_assumed(task), CycloidPolynomial(0), []).residual
 
 
+@one_at_a_time
 def evaluate_robustness(
     task: PointToPoint,
     profile: JointProfile,

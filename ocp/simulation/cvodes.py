@@ -5,13 +5,11 @@ Nothing here knows how the joint moves: `resimulation` drives it along a profile
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, redirect_stderr
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
-from threading import RLock
 
 import casadi as ca
 import numpy as np
@@ -20,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from models import Expression, JointMotion, Plant
 from ocp.base.errors import SolverFailedError
 from ocp.base.interrupts import keep_interrupts
+from ocp.base.threads import silent_errors
 from ocp.simulation.residual import fastest_mode
 from ocp.task.point_to_point import PointToPoint
 
@@ -27,12 +26,13 @@ CVODES = {
     "linear_multistep_method": "adams",  # order up to 12: a fifth of the steps of BDF's 5
     "reltol": 1e-11,
     "abstol": 1e-13,
-    "max_num_steps": 200_000,
 }
-"""Options of every run."""
+"""Options of every run, but for its steps: see `options_for`."""
+_MOST_STEPS, _LEAST_A_SAMPLE = 3_000_000, 1_000
+"""Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of 1000,
+five hundred times those of any plan, take 700 from one of 3500 samples to the next."""
 _RADIANS_A_SAMPLE = 0.003
 """Phase of the fastest mode between samples of the residual: misses 1.2e-6 of a peak at most."""
-_ONE_AT_A_TIME = RLock()  # a cached integrator has one memory, and stderr is everybody's
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def _modes(
 
 @contextmanager
 def cvodes_for(motion: str) -> Iterator[None]:
-    """Let CVODES be called in this block, by one thread; name the motion that it cannot follow.
+    """Let CVODES be called in this block; name the motion that it cannot follow.
 
     Parameters
     ----------
@@ -158,10 +158,30 @@ def cvodes_for(motion: str) -> Iterator[None]:
         When CVODES fails in the block.
     """
     try:
-        with _ONE_AT_A_TIME, redirect_stderr(io.StringIO()):  # the error below is enough
+        with silent_errors():  # the error below is enough
             yield
     except RuntimeError as error:
         raise SolverFailedError(f"CVODES could not follow this motion{motion}") from error
+
+
+def options_for(times: ArrayLike) -> dict[str, str | float | int]:
+    """Options of a run that ends within some seconds, also where it cannot follow the motion.
+
+    CVODES counts its steps from one sample to the next.
+
+    Parameters
+    ----------
+    times : array_like, shape (samples,)
+        Increasing times of the samples, beyond 0.
+
+    Returns
+    -------
+    dict
+        Options for ``casadi.integrator``.
+    """
+    gaps = np.diff(np.asarray(times, dtype=float), prepend=0.0)
+    share = float(gaps.max() / gaps.sum())
+    return {**CVODES, "max_num_steps": max(_LEAST_A_SAMPLE, round(_MOST_STEPS * share))}
 
 
 def after_arrival(plant: Plant, target: float, times: NDArray[np.float64]) -> ca.Function:
@@ -183,7 +203,8 @@ def after_arrival(plant: Plant, target: float, times: NDArray[np.float64]) -> ca
     """
     state = ca.SX.sym("x", 2 * plant.modes)
     rates = rates_of(plant, JointMotion(target, 0.0, 0.0), state)
-    return ca.integrator("rest", "cvodes", {"x": state, "ode": rates}, 0.0, times.tolist(), CVODES)
+    problem, options = {"x": state, "ode": rates}, options_for(times)
+    return ca.integrator("rest", "cvodes", problem, 0.0, times.tolist(), options)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,16 +6,19 @@ A profile is one piece; a free motion has one for every interval of its grid.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models import Expression, JointMotion
+from models import Expression, JointMotion, Plant
 from ocp.profiles.free_motion import FreeMotion, joint_after
 from ocp.profiles.joint_profile import JointProfile
 from ocp.task.point_to_point import PointToPoint
+
+_STRANGE = 100.0
+"""So many times its default a parameter is suspected."""
 
 
 class Law(Protocol):
@@ -74,12 +77,11 @@ class PiecewiseMotion:
     ) -> PiecewiseMotion:
         """A task's move along a profile; ValueError where coefficients or duration do not fit."""
         checked = profile.checked(coefficients, task.duration)
-        largest = max(map(abs, checked), default=0.0)
         return cls(
             _AlongProfile(profile),
             np.array([[*checked, *task.move]]).T,
             True,
-            f"; are the coefficients far out of scale? (largest is {largest:g})",
+            _suspect(task.plant, checked),
         )
 
     @classmethod
@@ -92,3 +94,18 @@ class PiecewiseMotion:
             free.smooth,
             f", whose largest acceleration is {largest:g} rad/s^2; set an acceleration limit",
         )
+
+
+def _suspect(plant: Plant, coefficients: Sequence[float]) -> str:
+    """What may make a motion too fast for CVODES: a parameter, or the coefficients."""
+    strange = {
+        entry.name: (value, entry.default)
+        for entry in fields(plant.parts[0])
+        if (value := plant.parameters[entry.name]) and isinstance(entry.default, float)
+        if abs(value) > _STRANGE * abs(entry.default)
+    }
+    if strange:
+        name, (value, usual) = max(strange.items(), key=lambda entry: abs(entry[1][0]))
+        return f"; is {name} far out of scale? (it is {value:g}, by default {usual:g})"
+    largest = max(map(abs, coefficients), default=0.0)
+    return f"; are the coefficients far out of scale? (largest is {largest:g})"

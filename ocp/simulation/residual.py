@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from models import JointMotion, Plant
 from ocp.base.interrupts import keep_interrupts
+from ocp.base.threads import one_at_a_time
 from ocp.simulation.collocation import NODES, modal_system, step
 from ocp.task.point_to_point import PointToPoint
 
@@ -77,6 +78,7 @@ def residual_samples(task: PointToPoint) -> int:
     return max(2, math.ceil(samples) + 1)  # both ends of the window at least
 
 
+@one_at_a_time
 def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[np.float64]:
     """Matrix that turns the state at arrival into the tip's motion afterwards.
 

@@ -11,6 +11,7 @@ the fraction of the piece.
 from __future__ import annotations
 
 import math
+import reprlib
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -20,13 +21,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from models import Plant
 from ocp.base.interrupts import keep_interrupts
+from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointProfile
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from ocp.simulation.cvodes import (
-    CVODES,
     Trajectory,
     after_arrival,
     cvodes_for,
+    options_for,
     outputs_at_rest,
     outputs_of,
     rates_of,
@@ -47,6 +49,7 @@ _LEAST_STEPS_OF_A_PIECE = 2
 """So that every piece has the seven samples that `extremes` needs."""
 
 
+@one_at_a_time
 @keep_interrupts()  # casadi loses a Ctrl-C
 def sample_trajectory(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, times: ArrayLike
@@ -80,7 +83,10 @@ def sample_trajectory(
     grid = np.atleast_1d(np.asarray(times, dtype=float))
     ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
     if not (ordered and np.all(np.isfinite(grid))):
-        raise ValueError("sample times must be finite and increase from 0 or later")
+        raise ValueError(
+            f"sample times are {reprlib.repr(grid.tolist())}; give finite ones that increase from "
+            "0 or later"
+        )
     joint = PiecewiseMotion.of_profile(task, profile, coefficients)
     moving, later = grid[grid <= task.duration], grid[grid > task.duration] - task.duration
     fractions, at = np.unique(np.append(moving / task.duration, [0.0, 1.0]), return_inverse=True)
@@ -163,6 +169,7 @@ class Resimulation:
         )
 
 
+@one_at_a_time
 @keep_interrupts()
 def resimulated(task: PointToPoint, joint: PiecewiseMotion) -> Resimulation:
     """Simulate a joint motion with CVODES.
@@ -258,7 +265,8 @@ def _over_a_piece(
     )
     rates = given[-1] * rates_of(plant, law(ca.vertsplit(given), fraction, jerk=False), state)
     problem = {"t": fraction, "x": state, "p": given, "ode": rates}
-    integrate = ca.integrator("piece", "cvodes", problem, 0.0, fractions[1:].tolist(), CVODES)
+    times = fractions[1:]
+    integrate = ca.integrator("piece", "cvodes", problem, 0.0, times.tolist(), options_for(times))
     before, given = ca.MX.sym("x", state.numel()), ca.MX.sym("p", numbers)
     states = ca.horzcat(before, integrate(x0=before, p=given)["xf"])
     return ca.Function("over", [before, given], [states[:, -1], states])

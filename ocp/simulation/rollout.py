@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from models import Expression, JointMotion, Plant
 from ocp.base.checks import whole
 from ocp.base.interrupts import keep_interrupts
+from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointProfile
 from ocp.simulation.collocation import (
     GAUSS_NODES,
@@ -75,6 +76,7 @@ class SymbolicRollout:
         return resolved_energy(power, self.h, cubic, quartic)
 
 
+@one_at_a_time
 def symbolic_rollout(
     plant: Plant,
     profile: JointProfile,
@@ -271,6 +273,7 @@ class Rollout:
     steps: int
 
 
+@one_at_a_time
 @keep_interrupts()  # casadi loses a Ctrl-C
 def rollout(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, steps: int | None = None

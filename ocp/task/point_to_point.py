@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from models import Plant
 from ocp.base.checks import finite, positive
 from ocp.base.interrupts import keep_interrupts
+from ocp.base.threads import one_at_a_time
 from ocp.task.quantities import QUANTITIES
 
 LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}
@@ -56,6 +57,7 @@ class PointToPoint:
     residual_window: float = 1.0
     jerk_limit: float | None = None
 
+    @one_at_a_time
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
             raise ValueError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -103,6 +104,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         was interrupted; 2 for bad input, or a file that cannot be read or written.
     """
     loaded_by_itself = ready()
+    if loaded_by_itself:  # pictures go to files: no window, whatever the user's notebooks use
+        os.environ["MPLBACKEND"] = "agg"
     try:
         with patient_streams() as out, as_ctrl_c():
             status = _run(arguments)
@@ -130,15 +133,17 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
         return _complain("interrupted; nothing was written", NOT_SOLVED)
-    except (ImportError, AttributeError):  # of what is loaded only where it is needed
-        told = in_the_way()
+    except (ImportError, AttributeError) as error:  # of what is loaded only where it is needed
+        told = in_the_way(error)
         if told is None:
             raise
         return _complain(told, BAD_INPUT)
     except MemoryError:
         return _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
     except OSError as error:
-        return _complain(f"{error.filename or ''} {error.strerror or error}".strip(), BAD_INPUT)
+        reason = (error.strerror or str(error)).lower()
+        place = f"{error.filename}: " if error.filename else ""
+        return _complain(f"{place}{reason}; choose another place", BAD_INPUT)
 
 
 def _complain(message: str, status: int) -> int:

@@ -144,7 +144,8 @@ def _save(path: Path, write: Callable[[Path], object]) -> None:
 def _named(path: Path, error: Exception) -> Exception:
     """The same error, with the name of the file where the system's own leaves it out."""
     if isinstance(error, OSError):
-        return ValueError(f"{path} cannot be written: {(error.strerror or str(error)).lower()}")
+        reason = (error.strerror or str(error)).lower()
+        return ValueError(f"{path} cannot be written: {reason}; choose another place")
     return error
 
 

@@ -18,6 +18,7 @@ from ocp import FileFormatError
 from ocp.answers.documents import read_bytes
 from ocp.base.files import MOST_BYTES
 from ocp.base.printable import printable
+from studies.display.words import counted
 
 Array = NDArray[np.float64]
 
@@ -110,7 +111,10 @@ def _of_text(content: bytes) -> Found:
     table = np.empty((len(rows), width))
     for row, (i, cells) in zip(table, rows, strict=True):
         if len(cells) != width:
-            raise FileFormatError(f"line {i} has {len(cells)} columns; the first has {width}")
+            raise FileFormatError(
+                f"line {i} has {counted(len(cells), 'column')}, the first {width}; give as many "
+                "in every line"
+            )
         for k, cell in enumerate(cells):
             try:
                 row[k] = _number(cell, between)
@@ -169,7 +173,9 @@ def _of_npy(content: bytes) -> Found:
     try:
         values = np.load(io.BytesIO(content), allow_pickle=False)
     except _DAMAGE:
-        raise FileFormatError("it is no whole .npy file of numbers") from None
+        raise FileFormatError(
+            "it is no whole .npy file of numbers; save the array by numpy.save"
+        ) from None
     if values.dtype.names:
         table = np.column_stack([_numbers(values[name], name) for name in values.dtype.names])
         return _by_columns(values.dtype.names, table)
@@ -184,7 +190,9 @@ def _of_npz(content: bytes) -> Found:
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
             values = {name: arrays[name] for name in arrays.files}
     except _DAMAGE:
-        raise FileFormatError("it is no whole .npz file of numbers, or a huge one") from None
+        raise FileFormatError(
+            "it is no whole .npz file of numbers, or a huge one; save the arrays by numpy.savez"
+        ) from None
     return _by_variables(values)
 
 
@@ -198,7 +206,7 @@ def _of_mat(content: bytes) -> Found:
     except NotImplementedError:
         raise FileFormatError("it is a .mat file of version 7.3; save it with -v7") from None
     except (*_DAMAGE, MatReadError):
-        raise FileFormatError("it is no whole .mat file") from None
+        raise FileFormatError("it is no whole .mat file; save it again, with -v7") from None
     return _by_variables({k: v for k, v in values.items() if not k.startswith("__")})
 
 
@@ -243,5 +251,7 @@ def _matrix(values: Any, name: str) -> Array:
 def _numbers(values: Any, name: str) -> Array:
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
-        raise FileFormatError(f"{printable(name[:30])} is no array of real numbers")
+        raise FileFormatError(
+            f"{printable(name[:30])} is no array of real numbers; save it as numbers"
+        )
     return array.astype(float)

@@ -225,6 +225,12 @@ def test_a_parameter_that_takes_the_stiffness_away_is_refused():
         SingleLinkManipulator(omega=0.0).validate()
 
 
+def test_a_parameter_that_hides_the_stiffness_is_refused_for_its_damping():
+    # 2 zeta omega = 2.086e10 1/s beside omega^2 = 108.8 1/s^2
+    with pytest.raises(ValueError, match=r"'single-link' has a mode that creeps.*2\.09e\+10 1/s"):
+        SingleLinkManipulator(zeta=1e9).validate()
+
+
 def test_a_tip_that_no_mode_moves_is_refused():
     with pytest.raises(ValueError, match=r"'single-link': tip displacement 1 is 0 whatever W is"):
         SingleLinkManipulator(phi=0.0).validate()

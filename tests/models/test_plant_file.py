@@ -118,8 +118,9 @@ def test_a_file_that_gives_no_plant_is_refused_with_the_line(tmp_path, content, 
 
 
 def test_bytes_that_are_no_text_are_refused(tmp_path):
-    (tmp_path / "crane.py").write_bytes(b"\xff\xfe\x00")
-    _refused(tmp_path / "crane.py")
+    for content in (b"\xff\xfe\x00", "x = 1\n".encode("utf-16"), b"# \xe4\nx = '\xe4'\n"):
+        (tmp_path / "crane.py").write_bytes(content)
+        assert _refused(tmp_path / "crane.py").endswith("it is no text in UTF-8; save it so")
 
 
 def test_a_file_that_is_none_is_refused(tmp_path):

@@ -4,8 +4,9 @@ import base64
 import re
 from itertools import pairwise
 
-WALL = 740
-"""Height of a slide [pixels] of the 800 of the README's command; the rest is air."""
+WALL = 760
+"""Height of a full slide [pixels] of the 800 of the README's command; a higher one scrolls."""
+BEGINS = ("slide", "subslide")
 HIDDEN = ("%matplotlib", "# Your attempt")
 """How the code cells begin that are left out."""
 
@@ -14,7 +15,7 @@ _LINE, _PARAGRAPH, _DISPLAYED, _CELL = 25, 19, 74, 19
 _CHARACTERS = 105
 """How many characters of text a line has."""
 _PRINTED_LINE, _SHOWN = 22, 40
-_FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
+_FENCED = re.compile(r"```.*?```", re.DOTALL)
 _PICTURES = {"image/png": "", "text/html": "data:image/gif;base64,"}
 """Outputs with a picture, and what its bytes follow."""
 
@@ -28,23 +29,27 @@ def slide_types(cells):
     for cell in cells:
         tall = height(cell)
         place = _place(cell, fits=filled + tall <= WALL)
-        filled = tall + (filled if place in ("-", "fragment") else 0) * (place != "skip")
+        filled = tall + (0 if place in BEGINS else filled)
         places.append(place)
     return places
 
 
 def height(cell):
-    """About how high a cell is on a slide without code [pixels], as measured in Chromium."""
+    """About how high a cell is on a slide without code [pixels], as measured in Chromium.
+
+    Solutions count unfolded, since a slide cannot grow.
+    """
     if cell.cell_type == "markdown":
-        folded = _FOLDED.sub("Solution", cell.source)
-        return _CELL + sum(_block_height(block) for block in folded.split("\n\n"))
+        fenced = _FENCED.findall(cell.source)
+        blocks = _FENCED.sub("", cell.source).split("\n\n")
+        return _CELL + sum(map(_block_height, blocks)) + sum(map(_fenced_height, fenced))
     return 0 if cell.source.startswith(HIDDEN) else sum(map(_output_height, cell.outputs))
 
 
 def slide_heights(cells):
     """Heights of all slides of a notebook, in order."""
     types = slide_types(cells)
-    begins = [n for n, place in enumerate(types) if place in ("slide", "subslide")]
+    begins = [n for n, place in enumerate(types) if place in BEGINS]
     return [
         sum(height(cell) for cell in cells[begin:end])
         for begin, end in pairwise([*begins, len(cells)])
@@ -70,9 +75,15 @@ def _block_height(block):
             return high
     if block.lstrip().startswith("$$"):
         return _DISPLAYED
+    if not block.strip() or block.startswith("</details>"):
+        return 0
     words = re.sub(r"\\[a-zA-Z]+|[*$`{}]", "", block)
     items = re.split(r"\n(?=- |\d\. )", words)
     return _LINE * sum(-(-len(item) // _CHARACTERS) for item in items) + _PARAGRAPH
+
+
+def _fenced_height(block):
+    return _PRINTED_LINE * (len(block.splitlines()) - 1)
 
 
 def _output_height(output):

@@ -90,6 +90,12 @@ def test_what_is_not_json_is_not_a_plan(refused, content):
     assert "is not a plan" in refused(content)
 
 
+def test_the_mark_that_some_editors_put_first_does_no_harm(whole, tmp_path):
+    (tmp_path / "plan.json").write_bytes(b"\xef\xbb\xbf" + whole.encode())
+    (tmp_path / "without.json").write_text(whole)
+    assert Plan.load(tmp_path / "plan.json") == Plan.load(tmp_path / "without.json")
+
+
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity"])
 @pytest.mark.parametrize("keys", [("motion", "energy"), ("task", "duration"), ("coefficients", 0)])
 def test_what_json_does_not_count_as_a_number_is_refused(whole, refused, keys, number):

@@ -1,11 +1,13 @@
 """Polishing: no point gets worse, each keeps its residual, and they land on the front."""
 
 import math
+import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import ocp.front.assembly
 from models import ArmOnFlexibleLink
 from ocp import (
     CycloidPolynomial,
@@ -118,3 +120,17 @@ def test_ctrl_c_keeps_what_was_improved(rough):
 def test_an_empty_front_is_refused(rough):
     with pytest.raises(ValueError, match="front has no point"):
         polish_front(replace(rough, points=()))
+
+
+def test_ctrl_c_after_the_last_point_loses_none(rough, monkeypatch):
+    corner = ocp.front.assembly.reference_corner
+
+    def interrupted(task):
+        signal.raise_signal(signal.SIGINT)
+        return corner(task)
+
+    monkeypatch.setattr(ocp.front.assembly, "reference_corner", interrupted)
+    few = replace(rough, points=rough.points[:2])
+    polish = polish_front(few)
+    assert polish.complete
+    assert all(gain.tried for gain in polish.gains)

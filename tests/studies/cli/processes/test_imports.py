@@ -1,5 +1,6 @@
 """What a command loads: no more than it needs."""
 
+import os
 import subprocess
 import sys
 
@@ -58,6 +59,16 @@ def test_the_help_of_a_command_loads_no_other(tmp_path):
 )
 def test_the_gradient_loads_no_metaheuristic_and_no_picture(tmp_path, line):
     assert of_gradient(loaded(line, tmp_path))
+
+
+def test_a_window_system_that_matplotlib_does_not_know_spoils_no_picture(tmp_path):
+    ran = subprocess.run(
+        [sys.executable, "-m", "studies", *f"evaluate {MOVE} --coefficients=0".split(),
+         "--figure", str(tmp_path / "move.png")],
+        capture_output=True, text=True, timeout=120, env={**os.environ, "MPLBACKEND": "nonsense"},
+    )  # fmt: skip
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert (tmp_path / "move.png").exists()
 
 
 @pytest.mark.parametrize(

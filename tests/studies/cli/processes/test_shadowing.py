@@ -36,6 +36,27 @@ def test_the_command_does_not_mind_a_users_own_models(folder):
     assert (ran.returncode, ran.stderr) == (0, "")
 
 
+def with_on_path(folder, line):
+    """Run the command with a folder of the user's on PYTHONPATH."""
+    path = os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
+    return subprocess.run(
+        [sys.executable, "-P", "-m", "studies", *line.split(), "--quiet"],
+        capture_output=True, text=True, timeout=60, env={**os.environ, "PYTHONPATH": path},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("content", ["print(1 / 0)\n", "x = 1\n", "x = \n"])
+def test_a_file_with_the_name_of_a_module_of_pythons_is_told_in_one_line(folder, content):
+    (folder / "random.py").write_text(content)
+    (folder / "test.py").write_text("")  # another such name, which nothing loads
+    ran = with_on_path(folder, "problems")
+    assert ran.returncode == 1
+    assert ran.stderr == (
+        f"quietarm: {folder / 'random.py'} takes the place of the package 'random'; rename that "
+        "file, or take its folder out of PYTHONPATH\n"
+    )
+
+
 @pytest.mark.parametrize(
     ("package", "line"),
     [
@@ -47,11 +68,7 @@ def test_the_command_does_not_mind_a_users_own_models(folder):
 def test_a_file_on_the_path_with_the_name_of_a_package_is_told_in_one_line(folder, package, line):
     shadow = folder / f"{package}.py"
     shadow.write_text("x = 1\n")
-    path = os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
-    ran = subprocess.run(
-        [sys.executable, "-P", "-m", "studies", *line.split(), "--quiet"],
-        capture_output=True, text=True, timeout=60, env={**os.environ, "PYTHONPATH": path},
-    )  # fmt: skip
+    ran = with_on_path(folder, line)
     assert ran.returncode in (1, 2)
     assert ran.stderr == (
         f"quietarm: {shadow} takes the place of the package '{package}'; rename that file, or take "

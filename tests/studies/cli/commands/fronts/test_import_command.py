@@ -151,7 +151,7 @@ def test_the_front_is_compared_and_polished_like_any_other(call, folder):
 
 
 BAD = [
-    ("a_1,a_2\n0.1\n", "line 2 has 1 columns; the first has 2"),
+    ("a_1,a_2\n0.1\n", "line 2 has 1 column, the first 2; give as many in every line"),
     ("a_1,a_2\n0.1,x\n", "line 2 has 'x' where a number should be"),
     ("a_1,a_3\n0.1,0.1\n", "there is no column for coefficient 2; give all of them"),
     ("a_1,x1\n0.1,0.1\n", "coefficient 1 has two columns; leave one"),
@@ -192,7 +192,7 @@ def test_coefficients_that_do_not_fit_the_profile_are_refused(call, folder):
         ("f.npy", numpy_file(np.array([{}, 1], dtype=object)), "no whole .npy file of numbers"),
         ("f.npy", numpy_file(X)[:-9], "no whole .npy file of numbers"),
         ("f.npy", numpy_file(np.zeros(4)), "has shape (4,); give (motions, coefficients)"),
-        ("f.npy", numpy_file(X * 1j), "is no array of real numbers"),
+        ("f.npy", numpy_file(X * 1j), "is no array of real numbers; save it as numbers"),
         ("f.npz", b"PK", "no whole .npz file of numbers"),
         ("f.npz", numpy_file(None, np.savez, one=X, two=X), "name the matrix of coefficients X"),
         ("f.mat", b"MATLAB 7.3 MAT-file", "no whole .mat file"),
