@@ -98,11 +98,12 @@ class PiecewiseMotion:
 
 def _suspect(plant: Plant, coefficients: Sequence[float]) -> str:
     """What may make a motion too fast for CVODES: a parameter, or the coefficients."""
+    own = plant.parts[0]
     strange = {
         entry.name: (value, entry.default)
-        for entry in fields(plant.parts[0])
-        if (value := plant.parameters[entry.name]) and isinstance(entry.default, float)
-        if abs(value) > _STRANGE * abs(entry.default)
+        for entry in fields(own)
+        if isinstance(entry.default, float)  # else it is no parameter, or one of any size
+        if abs(value := getattr(own, entry.name)) > _STRANGE * abs(entry.default)
     }
     if strange:
         name, (value, usual) = max(strange.items(), key=lambda entry: abs(entry[1][0]))
