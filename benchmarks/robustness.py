@@ -45,6 +45,7 @@ MOVES = {
     "two links, 0 to 90 deg, 1.4 s": (LINKS, 0.0, pi / 2, 1.4),
 }
 RANGES = (0.05, 0.1, 0.15)
+REST = "at rest"
 SHAPERS = ("zv", "zvd", "ei")
 WIDEST = 0.3
 """Errors of the frequency up to which a motion is looked at."""
@@ -75,13 +76,14 @@ def row_of(name: str, plan: Plan) -> Row:
 
 def rows_of(task: PointToPoint, starts: int) -> list[Row]:
     """Every motion of a move that there is."""
-    rows = [row_of("at rest", plan_move(task, starts=starts))]
+    rows = [row_of(REST, plan_move(task, starts=starts))]
     for size in RANGES:
         plant = UncertainPlant(task.plant, {"frequency": size})
         robust = replace(task, plant=plant)
         try:
             plan = plan_move(robust, starts=starts)
-        except SolverFailedError:
+        except SolverFailedError as none:
+            console().print(f"{100 * size:g} %: {none}")
             continue
         rows.append(row_of(f"{100 * size:g} %", plan))
     for shaper in SHAPERS:
@@ -96,25 +98,38 @@ def rows_of(task: PointToPoint, starts: int) -> list[Row]:
 PLANS, SHAPED = "#0072b2", "#d55e00"
 
 
+def label_place(row: Row, own: list[Row], size: tuple[float, float]) -> tuple[int, int]:
+    """Where a label stands beside its point, clear of rising lines and other labels [points]."""
+    energy, width = size
+    away = [((one.energy - row.energy) / energy, (one.width - row.width) / width) for one in own]
+    if row.name.lower() not in SHAPERS and row is own[-1]:
+        return 7, 3
+    if row.name == REST or row.name.lower() in SHAPERS:
+        left = any(0 < x < 0.1 and abs(y) < 0.1 for x, y in away) and row.name != REST
+        return (-7, 3) if left else (7, -9)
+    return (-7, -9) if any(abs(x) < 0.1 and 0 < y < 0.1 for x, y in away) else (-7, 4)
+
+
 def draw(of_moves: dict[str, list[Row]], path: Path) -> None:
     """Insensitivity over energy, a panel for each move."""
     figure = Figure(figsize=(12.6, 7.4), layout="constrained")
     FigureCanvasAgg(figure)
     panels = figure.subplots(2, 3)
     for ax, (title, rows) in zip(panels.flat, of_moves.items(), strict=False):
-        shaped = [row for row in rows if row.name in map(str.upper, SHAPERS)]
+        far, high = (max(getattr(row, name) for row in rows) for name in ("energy", "width"))
+        shaped = [row for row in rows if row.name.lower() in SHAPERS]
         plans = [row for row in rows if row not in shaped]
         for own, style, colour in ((plans, "o-", PLANS), (shaped, "s", SHAPED)):
             ax.plot([row.energy for row in own], [row.width for row in own], style, color=colour)
-            for i, row in enumerate(sorted(own, key=lambda row: row.width)):
-                left = i % 2  # labels of near points stay apart
+            for row in own:
+                place = label_place(row, own, (far, high))
                 ax.annotate(
-                    row.name, (row.energy, row.width), xytext=(-7 if left else 7, 3),
-                    textcoords="offset points", ha="right" if left else "left", fontsize=9,
+                    row.name, (row.energy, row.width), xytext=place, fontsize=9,
+                    textcoords="offset points", ha="right" if place[0] < 0 else "left",
                 )  # fmt: skip
         ax.set_title(title, loc="left", fontsize=10)
-        ax.set_xlim(0, 1.2 * max(row.energy for row in rows))
-        ax.set_ylim(-2, 1.12 * max(row.width for row in rows))
+        ax.set_xlim(0, 1.2 * far)
+        ax.set_ylim(-2, 1.12 * high)
         ax.grid(alpha=0.25)
     for ax in panels[1]:
         ax.set_xlabel("energy [J]")

@@ -98,20 +98,9 @@ class PiecewiseMotion:
 
 def _suspect(plant: Plant, coefficients: Sequence[float]) -> str:
     """What may make a motion too fast for CVODES: a parameter, or the coefficients."""
-    assumed = plant.parts[0]
+    own = plant.parts[0]
     strange = {
-        entry.name: (getattr(assumed, entry.name), entry.default)
-        for entry in fields(assumed)
-        if isinstance(entry.default, float)
-        if abs(getattr(assumed, entry.name)) > _STRANGE * abs(entry.default)
-    }
-    if strange:
-        name, (value, usual) = max(strange.items(), key=lambda entry: abs(entry[1][0]))
-        return f"; is {name} far out of scale? (it is {value:g}, by default {usual:g})"
-    largest = max(map(abs, coefficients), default=0.0)
-    if largest < _STRANGE:
-        return (
-            "; is a number in the plant far out of scale while the joint moves? (the largest "
-            f"coefficient is only {largest:g})"
-        )
-    return f"; are the coefficients far out of scale? (largest is {largest:g})"
+        entry.name: (value, entry.default)
+        for entry in fields(own)
+        if isinstance(entry.default, float)  # else it is no parameter, or one of any size
+        if abs(value := getattr(own, entry.name)) > _STRANGE * abs(entry.default)
