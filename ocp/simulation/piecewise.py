@@ -104,3 +104,14 @@ def _suspect(plant: Plant, coefficients: Sequence[float]) -> str:
         for entry in fields(own)
         if isinstance(entry.default, float)  # else it is no parameter, or one of any size
         if abs(value := getattr(own, entry.name)) > _STRANGE * abs(entry.default)
+    }
+    if strange:
+        name, (value, usual) = max(strange.items(), key=lambda entry: abs(entry[1][0]))
+        return f"; is {name} far out of scale? (it is {value:g}, by default {usual:g})"
+    largest = max(map(abs, coefficients), default=0.0)
+    if largest < _STRANGE:
+        return (
+            "; is a number in the plant far out of scale while the joint moves? (the largest "
+            f"coefficient is only {largest:g})"
+        )
+    return f"; are the coefficients far out of scale? (largest is {largest:g})"
