@@ -11,7 +11,7 @@ HIDDEN = ("%matplotlib", "# Your attempt")
 """How the code cells begin that are left out."""
 
 _HEADINGS = {"# ": 100, "## ": 92, "###": 73}
-_LINE, _PARAGRAPH, _DISPLAYED, _CELL = 25, 19, 74, 19
+_LINE, _PARAGRAPH, _DISPLAYED, _CELL = 25, 19, 88, 19
 _CHARACTERS = 105
 """How many characters of text a line has."""
 _PRINTED_LINE, _SHOWN = 22, 40
