@@ -1,12 +1,13 @@
-"""While the command is being loaded, a third of a second: Ctrl-C, and files that are in the way."""
+"""While the command is being loaded, a third of a second: Ctrl-C, and files that are in the way.
+
+Little is imported here: until it is, a Ctrl-C shows Python's own words.
+"""
 
 from __future__ import annotations
 
 import os
 import signal
 import sys
-from importlib.machinery import PathFinder
-from pathlib import Path
 from types import FrameType, TracebackType
 
 _COMMANDS = ("quietarm", "-m")
@@ -22,7 +23,8 @@ def end_in_one_line() -> None:
 
     So does a file that takes the place of a package that is loaded.
     """
-    if Path(next(iter(sys.argv), "")).stem in _COMMANDS:
+    program = os.path.basename(next(iter(sys.argv), ""))
+    if os.path.splitext(program)[0] in _COMMANDS:
         for number in (signal.SIGINT, signal.SIGTERM):
             if signal.getsignal(number) in (signal.default_int_handler, signal.SIG_DFL):
                 signal.signal(number, _end)
@@ -52,12 +54,14 @@ def in_the_way(error: BaseException) -> str | None:
         What went wrong. A file that has the name of a module of Python's is told of only where it
         was loaded, or failed: many folders have a harmless one.
     """
+    from importlib.machinery import PathFinder  # only after a failure
+
     # Python's own first: they are needed to look for the others
     for package in (*sorted(sys.stdlib_module_names), *_OURS, *_NEEDED):
-        spec = PathFinder.find_spec(package)
-        if spec is None or spec.origin is None or _home(package) is None:
+        spec, home = PathFinder.find_spec(package), _home(package)
+        if spec is None or spec.origin is None or home is None:
             continue
-        if _home(package) in Path(spec.origin).resolve().parents:
+        if os.path.realpath(spec.origin).startswith(os.path.join(home, "")):
             continue
         if package not in sys.stdlib_module_names or _ran(package, spec.origin, error):
             return (
@@ -76,16 +80,16 @@ def _ran(module: str, origin: str, error: BaseException) -> bool:
     return origin in (*frames, getattr(sys.modules.get(module), "__file__", None))
 
 
-def _home(package: str) -> Path | None:
+def _home(package: str) -> str | None:
     """The folder that a package is installed in; None where it is not."""
     if package in _OURS:
-        return Path(__file__).resolve().parents[1]
+        return os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
     if package in sys.stdlib_module_names:
-        return Path(sys.base_prefix).resolve()
+        return os.path.realpath(sys.base_prefix)
     from importlib.metadata import PackageNotFoundError, distribution  # only after a failure
 
     try:
-        return Path(str(distribution(package).locate_file(""))).resolve()
+        return os.path.realpath(str(distribution(package).locate_file("")))
     except PackageNotFoundError:
         return None
 

@@ -60,6 +60,8 @@ class Preset:
         Whether it can search a task that has limits.
     needs : str
         A library beyond pymoo's that it needs, which `quietarm[NAME]` installs.
+    most : int
+        Most individuals. pymoo's methods compare all pairs: these fill up to 2 GB of memory.
     """
 
     name: str
@@ -74,6 +76,7 @@ class Preset:
     resumable: bool = False
     keeps_limits: bool = True
     needs: str = ""
+    most: int = 10_000
 
     def build(self, population: int, settings: Mapping[str, object] | None = None) -> Algorithm:
         """A new algorithm.
@@ -93,12 +96,28 @@ class Preset:
         Raises
         ------
         ValueError
-            When a setting is not known or out of range, or a library is missing.
+            When a setting or the population is not known or out of range, or a library is missing.
         """
         values = with_defaults(self.name, self.settings, settings)
+        self._check_size(population, values.get("variant"))
         from metaheuristics.algorithms.building import built
 
         return built(self, population, values)
+
+    def _check_size(self, population: int, variant: object) -> None:
+        """Refuse a population that would never end, or fill the memory."""
+        if population > self.most:
+            raise ValueError(
+                f"population is {population}; give at most {self.most}: {self.name} compares all "
+                "pairs, which fill the memory"
+            )
+        if isinstance(variant, str):  # as DE/rand/1/bin; pymoo looks for other vectors for ever
+            least = 2 * int(variant.split("/")[2]) + 2
+            if population < least:
+                raise ValueError(
+                    f"population is {population}; give at least {least}: {variant} takes so many "
+                    "vectors that differ"
+                )
 
     def evaluations(self, population: int, generations: int) -> int:
         """Candidates that a search evaluates.
@@ -178,19 +197,19 @@ _ALL = (
             Setting("archive_size", "archive_size", None,
                     "most points of the front; all are kept by default", count(2)),
         ),
-        population=100, generations=200, swarms=2, resumable=True,
+        population=100, generations=200, swarms=2, resumable=True, most=100_000,
     ),
     Preset(
         "nsga2", "NSGA-II", "Deb, Pratap, Agarwal and Meyarivan 2002",
         f"{_OURS}.nsga2:PaperNSGA2", (*_sbx(0.8, 15.0), *_pm(1.0, 0.01)),
-        population=200, generations=500, resumable=True,
+        population=200, generations=500, resumable=True, most=100_000,
     ),
     Preset("nsga3", "NSGA-III", "Deb and Jain 2014", f"{_OURS}.mended:NSGA3",
            _BY_DIRECTIONS, by_directions=True),
     Preset("unsga3", "U-NSGA-III", "Seada and Deb 2016", f"{_OURS}.mended:UNSGA3",
            _BY_DIRECTIONS, by_directions=True),
     Preset("spea2", "SPEA2", "Zitzler, Laumanns and Thiele 2001", f"{_OURS}.mended:SPEA2",
-           (*_GENETIC, _NORMALISE)),
+           (*_GENETIC, _NORMALISE), most=2_000),
     Preset("smsemoa", "SMS-EMOA", "Beume, Naujoks and Emmerich 2007", f"{_PYMOO}.sms:SMSEMOA",
            (*_GENETIC, _NORMALISE)),
     Preset(
@@ -205,9 +224,9 @@ _ALL = (
         by_directions=True, keeps_limits=False,
     ),
     Preset("agemoea", "AGE-MOEA", "Panichella 2019", f"{_PYMOO}.age:AGEMOEA", _GENETIC,
-           needs="numba"),
+           needs="numba", most=5_000),
     Preset("agemoea2", "AGE-MOEA-II", "Panichella 2022", f"{_PYMOO}.age2:AGEMOEA2", _GENETIC,
-           needs="numba"),
+           needs="numba", most=5_000),
     Preset(
         "rvea", "RVEA", "Cheng, Jin, Olhofer and Sendhoff 2016", f"{_PYMOO}.rvea:RVEA",
         (
@@ -216,10 +235,10 @@ _ALL = (
             Setting("adaptation", "adapt_freq", 0.1,
                     "share of the generations between changes of the directions", positive_share),
         ),
-        by_directions=True,
+        by_directions=True, most=5_000,
     ),
     Preset("ctaea", "C-TAEA", "Li, Chen, Fu and Yao 2019", f"{_OURS}.mended:CTAEA",
-           _BY_DIRECTIONS, by_directions=True),
+           _BY_DIRECTIONS, by_directions=True, most=5_000),
     Preset(
         "mopso-cd", "MOPSO-CD", "Raquel and Naval 2005", f"{_OURS}.mended:MOPSO_CD",
         (

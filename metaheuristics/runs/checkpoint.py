@@ -72,7 +72,9 @@ def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
         When the file is not a checkpoint, truncated, or of a newer version.
     """
     content = read_bytes(path)
-    broken = FileFormatError(f"{path} is not a checkpoint, or not a whole one")
+    broken = FileFormatError(
+        f"{path} is not a checkpoint, or not a whole one; give a file that --checkpoint wrote"
+    )
     try:
         _refuse_compressed(content)
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:

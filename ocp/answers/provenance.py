@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -116,7 +117,9 @@ class Verification:
     def energy_share(self) -> float:
         """How far the energies differ, as a share of the independent integrator's."""
         energy = self.fixed_step_energy - self.energy_difference
-        return abs(self.energy_difference / energy) if energy else 0.0
+        if energy:
+            return abs(self.energy_difference / energy)
+        return math.inf if self.energy_difference else 0.0  # so far apart that it is lost beside it
 
     @property
     def agrees(self) -> bool:

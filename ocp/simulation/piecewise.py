@@ -18,7 +18,7 @@ from ocp.profiles.joint_profile import JointProfile
 from ocp.task.point_to_point import PointToPoint
 
 _STRANGE = 100.0
-"""So many times its default a parameter is suspected."""
+"""So many times its default a parameter is suspected, and a coefficient from this on."""
 
 
 class Law(Protocol):
@@ -109,4 +109,9 @@ def _suspect(plant: Plant, coefficients: Sequence[float]) -> str:
         name, (value, usual) = max(strange.items(), key=lambda entry: abs(entry[1][0]))
         return f"; is {name} far out of scale? (it is {value:g}, by default {usual:g})"
     largest = max(map(abs, coefficients), default=0.0)
+    if largest < _STRANGE:
+        return (
+            "; is a number in the plant far out of scale while the joint moves? (the largest "
+            f"coefficient is only {largest:g})"
+        )
     return f"; are the coefficients far out of scale? (largest is {largest:g})"

@@ -92,15 +92,16 @@ def pauses() -> Iterator[float]:
 
 
 @contextmanager
-def _ticking(console: Console, words: Callable[[], str]) -> Iterator[None]:
-    """Print the words and the elapsed time every so often while the work goes on."""
+def ticking(console: Console, words: Callable[[], str]) -> Iterator[None]:
+    """Print the words, if any, and the elapsed time every so often while the work goes on."""
     began, over = time.perf_counter(), threading.Event()
 
     def tick() -> None:
         for pause in pauses():
             if over.wait(pause):
                 return
-            print_lines(console, f"{words()}, {time.perf_counter() - began:.0f} s so far")
+            if said := words():
+                print_lines(console, f"{said}, {time.perf_counter() - began:.0f} s so far")
 
     ticker = threading.Thread(target=tick, daemon=True)
     ticker.start()
@@ -132,7 +133,7 @@ def working(what: str, console: Console, *, quiet: bool = False) -> Iterator[Non
             bars.add_task("", total=None)
             yield
     else:
-        with _ticking(console, lambda: what):
+        with ticking(console, lambda: what):
             yield
 
 
@@ -174,7 +175,7 @@ def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[A
 
     nothing = quiet or console.is_terminal
     with (
-        nullcontext() if nothing else _ticking(console, lambda: piece or "beginning"),
+        nullcontext() if nothing else ticking(console, lambda: piece or "beginning"),
         shown(console, quiet, _COLUMNS, lambda name: None, line, bar) as advance,
     ):
         yield advance
@@ -218,7 +219,7 @@ def count(
 
     nothing = quiet or console.is_terminal
     with (
-        nullcontext() if nothing else _ticking(console, lambda: f"{now} of {of} {what}"),
+        nullcontext() if nothing else ticking(console, lambda: f"{now} of {of} {what}"),
         shown(console, quiet, _COLUMNS, lambda done, total: None, line, bar) as report,
     ):
         yield report

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from math import isnan
 
 from rich.console import Console
@@ -12,7 +12,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from metaheuristics import SearchProgress
 from ocp import Front
-from studies.display.progress import PLAIN_SECONDS, shown
+from studies.display.progress import PLAIN_SECONDS, shown, ticking
 from studies.display.words import millimetres, print_lines
 
 _WIDE = 120
@@ -46,7 +46,12 @@ def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchD
         To be called with a `SearchProgress` after every generation.
     """
     columns = (BarColumn(bar_width=12), TextColumn("{task.description}", markup=False))
-    with shown(console, quiet, columns, SearchDisplay(), _Lines(console), _Bars) as display:
+    lines = _Lines(console)
+    nothing = quiet or console.is_terminal
+    with (
+        nullcontext() if nothing else ticking(console, lambda: "" if lines.begun else "beginning"),
+        shown(console, quiet, columns, SearchDisplay(), lines, _Bars) as display,
+    ):
         yield display
 
 
@@ -79,6 +84,11 @@ class _Lines(SearchDisplay):
     def __init__(self, console: Console) -> None:
         self._console = console
         self._last: dict[int | None, float] = {}
+
+    @property
+    def begun(self) -> bool:
+        """Whether any search has said something."""
+        return bool(self._last)
 
     def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
         now = time.perf_counter()

@@ -126,6 +126,23 @@ def test_bad_settings_are_refused_with_the_remedy(name, settings, words):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "population", "settings", "least"),
+    [("gde3", 3, {}, 4), ("nsde", 5, {"variant": "DE/best/2/exp"}, 6), ("nsder", 2, {}, 4)],
+)
+def test_too_few_for_a_difference_are_refused(name, population, settings, least):
+    # pymoo looks for ever for vectors that differ
+    with pytest.raises(ValueError, match=rf"population is {population}; give at least {least}: DE"):
+        PRESETS[name].build(population, settings)
+
+
+@NAMES
+def test_all_pairs_of_a_huge_population_are_not_compared(name):
+    most = PRESETS[name].most
+    with pytest.raises(ValueError, match=f"population is {most + 1}; give at most {most}: {name}"):
+        PRESETS[name].build(most + 1)
+
+
 def test_an_unknown_method_is_refused_with_the_nearest_one():
     with pytest.raises(ValueError, match="unknown method 'smsmoa'; did you mean 'smsemoa'"):
         preset_of("smsmoa")

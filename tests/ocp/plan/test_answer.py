@@ -78,6 +78,13 @@ def test_what_counts_as_verified(plan, energies, residuals, agrees):
     assert Verification.between(80, energies[0], residuals[0], motion).agrees == agrees
 
 
+def test_energies_that_are_worlds_apart_are_not_said_to_be_equal(plan):
+    # 1e73 - (1e73 - 5e9) is 0 in double precision: the independent energy is lost beside it
+    apart = Verification.between(80, 1e73, 0.0, replace(plan.motion, energy=5e9))
+    assert apart.energy_share == math.inf
+    assert Verification.between(80, 0.0, 0.0, replace(plan.motion, energy=0.0)).energy_share == 0
+
+
 def test_given_coefficients_are_not_said_to_be_optimal(plan):
     assert plan.status is SolveStatus.NOT_OPTIMISED
     assert plan.provenance.method == "given coefficients"

@@ -2,6 +2,7 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -15,6 +16,7 @@ from ocp import (
     SolverFailedError,
     resimulate,
     sample_trajectory,
+    with_errors,
 )
 
 pi = math.pi
@@ -145,6 +147,24 @@ def test_a_parameter_beyond_all_scale_is_named_and_soon():
     plant = SingleLinkManipulator(beta2=1e12)
     with pytest.raises(SolverFailedError, match=r"CVODES.*beta2.*1e\+12, by default 0\.2614"):
         resimulate(PointToPoint(plant, math.pi / 6, 0.8), CycloidPolynomial(2), [0.1, 0.1])
+
+
+def test_a_plant_with_errors_is_simulated_as_well(tasks):
+    # whose own entries are a plant and factors, not parameters
+    plant = with_errors(SingleLinkManipulator(), {"frequency": 0.1})
+    there = replace(tasks["single link"], plant=plant)
+    assert resimulate(there, CycloidPolynomial(1), [0.1]).energy > 0
+
+
+def test_an_equation_beyond_all_scale_is_suspected_where_no_number_is():
+    fast = type("Fast", (SingleLinkManipulator,), {
+        "name": "fast",
+        "modal_accelerations": lambda p, joint, W, dW: [
+            -(100.0 + 1e12 * joint.speed**2) * W[0] - joint.acceleration
+        ],
+    })()  # fmt: skip
+    with pytest.raises(SolverFailedError, match=r"number in the plant.* coefficient is only 0\.1"):
+        resimulate(PointToPoint(fast, math.pi / 6, 0.8), CycloidPolynomial(1), [0.1])
 
 
 def test_coefficients_a_thousand_times_those_of_a_plan_are_followed(tasks):

@@ -3,11 +3,14 @@
 import io
 import math
 import re
+import time
 from dataclasses import replace
+from itertools import repeat
 
 import pytest
 from rich.console import Console
 
+import studies.display.progress
 import studies.display.search_progress
 from metaheuristics import SearchProgress
 from ocp import Generation
@@ -131,3 +134,19 @@ def test_quiet_shows_nothing(terminal, front_of):
         display(END, 3)
         display.finish(front_of([(1, 0.2)]))
     assert silent.file.getvalue() == ""
+
+
+def test_before_the_first_line_it_says_that_it_begins(monkeypatch):
+    # as while workers start
+    monkeypatch.setattr(studies.display.progress, "pauses", lambda: repeat(0.01))
+    pipe = console()
+    with search_display(pipe) as display:
+        for _ in range(1000):
+            if pipe.file.getvalue():
+                break
+            time.sleep(0.01)
+        display(NOW)
+        said = pipe.file.getvalue()
+        time.sleep(0.1)
+    assert re.match(r"beginning, \d+ s so far\n", said)
+    assert len(pipe.file.getvalue()) - len(said) <= len("beginning, 0 s so far\n")

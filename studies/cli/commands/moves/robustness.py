@@ -65,6 +65,8 @@ def _parted(context: click.Context, words: tuple[str, ...]) -> tuple[list[Path],
         word = rest.pop(0)
         if not word.startswith("--"):
             if word.startswith("-"):
+                if Path(word).exists():  # click takes the -- away that may have been before it
+                    raise ValueError(f"{word} looks like an option; give ./{word}")
                 raise click.NoSuchOption(word, ctx=context)
             paths.append(INPUT.convert(word, None, context))
             continue

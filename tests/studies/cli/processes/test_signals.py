@@ -132,9 +132,8 @@ def test_ctrl_c_while_the_plan_beside_it_is_looked_for_keeps_the_floor(call, fol
 # Starts the command, and sends it a signal when it loads a module.
 AT = """
 import os, signal, sys
-import importlib.abc
 
-class Signalling(importlib.abc.MetaPathFinder):
+class Signalling:
     def find_spec(self, name, *rest):
         if name == {module!r}:
             os.kill(os.getpid(), signal.{number})
@@ -144,7 +143,7 @@ sys.argv = ["quietarm", *{words!r}]
 from studies.cli import main
 main()
 """
-LOADED = ["ocp", "casadi", "models", "click", "studies.cli", "rich.console",
+LOADED = ["pathlib", "ocp", "casadi", "models", "click", "studies.cli", "rich.console",
           "studies.cli.commands.moves.plan", "studies.display.words"]  # fmt: skip
 
 

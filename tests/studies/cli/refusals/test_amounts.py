@@ -99,7 +99,7 @@ def test_quiet_is_quiet_from_the_first_moment(call, monkeypatch, line):
     def fail(*given):
         pytest.fail("something was to be shown")
 
-    monkeypatch.setattr(progress, "_ticking", fail)
+    monkeypatch.setattr(progress, "ticking", fail)
     assert call(f"{line} --quiet")[2] == ""
 
 

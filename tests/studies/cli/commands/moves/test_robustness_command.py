@@ -220,6 +220,13 @@ def test_a_plan_is_a_claim(call, folder, figure, told):
     assert "find the plan again" in err
 
 
+def test_a_file_that_looks_like_an_option_is_told_how_it_is_named(call, folder):
+    (folder / "ours.json").rename(folder / "-x.json")
+    code, _, err = call("--samples 100 -- -x.json")
+    assert (code, err) == (2, "quietarm: -x.json looks like an option; give ./-x.json\n")
+    assert call("--samples 100 --quiet ./-x.json")[0] == 0
+
+
 @pytest.mark.parametrize(
     ("entry", "value", "told"),
     [
