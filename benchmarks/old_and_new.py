@@ -13,6 +13,8 @@ higher (+) or lower (-) the new energies are, all by each version's own CVODES f
 - fronts: 50 points by the epsilon constraint; the same conditions.
 - hard: 20 terms, all limits at once, two modes; one start, second plan.
 - modes: plants of 1 to 12 modes at rest on arrival, 2 x modes + 4 terms, first plan of its shape.
+- starts, only if asked for: in how many of 40 seeds the default four starts find the best plan of
+  the 40; the paper's six conditions and ten others, 6 and 10 terms, with and without a box.
 """
 
 from __future__ import annotations
@@ -51,7 +53,8 @@ def main() -> None:
         unpack(options.old, Path(folder))
         versions = [Version(Path(folder)), Version(ROOT)]
         for group in options.only:
-            compare(group, versions, 1 if group == "modes" else options.repetitions)
+            once = group in ("modes", "starts")
+            compare(group, versions, 1 if once else options.repetitions)
 
 
 def unpack(commit: str, folder: Path) -> None:
@@ -104,6 +107,7 @@ def compare(group: str, versions: list[Version], repetitions: int) -> None:
 def serve() -> None:
     """Answer a line with a line, until there are no more."""
     work = {"plans": plans(), "fronts": fronts(), "hard": hard(), "modes": modes()}
+    work["starts"] = starts()
     for line in sys.stdin:
         group, name = json.loads(line)
         answer = list(work[group]) if not name else work[group][name]()
@@ -210,6 +214,52 @@ def modes() -> dict:
         )
         for count in (1, 2, 4, 6, 8, 10, 12)
     }
+
+
+def starts() -> dict:
+    """Forty seeds of a plan, for each move, number of terms, and box."""
+    from models import ArmOnFlexibleLink, SingleLinkManipulator
+    from ocp import PointToPoint
+
+    link, arm = SingleLinkManipulator(), ArmOnFlexibleLink()
+    others = {
+        "link, 0 to pi/4, 0.9 s": PointToPoint(link, pi / 4, 0.9),
+        "link, 0 to 1, 1.0 s": PointToPoint(link, 1.0, 1.0),
+        "link, 0 to pi, 1.5 s": PointToPoint(link, pi, 1.5),
+        "link, 0 to pi/3, 0.7 s": PointToPoint(link, pi / 3, 0.7),
+        "link, -pi/4 to pi/4, 1.3 s": PointToPoint(link, pi / 4, 1.3, -pi / 4),
+        "arm, 0 to 1, 0.7 s": PointToPoint(arm, 1.0, 0.7),
+        "arm, 0 to pi/2, 1.1 s": PointToPoint(arm, pi / 2, 1.1),
+        "arm, 0 to pi, 1.5 s": PointToPoint(arm, pi, 1.5),
+        "arm, -pi/2 to 0, 0.9 s": PointToPoint(arm, 0.0, 0.9, -pi / 2),
+        "arm, 0 to pi/3, 0.6 s": PointToPoint(arm, pi / 3, 0.6),
+    }
+    paper = {name: task for name, (task, _) in list(conditions().items())[:6]}
+    return {
+        f"{name}, {terms} terms, {f'box {bound}' if bound else 'no box'}": (
+            lambda task=task, terms=terms, bound=bound: forty_seeds(task, terms, bound)
+        )
+        for name, task in {**paper, **others}.items()
+        for terms in (6, 10)
+        for bound in (0.2 if task.plant == link else 0.5, None)
+    }
+
+
+def forty_seeds(task, terms: int, bound: float | None) -> dict:
+    """Plan with every seed; say how many found the best, and how many found none."""
+    from ocp import CycloidPolynomial, QuietarmError, plan_move
+
+    began, energies = time.process_time(), []
+    for seed in range(40):
+        try:
+            found = plan_move(task, CycloidPolynomial(terms), bound=bound, seed=seed)
+        except QuietarmError:
+            continue
+        energies.append(found.energy)
+    best = min(energies, default=None)
+    hits = sum(energy <= best * (1 + 1e-4) for energy in energies)
+    note = f"{hits} of 40" + f", {40 - len(energies)} without a plan" * (len(energies) < 40)
+    return {"seconds": time.process_time() - began, "energy": best, "note": note}
 
 
 def links(count: int):
