@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from metaheuristics.algorithms.settings import (
     Setting,
+    Value,
     count,
     index_of_spread,
     one_of,
@@ -98,26 +99,34 @@ class Preset:
         ValueError
             When a setting or the population is not known or out of range, or a library is missing.
         """
-        values = with_defaults(self.name, self.settings, settings)
-        self._check_size(population, values.get("variant"))
+        values = self.checked(population, settings)
         from metaheuristics.algorithms.building import built
 
         return built(self, population, values)
 
-    def _check_size(self, population: int, variant: object) -> None:
-        """Refuse a population that would never end, or fill the memory."""
+    def checked(
+        self, population: int, settings: Mapping[str, object] | None = None
+    ) -> dict[str, Value]:
+        """The values of all settings; arguments and errors as for `build`.
+
+        A population is refused that would never end, or fill the memory.
+        """
+        values = with_defaults(self.name, self.settings, settings)
         if population > self.most:
             raise ValueError(
                 f"population is {population}; give at most {self.most}: {self.name} compares all "
                 "pairs, which fill the memory"
             )
-        if isinstance(variant, str):  # as DE/rand/1/bin; pymoo looks for other vectors for ever
+        if isinstance(
+            variant := values.get("variant"), str
+        ):  # as DE/rand/1/bin; pymoo looks for other vectors for ever
             least = 2 * int(variant.split("/")[2]) + 2
             if population < least:
                 raise ValueError(
                     f"population is {population}; give at least {least}: {variant} takes so many "
                     "vectors that differ"
                 )
+        return values
 
     def evaluations(self, population: int, generations: int) -> int:
         """Candidates that a search evaluates.

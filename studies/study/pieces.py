@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from metaheuristics.algorithms.presets import preset_of
-from metaheuristics.algorithms.settings import with_defaults
 from metaheuristics.ensemble import one_seed, seeds_of
 from metaheuristics.runs.settings import number_of_generations, number_of_individuals
 from metaheuristics.sharing.pieces import Done, NotTriedError, Piece, Say, to_the_end
@@ -87,7 +86,8 @@ class StudySettings:
         if self.generations is not None:
             number_of_generations(self.generations)
         for name in self.methods:
-            with_defaults(name, preset_of(name).settings, self.settings.get(name))
+            preset = preset_of(name)
+            preset.checked(self.population or preset.population, self.settings.get(name))
 
     @property
     def searches(self) -> tuple[Method, ...]:

@@ -82,6 +82,11 @@ def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkey
         (f"{MOVE} --points 1", "points is 1; give a whole number from 2 up"),
         (f"{MOVE} --runs 0", "runs is 0"),
         (f"{MOVE} --population 1", "population is 1; give a whole number from 2 up"),
+        (
+            f"{MOVE} --method spea2 --population 2001",
+            "population is 2001; give at most 2000: spea2",
+        ),
+        (f"{MOVE} --method gde3 --population 3", "population is 3; give at least 4: DE/rand/1/bin"),
         (f"{MOVE} --terms 0", "terms is 0"),
         (f"{MOVE} --output nowhere/a.html", "folder nowhere does not exist"),
         ("study singel-link --target 1 --duration 1", "did you mean 'single-link'?"),

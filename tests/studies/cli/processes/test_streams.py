@@ -111,7 +111,7 @@ def test_one_output_that_cannot_be_written_takes_no_other_with_it(call, folder, 
     code, out, err = call(f"{EVALUATE} --output o.json --csv o.csv --figure o.png")
     assert code == 2
     assert err.startswith("quietarm: ")
-    assert err.endswith("o.json cannot be written: no space left on device\n")
+    assert err.endswith("o.json cannot be written: no space left on device; choose another place\n")
     assert out.splitlines()[-2:] == ["wrote o.csv", "wrote o.png"]
     assert sorted(path.name for path in folder.iterdir()) == ["o.csv", "o.png"]
 

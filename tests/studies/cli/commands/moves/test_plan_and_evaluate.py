@@ -223,7 +223,8 @@ def test_a_full_disk_leaves_nothing_half_written(call, folder, monkeypatch):
     monkeypatch.setattr(os, "replace", fail)
     code, _, err = call(f"evaluate {MOVE} {TWO_TERMS} --output plan.json")
     assert code == 2
-    assert re.fullmatch(r"quietarm: .*plan\.json cannot be written: no space left on device\n", err)
+    full = "cannot be written: no space left on device; choose another place"
+    assert re.fullmatch(rf"quietarm: .*plan\.json {full}\n", err)
     assert [path.name for path in folder.iterdir()] == ["plan.json"]
     assert (folder / "plan.json").read_text() == "older"
 
