@@ -159,7 +159,9 @@ def imported_run(
     found = read_found(path)
     columns, size = found.coefficients.shape[1], problem.profile.size
     if columns != size:
-        raise ValueError(f"{path} has {columns} coefficients a motion, and {problem.name} {size}")
+        raise ValueError(
+            f"{path} has {columns} coefficients a motion, and {problem.name} takes {size}"
+        )
     settings: dict[str, Setting] = {"imported": printable(path.name), "bound": problem.bound}
     try:
         front, claims = import_front(problem.task, problem.profile, found, method, settings)

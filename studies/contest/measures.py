@@ -55,6 +55,11 @@ class Outcome:
         return 1.0 - np.array(volumes) / self.yardstick.hypervolume
 
     @property
+    def middle(self) -> float:
+        """Missing share of the middle run; of an even number the better of two, as `quartiles`."""
+        return float(quartiles(self.final)[1])
+
+    @property
     def budgets(self) -> set[int | None]:
         """Evaluations of its runs; with None where those of one are not known."""
         return {run.evaluations for run in self.runs}
@@ -252,7 +257,7 @@ def methods_in(arenas: Iterable[Arena]) -> tuple[str, ...]:
 
 
 def quartiles(rows: Array) -> Array:
-    """Lower quartile, median and upper quartile over runs: shape (runs, n) gives (3, n).
+    """Lower quartile, median and upper quartile over runs: shape (runs, ...) gives (3, ...).
 
     Values that exist rather than means of two, so that one infinite run makes no other infinite.
     """

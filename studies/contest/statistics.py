@@ -170,7 +170,7 @@ def ranking_over(arenas: Sequence[Arena]) -> Ranking | None:
     methods = [name for name in methods_in(arenas)
                if name in own or all(name in here for here in known)]  # fmt: skip
     rows = [
-        [float(np.median(here[method].final)) for method in methods]
+        [here[method].middle for method in methods]
         for here, arena in zip(known, arenas, strict=True)
         if all(method in here for method in methods) and len(_common_seeds(arena)) >= LEAST_RUNS
     ]

@@ -56,8 +56,8 @@ class Table:
         heading, *lines = self.upright()
         table.add_column(Text(heading[0]), no_wrap=True)
         for i, name in enumerate(heading[1:], start=1):
-            words = [word for line in (heading, *lines) for word in line[i].split()]
-            width = max(map(len, words), default=1) if narrow else None
+            parts = [*name.split(), *(line[i] for line in lines)]
+            width = max(map(len, parts), default=1) if narrow else None
             table.add_column(Text(name), justify="right", width=width)
         for line in lines:
             table.add_row(*(Text(cell) for cell in line))  # Text: a unit in brackets is no markup

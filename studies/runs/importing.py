@@ -66,7 +66,8 @@ class Claim:
     def line(self) -> str:
         """In words."""
         if not self.differ:
-            return f"the file's {self.figure} is right for all {self.stated} motions"
+            motions = "its motion" if self.stated == 1 else f"all {self.stated} motions"
+            return f"the file's {self.figure} is right for {motions}"
         hint = ""
         if abs(self.factor / 1000 - 1) < 0.05:
             hint = f"; is it in m{self.unit}? name the column {self.figure}_m{self.unit}"

@@ -95,8 +95,8 @@ def _finished(ax: Axes) -> None:
 
 def attainment_figure(arena: Arena, looks: dict[str, Look]) -> Figure:
     """Median attainment surfaces over each other, and the best method's less each other's."""
-    best = min(arena.alike, key=_middle)
-    others = sorted((one for one in arena.outcomes if one is not best), key=_middle)
+    best = min(arena.alike, key=lambda one: one.middle)
+    others = sorted((one for one in arena.outcomes if one is not best), key=lambda one: one.middle)
     panels = 1 + len(others)
     columns = min(panels, 3)
     rows = -(-panels // columns)
@@ -112,10 +112,6 @@ def attainment_figure(arena: Arena, looks: dict[str, Look]) -> Figure:
     return figure
 
 
-def _middle(one: Outcome) -> float:
-    return float(np.median(one.final))
-
-
 def draw_surfaces(arena: Arena, looks: dict[str, Look], ax: Axes | None = None) -> Axes:
     """Draw what half of the runs of each method attain, and the exact front.
 
@@ -124,7 +120,7 @@ def draw_surfaces(arena: Arena, looks: dict[str, Look], ax: Axes | None = None) 
     ax, (residuals, _) = axes_or_new(ax), _grid(arena)
     for field in arena.outcomes:
         own = looks[field.method]
-        ax.plot(1e3 * residuals, np.median(_stairs(field, residuals), axis=0), color=own.colour,
+        ax.plot(1e3 * residuals, quartiles(_stairs(field, residuals))[1], color=own.colour,
                 linestyle=own.dash, label=label_of(field.method))  # fmt: skip
     _draw_exact(arena, ax)
     _of_a_front(ax, arena)

@@ -9,7 +9,7 @@ from studies.contest.measures import Arena, methods_in
 from studies.contest.names import label_of
 from studies.contest.report.citations import bibtex
 from studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
-from studies.contest.report.notes import middle_of, missing_words, not_alike, unequal
+from studies.contest.report.notes import missing_words, not_alike, unequal
 from studies.contest.report.paragraph import methods_paragraph, settings_lines
 from studies.contest.report.tables import (
     effects_table,
@@ -55,7 +55,7 @@ def contest_page(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> str:
 def _findings(arenas: Sequence[Arena], notes: Sequence[str]) -> Markup:
     none, lines = why_none(arenas), list[str]()
     for arena in arenas:
-        best = min(arena.alike, key=middle_of)
+        best = min(arena.alike, key=lambda one: one.middle)
         lines.append(
             f"{arena.problem}: {label_of(best.method)} ends nearest to the exact front, with "
             f"{missing_words(best, 'its')}."
@@ -106,8 +106,8 @@ def explanation(found: Landscape) -> list[str]:
     level = millimetres(LEVEL)
     lines = [
         f"Of {found.starts} random starts in the box, the gradient ended at a minimum of the "
-        f"energy within {level} from {found.solved:.0%}, and at the best of these from "
-        f"{found.best:.0%}; of the minima, {found.minima} differ by more than 0.1 % in energy.",
+        f"energy within {level} from {100 * found.solved:.0f} %, and at the best of these from "
+        f"{100 * found.best:.0f} %; {_minima_words(found.minima)}.",
         f"Over {CANDIDATES} random candidates, energy and distance to the cheapest motion "
         f"correlate by {found.candidates:.2f} (1 where better candidates lie nearer to it).",
     ]
@@ -117,11 +117,19 @@ def explanation(found: Landscape) -> list[str]:
             f"{found.correlation:.2f}."
         )
     for share, ratio in found.boxes:
-        of = f"With a box {share:g} times as large the least energy within {level} is"
-        lines.append(
-            f"{of} not found." if ratio is None else f"{of} {ratio:.4g} times that in this one."
+        least = (
+            f"no motion within {level} was found"
+            if ratio is None
+            else f"the least energy within {level} is {ratio:.4g} times that in this one"
         )
+        lines.append(f"With a box {share:g} times as large {least}.")
     return lines
+
+
+def _minima_words(number: int) -> str:
+    if number == 1:
+        return "all these minima have the same energy, to 0.1 %"
+    return f"{number} of the minima differ by more than 0.1 % in energy"
 
 
 def _statistics(arena: Arena) -> list[Markup]:

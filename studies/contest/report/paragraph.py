@@ -20,7 +20,7 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
     budgets = sorted({run.budget for run in runs})
     versions = [f"{name} {' or '.join(known)}" for name, known in versions_of(runs).items()]
     own = [method for method in methods_in(arenas) if is_own(method)]
-    names = ", ".join(map(label_of, own))
+    names = "; ".join(map(label_of, own))  # some have a comma
     helped = _of_the_gradient(own)
     tests = (
         ""
@@ -61,7 +61,7 @@ def _of_imports(arenas: Sequence[Arena]) -> str:
         f"Results from elsewhere: {runs}. Their coefficients were evaluated here by CVODES; only "
         "what a run ended with is known of them, so that they have no anytime curves, expected "
         "running times or times, and tests compare those alone whose evaluations are those of the "
-        "others. "
+        "others. Ranks over seeds are without them. "
     )
 
 

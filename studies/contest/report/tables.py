@@ -141,7 +141,8 @@ def visits_table(arena: Arena) -> Table:
 def _summary(one: Outcome) -> list[Cell]:
     runs, own = len(one.runs), one if isinstance(one, Field) else None
     row: list[Cell] = [label_of(one.method), runs, evaluations_words(one)]
-    row += [100 * float(one_of_them) for one_of_them in _middle_first(one)]
+    lower, median, upper = quartiles(one.final)
+    row += [100 * float(share) for share in (median, lower, upper)]
     row.append(float(quartiles(own.seconds[:, -1:])[1, 0]) if own else None)
     for target in TARGETS:
         row.append(f"{int((one.final <= target).sum())} of {runs}")
@@ -150,11 +151,6 @@ def _summary(one: Outcome) -> list[Cell]:
         found = spread(one.energies[:, level])
         row += [100 * found.median if found.count else None, f"{found.count} of {runs}"]
     return row
-
-
-def _middle_first(one: Outcome) -> tuple[float, float, float]:
-    lower, median, upper = quartiles(one.final[:, None])[:, 0]
-    return median, lower, upper
 
 
 def evaluations_words(one: Outcome) -> str:

@@ -52,6 +52,21 @@ def test_screen_fits_a_narrow_terminal_without_cutting_a_figure():
     assert "0.06297" in text
 
 
+def test_a_narrow_terminal_keeps_a_number_and_its_unit_on_one_line():
+    names = [["one"], ["other"], ["third"]]
+    rows = [[*name, 9.211, "5 of 31", 35.25] for name in names]
+    percent = "{:.3g} %".format
+    columns = [Column("method"), Column("hypervolume missing", percent),
+               Column("runs with at most 1 % missing"), Column("energy", percent)]  # fmt: skip
+    console = Console(width=50, file=io.StringIO())
+    print_table(console, Table("What they ended with", columns, rows))
+    lines = console.file.getvalue().splitlines()
+    assert max(map(len, lines)) <= 50
+    assert sum(line.count("9.21 %") for line in lines) == 3
+    assert sum(line.count("5 of 31") for line in lines) == 3
+    assert sum(line.count("35.2 %") for line in lines) == 3
+
+
 def test_csv_has_a_row_a_line_and_every_digit():
     rows = list(csv.reader(io.StringIO(TABLE.csv())))
     assert rows == [
