@@ -9,7 +9,6 @@ import pytest
 
 from models import ArmOnFlexibleLink
 from ocp import Floor, FloorSettings, PointToPoint, SolverFailedError, energy_floor
-from studies.cli import main
 from studies.figures.motion import PAPER_PANELS, Line, floor_figure, motion_figure
 from studies.runs.reports.floor import plan_beside
 
@@ -25,17 +24,10 @@ def floor():
 
 
 @pytest.fixture
-def call(capsys, monkeypatch):
-    """Run the command line in this process: status, standard output, standard error."""
+def call(call, monkeypatch):
+    """Run a line in this process, with lines wide enough for every figure."""
     monkeypatch.setenv("COLUMNS", "200")
-
-    def run(line):
-        with pytest.raises(SystemExit) as ended:
-            main(line.split())
-        out, err = capsys.readouterr()
-        return ended.value.code, out, err
-
-    return run
+    return call
 
 
 def test_it_prints_the_floor_and_writes_it(call, tmp_path):

@@ -18,7 +18,6 @@ from ocp import (
     plan_move,
     shaped_cycloid,
 )
-from studies.cli import main
 from studies.figures import draw_robustness, robustness_figure
 from studies.runs import robustness as work
 
@@ -50,16 +49,9 @@ def folder(folder, monkeypatch, plans):
 
 
 @pytest.fixture
-def call(capsys):
-    """Run the command line in this process: status, standard output, standard error."""
-
-    def run(line):
-        with pytest.raises(SystemExit) as ended:
-            main(["robustness", *line.split()])
-        out, err = capsys.readouterr()
-        return ended.value.code, out, err
-
-    return run
+def call(call):
+    """Run `robustness` with these words in this process."""
+    return lambda line: call(f"robustness {line}")
 
 
 def rows(path):
