@@ -117,9 +117,8 @@ class Preset:
                 f"population is {population}; give at most {self.most}: {self.name} compares all "
                 "pairs, which fill the memory"
             )
-        if isinstance(
-            variant := values.get("variant"), str
-        ):  # as DE/rand/1/bin; pymoo looks for other vectors for ever
+        variant = values.get("variant")
+        if isinstance(variant, str):  # as DE/rand/1/bin: pymoo looks for other vectors for ever
             least = 2 * int(variant.split("/")[2]) + 2
             if population < least:
                 raise ValueError(

@@ -72,8 +72,8 @@ class PopulationObjective:
     threads : int
         Blocks of candidates that are evaluated at the same time.
     often : bool
-        Whether it is called often. If not, the function is built several times as soon, and takes
-        up to twice as long for the same figures.
+        Whether it is called often. If not, the function is built several times faster, and a call
+        takes up to twice as long; the figures are the same.
 
     Raises
     ------

@@ -78,7 +78,7 @@ def check_writable(path: str | Path) -> Path:
     except FileNotFoundError:
         mode = None
     except OSError as error:
-        raise _unwritable(target, error) from None
+        raise unwritable(target, error) from None
     if mode is not None and stat.S_ISDIR(mode):
         raise ValueError(f"{target} is a folder; give the name of a file in it")
     if mode is not None and not stat.S_ISREG(mode):
@@ -90,11 +90,25 @@ def check_writable(path: str | Path) -> Path:
     try:  # even with permission it may fail, as in /proc
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
-        raise _unwritable(target, error) from None
+        raise unwritable(target, error) from None
     return target
 
 
-def _unwritable(target: Path, error: OSError) -> ValueError:
+def unwritable(target: Path, error: OSError) -> ValueError:
+    """What to say of a file that the system refuses to write.
+
+    Parameters
+    ----------
+    target : Path
+        The file.
+    error : OSError
+        What the system says.
+
+    Returns
+    -------
+    ValueError
+        With the name, the reason and the remedy.
+    """
     reason = (error.strerror or str(error)).lower()
     return ValueError(f"{target} cannot be written: {reason}; choose another place")
 
@@ -121,7 +135,7 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
     try:
         _replace(target, data)
     except OSError as error:
-        raise _unwritable(target, error) from error
+        raise unwritable(target, error) from error
 
 
 def _replace(target: Path, data: bytes) -> None:

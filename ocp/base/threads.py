@@ -18,9 +18,9 @@ _TURN = RLock()
 def one_at_a_time(function: Callable[P, T]) -> Callable[P, T]:
     """Let one thread at a time into all the functions that have this decorator.
 
-    casadi counts the uses of its symbols without a lock and leaves Python's own while it works: two
-    threads that build or solve at once end the process. A function that comes here from inside
-    another goes on; a thread that it started itself would wait for ever.
+    casadi is not made for several: two threads that build or solve at once end the process. A
+    function that is called from inside another goes on; a thread that it started itself would wait
+    for ever.
     """
 
     @wraps(function)

@@ -30,8 +30,6 @@ from ocp.task.point_to_point import PointToPoint
 FIRST_INTERVALS = 80
 MOST_FIRST_INTERVALS, MOST_INTERVALS = 1500, 6000
 """Most intervals of the first grid, and of any finer one."""
-LEAST_TOLERANCE = 1e-5
-"""Grids of `MOST_INTERVALS` come no closer, and take minutes."""
 _MOST_COLD = 600
 """After a failed warm solve a cold one is tried on grids of up to this many intervals."""
 _LEAST_LEVELS = 3
@@ -77,7 +75,7 @@ def energy_floor(
     seed : int
         Seed of the random starts.
     tolerance : float
-        Relative change of the energy at which the refinement stops; `LEAST_TOLERANCE` or more.
+        Relative change of the energy at which the refinement stops.
 
     Returns
     -------
@@ -98,11 +96,6 @@ def energy_floor(
     """
     refuse_other_kinds(task)
     settings = FloorSettings(smooth, starts, seed, tolerance)
-    if settings.tolerance < LEAST_TOLERANCE:
-        raise ValueError(
-            f"tolerance is {settings.tolerance:g}; give {LEAST_TOLERANCE:g} or more: grids of up "
-            f"to {MOST_INTERVALS} intervals come no closer"
-        )
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)
     solved, improved, stopped = _from_starts(program, settings)

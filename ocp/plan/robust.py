@@ -76,7 +76,7 @@ def robust_plan(
     """The plan of an uncertain plant, with its residual limit held between the samples.
 
     The first start is the guess, or else the assumed plant's plan, at rest on arrival. Where the
-    solver fails, it starts again with samples half way to those that there are.
+    solver fails, it starts again with more samples, half way to those that there are.
 
     Parameters
     ----------
@@ -92,8 +92,9 @@ def robust_plan(
     Returns
     -------
     Plan
-        As `held_between`. After Ctrl-C before there is a robust plan that of the assumed plant, not
-        ``complete``.
+        The plan with its `worst`, which is above the limit where no tighter one could be kept.
+        After Ctrl-C the last plan until then, not ``complete``; before there is a robust one, that
+        of the assumed plant.
 
     Raises
     ------
@@ -105,13 +106,10 @@ def robust_plan(
     began = time.perf_counter()
     assumed = None if settings.guess else _of_assumed(task, profile, settings, solve)
     try:
-        if assumed is None:
-            plan = _from_samples(task, profile, settings, settings, solve)
-        elif assumed.complete:
-            first = replace(settings, guess=assumed.coefficients)
-            plan = _from_samples(task, profile, first, settings, solve)
-        else:
+        if assumed and not assumed.complete:
             raise KeyboardInterrupt
+        first = replace(settings, guess=assumed.coefficients) if assumed else settings
+        plan = _from_samples(task, profile, first, settings, solve)
     except KeyboardInterrupt:
         if assumed is None:
             raise
@@ -139,12 +137,12 @@ def _from_samples(
     solve: Solve,
 ) -> Plan:
     try:
-        return held_between(solve(task, profile, first), settings, solve)
+        return _held_between(solve(task, profile, first), settings, solve)
     except InfeasibleTaskError:  # more samples make it no easier
         raise
     except SolverFailedError:
         finer = with_halves(task)
-    return held_between(solve(finer, profile, first), settings, solve)
+    return _held_between(solve(finer, profile, first), settings, solve)
 
 
 def _unheld(task: PointToPoint, assumed: Plan, settings: SolveSettings) -> Plan:
@@ -155,31 +153,12 @@ def _unheld(task: PointToPoint, assumed: Plan, settings: SolveSettings) -> Plan:
     return replace(plan, status=assumed.status, provenance=provenance)
 
 
-def held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
-    """Hold the residual limit of a plan between the samples of its uncertain plant as well.
+def _held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
+    """The plan with its `worst`, solved on until the limit holds between the samples as well.
 
-    Where the residual passes the limit by more than `EXCESS`, its peaks become samples, and the
-    solver goes on from the plan. What is left of the excess is then taken off the limit.
-
-    Parameters
-    ----------
-    plan : Plan
-        A plan of an uncertain plant, within its residual limit at the samples.
-    settings : SolveSettings
-        What was asked for.
-    solve : callable
-        Gives the plan of a task, a profile and settings.
-
-    Returns
-    -------
-    Plan
-        The plan with its `worst`, which is above the limit where no tighter one could be kept.
-        After Ctrl-C the last plan until then, not ``complete``.
-
-    Raises
-    ------
-    SolverFailedError
-        When no motion keeps the limit at the samples that were added.
+    Where the residual passes the limit by more than `EXCESS`, its peaks become samples. What is
+    left of the excess is then taken off the limit; `worst` is above the limit where no tighter one
+    could be kept. After Ctrl-C it is the last plan until then, not ``complete``.
     """
     began = time.perf_counter() - plan.provenance.seconds
     stopped = plan.provenance.stopped

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from ocp import QuietarmError
+from ocp.base.files import unwritable
 from ocp.base.interrupts import note_interrupts
 from studies.display.progress import working
 from studies.display.words import print_lines
@@ -144,8 +145,7 @@ def _save(path: Path, write: Callable[[Path], object]) -> None:
 def _named(path: Path, error: Exception) -> Exception:
     """The same error, with the name of the file where the system's own leaves it out."""
     if isinstance(error, OSError):
-        reason = (error.strerror or str(error)).lower()
-        return ValueError(f"{path} cannot be written: {reason}; choose another place")
+        return unwritable(path, error)
     return error
 
 

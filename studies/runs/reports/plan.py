@@ -6,7 +6,7 @@ import math
 
 from rich.console import Console
 
-from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Verification
+from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid
 from ocp.answers.provenance import AGREEMENT
 from ocp.plan.robust import EXCESS
 from ocp.robustness.uncertain import assumed_plant
@@ -36,7 +36,7 @@ def print_plan(console: Console, plan: Plan) -> None:
         *figure_rows(plan.task, motion),
         *_worst_rows(plan),
         ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
-        verified_row(plan.verification, *_remedy(plan)),
+        _verified_row(plan),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
     print_rows(console, rows)
@@ -65,24 +65,21 @@ def _not_held(plan: Plan) -> str:
     return f"; not robust enough: more than {EXCESS:.0%} above; {remedy}"
 
 
-def _remedy(plan: Plan) -> list[str]:
-    """What brings the integrators together where a motion has no coefficients to be smaller."""
-    return ["a longer duration: the shaper's cycloids are short"] * (plan.profile.size == 0)
-
-
 def stopped_words(after: str | None) -> str:
     """That Ctrl-C came, and after what; nothing where it did not."""
     return f" Interrupted after {after}; this is the best until then." if after else ""
 
 
-def verified_row(check: Verification, remedy: str = "smaller coefficients") -> Row:
+def _verified_row(plan: Plan) -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
+    check = plan.verification
     differ = (
         f"{check.steps} fixed steps differ by {check.energy_share:.0e} in energy and "
         f"{millimetres(abs(check.residual_difference))} in residual"
     )
     if check.agrees:
         return "verified", f"by CVODES: {differ}"
+    remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
     return "not verified", (
         f"the figures are by CVODES, and {differ}, where {AGREEMENT:g} of each is agreement; give "
         f"{remedy}"

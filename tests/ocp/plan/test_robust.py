@@ -111,7 +111,7 @@ def test_it_saves_and_loads_equal(plan, tmp_path):
 
 def test_ctrl_c_keeps_the_last_round(task, plan, rounds, monkeypatch):
     monkeypatch.setattr(robust, "_checked", lambda _: (_ for _ in ()).throw(KeyboardInterrupt))
-    found = robust.held_between(rounds[0], plan.provenance.settings, lambda *_: None)
+    found = robust._held_between(rounds[0], plan.provenance.settings, lambda *_: None)
     assert not found.complete
     assert "before the residual was held between the samples" in found.provenance.stopped
     assert found.coefficients == rounds[0].coefficients

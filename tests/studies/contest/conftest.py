@@ -1,9 +1,13 @@
 """What the tests of contests share: one contest that is held once, on a small problem."""
 
+import shutil
+
 import pytest
 from small_contest import LINE
 
 from studies.contest import problems
+from studies.contest.report import files, page
+from studies.display.html_page import element
 
 
 def _small(patch):
@@ -13,6 +17,13 @@ def _small(patch):
 @pytest.fixture(autouse=True)
 def _small_problems(monkeypatch):
     _small(monkeypatch)
+
+
+@pytest.fixture
+def no_pictures(monkeypatch):
+    """Those of the contest that is held once are enough: they take long to draw."""
+    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
+    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
 
 
 @pytest.fixture
@@ -33,3 +44,9 @@ def held(tmp_path_factory):
         _small(patch)
         quietarm.main([*LINE.split(), "--output", str(place)], standalone_mode=False)
     return place
+
+
+@pytest.fixture
+def copy(held, folder):
+    """A copy of the small contest's folder, to spoil."""
+    return shutil.copytree(held, folder / "held")

@@ -1,7 +1,6 @@
 """Runs that cannot be compared are not put into one folder."""
 
 import json
-import shutil
 
 import pytest
 from small_contest import LINE, METHODS, NAME
@@ -9,23 +8,10 @@ from small_contest import LINE, METHODS, NAME
 import studies.contest.asked as asked
 from studies.contest.folder import Contents
 from studies.contest.measures import arenas_of
-from studies.contest.report import files, page
 from studies.contest.report.notes import unequal
 from studies.contest.report.paragraph import methods_paragraph
-from studies.display.html_page import element
 
-
-@pytest.fixture(autouse=True)
-def _no_pictures(monkeypatch):
-    """They are drawn elsewhere, and take long."""
-    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
-
-
-@pytest.fixture
-def copy(held, folder):
-    """A copy of the small contest's folder, to spoil."""
-    return shutil.copytree(held, folder / "held")
+pytestmark = pytest.mark.usefixtures("no_pictures")
 
 
 @pytest.fixture

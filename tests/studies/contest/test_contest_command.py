@@ -8,21 +8,8 @@ from small_contest import LINE, METHODS, NAME, found, rows_of
 import studies.contest.work as work
 from metaheuristics.budget.run import search_within
 from studies.contest.folder import Folder
-from studies.contest.report import files, page
-from studies.display.html_page import element
 
-
-@pytest.fixture(autouse=True)
-def _no_pictures(monkeypatch):
-    """The pictures of the contest that is held once are enough: they take long to draw."""
-    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
-
-
-@pytest.fixture
-def copy(held, folder):
-    """A copy of the small contest's folder, to spoil."""
-    return shutil.copytree(held, folder / "held")
+pytestmark = pytest.mark.usefixtures("no_pictures")
 
 
 @pytest.fixture

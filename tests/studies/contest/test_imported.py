@@ -11,27 +11,15 @@ from small_contest import LINE, NAME, OTHER, TINY, area, least_energy, rows_of
 
 from studies.contest.folder import Contents
 from studies.contest.measures import arenas_of
-from studies.contest.report import files, page
+from studies.contest.report import files
 from studies.contest.report.citations import bibtex
 from studies.contest.report.paragraph import methods_paragraph
 from studies.contest.statistics import pairs_on
-from studies.display.html_page import element
+
+pytestmark = pytest.mark.usefixtures("no_pictures")
 
 (EXACT,) = TINY.fronts()
 X = np.array([point.coefficients for point in EXACT.points])
-
-
-@pytest.fixture(autouse=True)
-def _no_pictures(monkeypatch):
-    """One test draws them: they take long."""
-    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
-
-
-@pytest.fixture
-def copy(held, folder):
-    """A copy of the small contest's folder."""
-    return shutil.copytree(held, folder / "held")
 
 
 @pytest.fixture

@@ -46,9 +46,7 @@ def test_minima_and_their_correlation_by_hand():
     assert _correlation(np.array([1.0, 2.0, 3.0]), np.array([[0], [2], [1]])) == pytest.approx(0.5)
 
 
-def test_explain_adds_the_landscape_once(call, held, tmp_path, monkeypatch):
-    import shutil
-
+def test_explain_adds_the_landscape_once(call, copy, monkeypatch):
     from small_contest import LINE
 
     from studies.contest.report import files, page
@@ -59,7 +57,6 @@ def test_explain_adds_the_landscape_once(call, held, tmp_path, monkeypatch):
     for name in ("anytime_figure", "attainment_figure"):
         monkeypatch.setattr(page, name, lambda *given: None)
     monkeypatch.setattr(page, "picture", lambda *given: "")
-    copy = shutil.copytree(held, tmp_path / "held")
     assert call(f"{LINE} --explain --output {copy}")[0] == 0
     written = (copy / f"landscape/{NAME}.json").read_bytes()
     assert "Of 3 random starts in the box" in (copy / "contest.html").read_text()

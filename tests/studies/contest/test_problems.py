@@ -6,18 +6,11 @@ from small_contest import LINE, NAME, documents, rows_of
 from metaheuristics import PROBLEMS
 from studies.contest.folder import Contents
 from studies.contest.problems import Yardstick, problems_of
-from studies.contest.report import files, page
-from studies.display.html_page import element
 from studies.paper.printed import CONDITIONS
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 LIMITS, THIRD = "single-link-30deg-0.8s-limits", "single-link-30deg-0.8s-torque"
-
-
-@pytest.fixture(autouse=True)
-def _no_pictures(monkeypatch):
-    """They are drawn elsewhere, and take long."""
-    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
 
 
 def test_without_a_name_they_are_the_papers_conditions():

@@ -1,7 +1,6 @@
 """Methods that are set to something take part under names of their own."""
 
 import json
-import shutil
 
 import pytest
 from small_contest import LINE, METHODS, NAME, OTHER, documents
@@ -11,17 +10,10 @@ from metaheuristics.budget.run import search_within
 from metaheuristics.problems.catalogue import problem_of
 from studies.contest.asked import Contest
 from studies.contest.names import label_of, name_of
-from studies.contest.report import files, page
-from studies.display.html_page import element
+
+pytestmark = pytest.mark.usefixtures("no_pictures")
 
 SET = "nsga2(crossover=0.5, population=16)"
-
-
-@pytest.fixture(autouse=True)
-def _no_pictures(monkeypatch):
-    """They are drawn elsewhere, and take long."""
-    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
 
 
 def contest(methods, **settings):
@@ -57,8 +49,7 @@ def test_names_and_labels():
     assert label_of("my tool (v2)") == "my tool (v2)"
 
 
-def test_it_takes_part_beside_the_same_method_without(call, held, folder):
-    copy = shutil.copytree(held, folder / "held")
+def test_it_takes_part_beside_the_same_method_without(call, copy):
     given = "--setting nsga2.crossover=0.5 --setting nsga2.population=16"
     code, out, err = call(f"{LINE} {given} --output held")
     assert (code, err) == (0, "")

@@ -8,16 +8,9 @@ import pytest
 from small_contest import LINE, found
 
 from studies.contest.folder import Contents
-from studies.contest.report import files, page
 from studies.contest.runs import Run
-from studies.display.html_page import element
 
-
-@pytest.fixture(autouse=True)
-def _no_pictures(monkeypatch):
-    """They are drawn elsewhere, and take long."""
-    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
+pytestmark = pytest.mark.usefixtures("no_pictures")
 
 
 def test_it_stops_and_goes_on_to_the_runs_of_one_process(call, folder, held, monkeypatch):
