@@ -5,14 +5,18 @@
 The old version is taken from this repository's history into a temporary folder; nothing needs to be
 installed for it. Each version runs in a process of its own, the two in turn, so that other load on
 the machine affects both alike. Only functions that both have are called: `plan_move`,
-`epsilon_front`. Times are the processor's. Printed are medians, the ratio old / new, and how much
-higher (+) or lower (-) the new energies are, all by each version's own CVODES figures.
+`epsilon_front`, `energy_floor`, `search`, `PopulationObjective`. Times are the processor's. Printed
+are medians, the ratio old / new, and how much higher (+) or lower (-) the new energies are, all by
+each version's own CVODES figures.
 
 - plans: the second plan of the same shape, one start, six terms; the paper's six conditions in its
   boxes and four others.
 - fronts: 50 points by the epsilon constraint; the same conditions.
 - hard: 20 terms, all limits at once, two modes; one start, second plan.
 - modes: plants of 1 to 12 modes at rest on arrival, 2 x modes + 4 terms, first plan of its shape.
+- floors: two conditions of the link and three of the arm, free accelerations and smooth.
+- searches: NSGA-II with 200 candidates and VEPSO with 2 x 100, for 60 generations.
+- population: 100 calls with 200 candidates, functions built before, on the paper's six conditions.
 - starts, only if asked for: in how many of 40 seeds the default four starts find the best plan of
   the 40; the paper's six conditions and ten others, 6 and 10 terms, with and without a box.
 """
@@ -34,6 +38,7 @@ from statistics import median
 from typing import ClassVar
 
 ROOT = Path(__file__).resolve().parents[1]
+GROUPS = ("plans", "fronts", "hard", "modes", "floors", "searches", "population")
 BEFORE = "a41b84d"
 """The last commit before the program was condensed."""
 
@@ -43,7 +48,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--old", default=BEFORE, help="commit of the old version")
     parser.add_argument("--repetitions", type=int, default=3)
-    parser.add_argument("--only", nargs="*", default=["plans", "fronts", "hard", "modes"])
+    parser.add_argument("--only", nargs="*", default=list(GROUPS))
     parser.add_argument("--serve", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.serve:
@@ -107,6 +112,7 @@ def compare(group: str, versions: list[Version], repetitions: int) -> None:
 def serve() -> None:
     """Answer a line with a line, until there are no more."""
     work = {"plans": plans(), "fronts": fronts(), "hard": hard(), "modes": modes()}
+    work |= {"floors": floors(), "searches": searches(), "population": population()}
     work["starts"] = starts()
     for line in sys.stdin:
         group, name = json.loads(line)
@@ -213,6 +219,65 @@ def modes() -> dict:
             PointToPoint(links(count), pi / 2, 1.0), 2 * count + 4, first=True
         )
         for count in (1, 2, 4, 6, 8, 10, 12)
+    }
+
+
+def floors() -> dict:
+    """Floors of five conditions, both kinds."""
+    from ocp import energy_floor
+
+    def floor(task, smooth: bool) -> dict:
+        began = time.process_time()
+        found = energy_floor(task, smooth=smooth)
+        note = f"{len(found.levels)} grids"
+        return {"seconds": time.process_time() - began, "energy": found.energy, "note": note}
+
+    paper = {name: task for name, (task, _) in list(conditions().items())[:6]}
+    return {
+        f"{name}{', smooth' * smooth}": lambda task=task, smooth=smooth: floor(task, smooth)
+        for name, task in paper.items()
+        if name.startswith(("link, 0 to pi/6", "link, 0 to pi/2, 1.0", "arm"))
+        for smooth in (False, True)
+    }
+
+
+def searches() -> dict:
+    """The paper's two searches on its six conditions, in its boxes."""
+    from metaheuristics import search
+
+    def front(task, method: str) -> dict:
+        began = time.process_time()
+        found = search(task, method, generations=60)
+        seconds = time.process_time() - began
+        note = f"{len(found.points)} points"
+        return {"seconds": seconds, "energy": found.energies.min(), "note": note}
+
+    return {
+        f"{name}, {method}": lambda task=task, method=method: front(task, method)
+        for name, (task, _) in list(conditions().items())[:6]
+        for method in ("nsga2", "vepso")
+    }
+
+
+def population() -> dict:
+    """The objective of many candidates."""
+    import numpy as np
+
+    from metaheuristics import PopulationObjective
+    from ocp import CycloidPolynomial
+
+    def calls(task, bound: float) -> dict:
+        objective = PopulationObjective(task, CycloidPolynomial(6))
+        candidates = np.random.default_rng(0).uniform(-bound, bound, (200, 6))
+        energy = objective(candidates).energy.mean()
+        began = time.process_time()
+        for _ in range(100):
+            objective(candidates)
+        return {"seconds": time.process_time() - began, "energy": energy, "note": ""}
+
+    return {
+        name: lambda task=task, bound=bound: calls(task, bound)
+        for name, (task, bound) in list(conditions().items())[:6]
     }
 
 
