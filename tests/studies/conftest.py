@@ -25,6 +25,7 @@ from ocp import (
     non_dominated,
     plan_move,
 )
+from ocp.floor import search as floor_search
 from studies.cli import main
 from studies.display import progress
 from studies.registry.methods import METHODS
@@ -62,6 +63,7 @@ def reproduction(begun):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensemble, "search", short)
+        patch.setattr(floor_search, "FIRST_INTERVALS", 24)
         patch.setattr(pieces, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.1))
         patch.setattr(pieces, "STARTS", dict.fromkeys(pieces.STARTS, 1))
         patch.setattr(pieces, "plan_move", from_one_start)

@@ -207,7 +207,7 @@ def made_up_plans(draw):
     )
 
 
-@settings(max_examples=50)
+@settings(max_examples=30)
 @given(plan=made_up_plans())
 def test_any_plan_saves_and_loads_equal(tmp_path_factory, plan):
     path = tmp_path_factory.mktemp("plans") / "plan.json"
