@@ -63,11 +63,18 @@ def reproduction(begun):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensemble, "search", short)
-        patch.setattr(floor_search, "FIRST_INTERVALS", 24)
         patch.setattr(pieces, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.1))
         patch.setattr(pieces, "STARTS", dict.fromkeys(pieces.STARTS, 1))
         patch.setattr(pieces, "plan_move", from_one_start)
         return recompute.recompute_paper(begun.append)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _coarse_floors():
+    """Floors begin on coarser grids: how low they are is asked in tests/ocp/floor."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(floor_search, "FIRST_INTERVALS", 24)
+        yield
 
 
 @pytest.fixture
