@@ -6,11 +6,11 @@ import os
 import shlex
 import signal
 import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from lines import COARSELY
 
 from metaheuristics import ensemble
 from models import SingleLinkManipulator
@@ -110,7 +110,7 @@ def at_a_terminal():
     def start(line):
         begun.append(
             subprocess.Popen(
-                [sys.executable, "-m", "studies", *shlex.split(line)],
+                [*COARSELY, *shlex.split(line)],
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 text=True,
