@@ -11,6 +11,7 @@ TYPE_CHECKING = False  # that of typing, which is not loaded here
 if TYPE_CHECKING:
     import signal
     from types import FrameType, TracebackType
+    from typing import Any
 else:
     import _signal as signal  # as signal, without the enum that it imports
 
@@ -59,7 +60,8 @@ def in_the_way(error: BaseException) -> str | None:
         was loaded, or failed: many folders have a harmless one.
     """
     # as importlib.machinery has it, which imports modules that may be in the way
-    (finder,) = (one for one in sys.meta_path if getattr(one, "__name__", "") == "PathFinder")
+    finders = (one for one in sys.meta_path if getattr(one, "__name__", "") == "PathFinder")
+    finder: Any = next(finders)
     # Python's own first: they are needed to look for the others
     for package in (*sorted(sys.stdlib_module_names), *_OURS, *_NEEDED):
         spec, home = finder.find_spec(package), _home(package)
