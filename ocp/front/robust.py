@@ -193,7 +193,7 @@ def _at_worst(sweep: Sweep, found: Sequence[Found]) -> tuple[list[Found], float]
         errors = farthest.peaks[np.argmax(farthest.excess), 1:].tolist()
         sweep.add_samples([errors])
         looked = [replace(one, point=_with_sample(sweep, one.point, errors)) for one in looked]
-    return others, 0.0
+    return [*others], 0.0
 
 
 def _with_sample(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> FrontPoint:
