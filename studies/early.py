@@ -1,14 +1,19 @@
 """While the command is being loaded, a third of a second: Ctrl-C, and files that are in the way.
 
-Little is imported here: until it is, a Ctrl-C shows Python's own words.
+Nothing is imported here that Python has not loaded by itself: so a Ctrl-C during an import ends in
+one line, and so does a file of the user's with the name of a module of Python's.
 """
 
-from __future__ import annotations
-
 import os
-import signal
 import sys
-from types import FrameType, TracebackType
+
+TYPE_CHECKING = False  # that of typing, which is not loaded here
+if TYPE_CHECKING:
+    import signal
+    from types import FrameType, TracebackType
+    from typing import Any
+else:
+    import _signal as signal  # as signal, without the enum that it imports
 
 _COMMANDS = ("quietarm", "-m")
 """Names of the running program at the time that this is loaded, where it is the command:
@@ -54,11 +59,12 @@ def in_the_way(error: BaseException) -> str | None:
         What went wrong. A file that has the name of a module of Python's is told of only where it
         was loaded, or failed: many folders have a harmless one.
     """
-    from importlib.machinery import PathFinder  # only after a failure
-
+    # as importlib.machinery has it, which imports modules that may be in the way
+    finders = (one for one in sys.meta_path if getattr(one, "__name__", "") == "PathFinder")
+    finder: Any = next(finders)
     # Python's own first: they are needed to look for the others
     for package in (*sorted(sys.stdlib_module_names), *_OURS, *_NEEDED):
-        spec, home = PathFinder.find_spec(package), _home(package)
+        spec, home = finder.find_spec(package), _home(package)
         if spec is None or spec.origin is None or home is None:
             continue
         if os.path.realpath(spec.origin).startswith(os.path.join(home, "")):
@@ -94,14 +100,14 @@ def _home(package: str) -> str | None:
         return None
 
 
-def _end(number: int, frame: FrameType | None) -> None:
+def _end(number: int, frame: "FrameType | None") -> None:
     # An exception would pass through what is half loaded, and be shown with its traceback.
     os.write(2, b"quietarm: interrupted; nothing was written\n")
     os._exit(1)
 
 
 def _name_what_is_in_the_way(
-    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+    kind: type[BaseException], error: BaseException, trace: "TracebackType | None"
 ) -> None:
     told = in_the_way(error) if issubclass(kind, Exception) else None
     if told is None:

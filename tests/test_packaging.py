@@ -69,9 +69,12 @@ def test_the_licence_is_mit_and_shipped():
     assert any(path.name == "LICENSE" for path in metadata.files("quietarm"))
 
 
-def test_the_command_is_that_of_studies():
-    (entry,) = metadata.entry_points(group="console_scripts", name="quietarm")
-    assert entry.value == PYPROJECT["project"]["scripts"]["quietarm"] == "studies.cli:main"
+def test_the_command_is_the_script_of_studies():
+    (script,) = PYPROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["shared-scripts"]
+    (installed,) = (path for path in metadata.files("quietarm") if path.name == "quietarm")
+    lines = (ROOT / script).read_text().splitlines()
+    assert installed.locate().read_text().splitlines()[1:] == lines[1:]
+    assert lines[0] == "#!python"  # pip puts its own Python there
 
 
 @pytest.mark.parametrize("pin", PINS)

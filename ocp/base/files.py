@@ -5,8 +5,12 @@ from __future__ import annotations
 import os
 import stat
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
+written: list[Path] = []
+"""The files that this process has written, in order: so that an interruption can say what is kept.
+"""
 MOST_BYTES = 100_000_000
 """Forty times a front of ten thousand points."""
 
@@ -38,7 +42,7 @@ def read_whole(path: str | Path) -> bytes:
             content = file.read(MOST_BYTES + 1)
     except OSError as error:
         reason = error.strerror or str(error)
-        raise ValueError(f"{path} cannot be read: {reason.lower()}") from None
+        raise ValueError(f"{path} cannot be read: {reason.lower()}; give another file") from None
     if len(content) > MOST_BYTES:
         raise ValueError(
             f"{path} is larger than {MOST_BYTES / 1e6:g} MB, as no file of quietarm is; give "
@@ -94,6 +98,62 @@ def check_writable(path: str | Path) -> Path:
     return target
 
 
+def check_folder(path: str | Path) -> Path:
+    """Make sure that files can be written in a folder, or that it can be made.
+
+    Parameters
+    ----------
+    path : str or Path
+        The folder, there or not; the folder around it must be there.
+
+    Returns
+    -------
+    Path
+        The same.
+
+    Raises
+    ------
+    ValueError
+        When it cannot be written to or made, or something else has its name.
+    """
+    folder = Path(path)
+    if folder.is_dir():
+        check_writable(folder / "any")
+    elif folder.exists():
+        raise ValueError(f"{folder} is a file; give a folder")
+    elif folder.is_symlink():
+        raise ValueError(f"{folder} is a link that leads nowhere; remove it, or give a folder")
+    else:
+        check_writable(folder)
+    return folder
+
+
+def check_inside(folder: Path, places: Sequence[Path]) -> None:
+    """Make sure that files can be written at several places inside a folder, deep ones too.
+
+    Parameters
+    ----------
+    folder : Path
+        A folder, there or not.
+    places : sequence of Path
+        The files to be; folders on the way to them may be missing.
+
+    Raises
+    ------
+    ValueError
+        As `check_folder` and `check_writable`.
+    """
+    on_the_way = dict.fromkeys(
+        folder / part for place in places for part in reversed(place.relative_to(folder).parents)
+    )
+    for inner in (folder, *on_the_way):
+        if os.path.lexists(inner):
+            check_folder(inner)
+    for place in places:
+        if os.path.lexists(place):
+            check_writable(place)
+
+
 def unwritable(target: Path, error: OSError) -> ValueError:
     """What to say of a file that the system refuses to write.
 
@@ -136,6 +196,7 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
         _replace(target, data)
     except OSError as error:
         raise unwritable(target, error) from error
+    written.append(Path(path))
 
 
 def _replace(target: Path, data: bytes) -> None:

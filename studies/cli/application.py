@@ -12,8 +12,11 @@ from keyword import iskeyword
 import click
 
 from ocp import FileFormatError, QuietarmError
+from ocp.base.files import written
 from ocp.base.interrupts import as_ctrl_c
+from ocp.base.names import unknown
 from ocp.base.printable import printable
+from studies.cli.refusals import in_our_words
 from studies.cli.streams import patient_streams
 from studies.early import in_the_way, ready
 
@@ -45,6 +48,8 @@ class LazyGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The name and the command that was asked for, and the other words."""
+        if not args[0].startswith("-") and args[0] not in COMMANDS:
+            raise ValueError(unknown("command", args[0], COMMANDS))
         name, command, others = super().resolve_command(ctx, args)
         if name is not None:
             own = f"{name}_" if iskeyword(name) else name
@@ -104,6 +109,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         was interrupted; 2 for bad input, or a file that cannot be read or written.
     """
     loaded_by_itself = ready()
+    written.clear()
     if loaded_by_itself:  # pictures go to files: no window, whatever the user's notebooks use
         os.environ["MPLBACKEND"] = "agg"
     try:
@@ -126,13 +132,13 @@ def _run(arguments: Sequence[str] | None) -> int:
         click.echo(error.format_message())
         return BAD_INPUT
     except click.ClickException as error:
-        return _complain(error.format_message(), BAD_INPUT)
+        return _complain(in_our_words(error), BAD_INPUT)
     except (FileFormatError, ValueError) as error:
         return _complain(str(error), BAD_INPUT)
     except QuietarmError as error:
         return _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
-        return _complain("interrupted; nothing was written", NOT_SOLVED)
+        return _complain(f"interrupted; {_what_is_kept()}", NOT_SOLVED)
     except (ImportError, AttributeError) as error:  # of what is loaded only where it is needed
         told = in_the_way(error)
         if told is None:
@@ -144,6 +150,15 @@ def _run(arguments: Sequence[str] | None) -> int:
         reason = (error.strerror or str(error)).lower()
         place = f"{error.filename}: " if error.filename else ""
         return _complain(f"{place}{reason}; choose another place", BAD_INPUT)
+
+
+def _what_is_kept() -> str:
+    """What was written before an interruption that nothing else told of."""
+    if not written:
+        return "nothing was written"
+    if len(written) == 1:
+        return f"wrote {written[0]}"
+    return f"wrote {len(written)} files, the last {written[-1]}"
 
 
 def _complain(message: str, status: int) -> int:

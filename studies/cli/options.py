@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from models import Plant, load_plant_file
-from ocp.base.files import check_writable
+from ocp.base.files import check_folder, check_writable
 from ocp.base.names import unknown
 from ocp.profiles.shapers import SHAPERS
 from ocp.task.quantities import QUANTITIES, Quantity
@@ -108,14 +108,7 @@ def _named(text: str) -> str:
 def _is_folder(text: str) -> Path:
     if text == str(STDOUT):
         raise ValueError(f"this is for a folder, not for standard output; give ./{text} or another")
-    folder = Path(_named(text))
-    if folder.is_dir():
-        check_writable(folder / "any")
-    elif folder.exists():
-        raise ValueError(f"{folder} is a file; give a folder")
-    else:
-        check_writable(folder)  # it will be made; the folder around it must be there
-    return folder
+    return check_folder(_named(text))
 
 
 def _is_input(text: str) -> Path:

@@ -13,6 +13,7 @@ from metaheuristics.budget.run import check_method, number_of_evaluations, parts
 from metaheuristics.ensemble import seeds_of
 from metaheuristics.runs.settings import number_of_individuals, search_versions
 from metaheuristics.sharing.workers import HERE, Workers
+from studies.contest.claims import check_run
 from studies.contest.folder import EXACT, Contents
 from studies.contest.imported import Imported
 from studies.contest.names import POPULATION, name_of, sets_population
@@ -182,7 +183,8 @@ def check_alike(contents: Contents, contest: Contest) -> None:
         if known is not None:
             _check_problem(known, problem, folder)
     for run in [*contents.runs.values(), *contents.imports.values()]:
-        _check_front(run, contents.yardsticks.get(run.problem), folder)
+        yardstick = _check_front(run, contents.yardsticks.get(run.problem), folder)
+        check_run(run, yardstick, contents.folder.place(run))
     for run in contents.runs.values():
         _check_amounts(run, contest, folder)
     if any(key not in contents.runs for key in contest.keys):
@@ -200,7 +202,7 @@ def _check_problem(known: Yardstick, problem: NamedProblem, folder: Path) -> Non
         raise ValueError(f"{folder} has another move of the name {name}; give another --output")
 
 
-def _check_front(run: Run | Imported, yardstick: Yardstick | None, folder: Path) -> None:
+def _check_front(run: Run | Imported, yardstick: Yardstick | None, folder: Path) -> Yardstick:
     if yardstick is None:
         raise ValueError(
             f"{folder} has runs on {run.problem} without its exact front; put back "
@@ -219,6 +221,7 @@ def _check_front(run: Run | Imported, yardstick: Yardstick | None, folder: Path)
         )
     if (run.front.task, run.front.profile) != (yardstick.front.task, yardstick.front.profile):
         raise ValueError(f"{folder} has a run on another move ({run.words}); remove it")
+    return yardstick
 
 
 def _check_amounts(run: Run, contest: Contest, folder: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from ocp import FileFormatError
+from ocp.base.files import check_inside
 from studies.contest.imported import Imported, Source
 from studies.contest.landscape import Landscape
 from studies.contest.names import folder_of
@@ -71,13 +72,23 @@ class Folder:
     def place(self, what: Run | Imported | Landscape | Yardstick) -> Path:
         """Where it is kept."""
         if isinstance(what, Run):
-            parts = _RUNS, what.problem, folder_of(what.method), f"seed{what.key.seed}"
-        elif isinstance(what, Imported):
+            return self.place_of_run(what.key)
+        if isinstance(what, Imported):
             parts = _IMPORTS, what.problem, folder_of(what.method), what.file
         else:
             parts = _LANDSCAPES if isinstance(what, Landscape) else EXACT, what.problem
         *folders, name = parts
         return self.path.joinpath(*folders, f"{name}.json")
+
+    def place_of_run(self, key: Key) -> Path:
+        """Where a run is kept, or will be."""
+        method = folder_of(key.method)
+        return self.path / _RUNS / key.problem / method / f"seed{key.seed}.json"
+
+    def check_places(self, keys: Iterable[Key]) -> None:
+        """Make sure that runs, and what goes with them, can be kept; ValueError says why not."""
+        others = [self.path / name / "any" for name in (EXACT, _IMPORTS, _LANDSCAPES)]
+        check_inside(self.path, [*others, *map(self.place_of_run, keys)])
 
     def _loaded(self, kind: type[_Kind], pattern: str) -> Iterable[_Kind]:
         for path in sorted(self.path.glob(pattern)):

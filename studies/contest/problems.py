@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metaheuristics import PROBLEMS, NamedProblem, problem_of
-from metaheuristics.budget.record import Scale
+from metaheuristics.budget.record import CORNER, Scale
 from ocp import CycloidPolynomial, Front
 from ocp.answers.saved import Saved
 from ocp.base.ranges import Positive
-from studies.comparison.staircase import filled
+from studies.comparison.staircase import filled, objectives
 from studies.paper.printed import CONDITIONS
 
 _FILL = 10_000
@@ -85,6 +85,15 @@ class Yardstick(Saved):
     front: Front
     scale: Scale
     hypervolume: Positive
+
+    def __post_init__(self) -> None:
+        if self.scale != Scale.of(self.front):
+            raise ValueError("its scale is not the extent of its front")
+        least = self.scale.hypervolume(objectives(self.front))
+        if not least * (1 - 1e-9) <= self.hypervolume <= CORNER**2:
+            raise ValueError(
+                f"its hypervolume is {self.hypervolume:.6g}, and its front alone has {least:.6g}"
+            )
 
     @classmethod
     def of(cls, problem: NamedProblem) -> Yardstick:

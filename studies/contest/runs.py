@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import ClassVar, NamedTuple, Self
 
 from metaheuristics.budget.record import Mark, Scale, Visits
@@ -58,6 +59,8 @@ class Run(Saved):
     def __post_init__(self) -> None:
         if not self.marks or self.marks[-1].evaluations > self.budget:
             raise ValueError("it has no marks, or some beyond its evaluations")
+        for before, mark in pairwise(self.marks):
+            _check_order(before, mark)
 
     @classmethod
     def of(
@@ -83,3 +86,18 @@ class Run(Saved):
     def words(self) -> str:
         """Which run it is, in words."""
         return f"{self.method} on {self.problem} from seed {self.key.seed}"
+
+
+def _check_order(before: Mark, mark: Mark) -> None:
+    """ValueError where a mark falls behind the one before it: what was found stays found."""
+    if mark.evaluations <= before.evaluations:
+        raise ValueError(
+            f"its mark after {mark.evaluations} evaluations follows that after {before.evaluations}"
+        )
+    for figure in ("hypervolume", "seconds"):
+        earlier, later = getattr(before, figure), getattr(mark, figure)
+        if later < earlier * (1 - 1e-9):
+            raise ValueError(
+                f"its {figure} falls from {earlier:.6g} to {later:.6g} at the mark after "
+                f"{mark.evaluations} evaluations"
+            )

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ocp.base.files import write_whole
+from ocp.base.files import check_inside, write_whole
 from studies.contest.measures import Arena, methods_in
 from studies.contest.report.citations import bibtex
 from studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
@@ -20,8 +20,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PAGE = "contest.html"
+_REFERENCES, _TABLES, _FIGURES = "references.bib", "tables", "figures"
 _OVERALL = "all problems"
 _KINDS = ("png", "pdf")
+
+
+def check_places(folder: Path) -> None:
+    """Make sure, before the work, that a report can be written; ValueError says why not."""
+    inner = [folder / name / "any" for name in (_TABLES, _FIGURES)]
+    check_inside(folder, [folder / PAGE, folder / _REFERENCES, *inner])
 
 
 def report_files(arenas: Sequence[Arena], folder: Path, notes: Sequence[str] = ()) -> list[File]:
@@ -31,9 +38,9 @@ def report_files(arenas: Sequence[Arena], folder: Path, notes: Sequence[str] = (
     references = bibtex(methods_in(arenas), statistics=tests)
     return [
         page,
-        (folder / "references.bib", lambda path: write_whole(path, references)),
-        *inside(folder / "tables", _tables(arenas, tests)),
-        *inside(folder / "figures", _pictures(arenas, tests)),
+        (folder / _REFERENCES, lambda path: write_whole(path, references)),
+        *inside(folder / _TABLES, _tables(arenas, tests)),
+        *inside(folder / _FIGURES, _pictures(arenas, tests)),
     ]
 
 

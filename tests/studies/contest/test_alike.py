@@ -118,3 +118,48 @@ def test_a_run_on_another_move_is_refused(refused, copy):
 def test_runs_without_marks_are_no_runs(refused, copy):
     _spoil(copy / f"runs/{NAME}/{METHODS[0]}/seed1.json", marks=[])
     assert "remove it to have it made again" in refused(LINE)
+
+
+def _marks(copy, change):
+    """Change the marks of a run by hand."""
+    path = copy / f"runs/{NAME}/vepso/seed1.json"
+    marks = json.loads(path.read_text())["marks"]
+    change(marks)
+    _spoil(path, marks=marks)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda marks: marks[-1].update(hypervolume=marks[-1]["hypervolume"] + 0.01),
+         "but its front dominates"),
+        (lambda marks: marks[-1].update(hypervolume=1.2), "and the exact front has"),
+        (lambda marks: marks[0].update(hypervolume=1.0), "its hypervolume falls from 1 to"),
+        (lambda marks: marks[0].update(seconds=1e3), "its seconds falls from 1000 to"),
+        (lambda marks: marks.reverse(), "evaluations follows that after"),
+        (lambda marks: marks[-1].update(evaluations=131), "or some beyond its evaluations"),
+    ],
+)  # fmt: skip
+def test_marks_that_were_altered_are_not_believed(refused, copy, change, told):
+    _marks(copy, change)
+    said = refused(LINE)
+    assert told in said
+    assert "vepso/seed1.json" in said
+    assert "remove it to have it made again" in said
+
+
+def test_figures_that_were_altered_are_not_believed(refused, copy):
+    path = copy / f"runs/{NAME}/nsga2/seed0.json"
+    front = json.loads(path.read_text())["front"]
+    for point in front["points"]:
+        point["energy"] *= 0.9
+    _spoil(path, front=front)
+    said = refused(LINE)
+    assert "states energy" in said
+    assert "nsga2/seed0.json" in said
+
+
+def test_an_exact_front_of_another_extent_or_hypervolume_is_refused(refused, copy):
+    path = copy / f"exact/{NAME}.json"
+    _spoil(path, hypervolume=0.1)
+    assert "its hypervolume is 0.1, and its front alone has" in refused(LINE)

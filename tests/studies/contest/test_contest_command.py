@@ -1,10 +1,13 @@
 """`quietarm contest`: what it writes and refuses, and how it goes on after a stop."""
 
+import os
 import shutil
+from pathlib import Path
 
 import pytest
 from small_contest import LINE, METHODS, NAME, found, rows_of
 
+import studies.contest.measures as measures
 import studies.contest.work as work
 from metaheuristics.budget.run import search_within
 from studies.contest.folder import Folder
@@ -99,6 +102,33 @@ def test_bad_input_is_refused_before_any_work(call, folder, line, words, searche
     assert (code, out, err.count("\n"), searches) == (2, "", 1, [])
     assert words in err
     assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "place",
+    ["runs", f"runs/{NAME}", f"runs/{NAME}/vepso", "exact", "tables", "figures", "contest.html"],
+)
+@pytest.mark.parametrize("make", [os.mkfifo, Path.touch, lambda path: path.symlink_to("nowhere")])
+def test_what_is_in_the_way_of_a_file_is_found_before_any_work(call, folder, searches, place, make):
+    where = folder / "new" / place
+    where.parent.mkdir(parents=True)
+    make(where)
+    if place == "contest.html" and make is not os.mkfifo:  # it may be replaced
+        return
+    code, out, err = call(f"{LINE} --output new")
+    assert (code, out, err.count("\n"), searches) == (2, "", 1, [])
+    assert f"new/{place} is " in err
+    assert "give" in err
+
+
+def test_ctrl_c_before_the_report_says_what_is_kept(call, folder, monkeypatch):
+    def interrupted(contents):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(measures, "arenas_of", interrupted)
+    code, _, err = call(f"{LINE} --output part")
+    kept = f"wrote 5 files, the last part/runs/{NAME}/vepso/seed1.json"
+    assert (code, err.strip()) == (1, f"quietarm: interrupted; {kept}")
 
 
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"format": "quietarm-front", "version": 3}'])

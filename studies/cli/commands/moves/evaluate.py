@@ -52,7 +52,8 @@ def evaluate(
     """  # noqa: D301  # \b is click's: do not rewrap
     refuse_idle(context, profile, {"coefficients": list(FAMILIES)})
     if profile in FAMILIES and coefficients is None:
-        raise click.MissingParameter(param_hint="'--coefficients'", param_type="option")
+        (option,) = (one for one in context.command.params if one.name == "coefficients")
+        raise click.MissingParameter(ctx=context, param=option)
     task, outputs = split_options(rest)
     numbers = coefficients or []
     family = FAMILIES.get(profile)

@@ -90,11 +90,11 @@ def contest(
     from metaheuristics.sharing.workers import Workers
     from ocp import QuietarmError
     from studies.contest.asked import Contest
-    from studies.contest.folder import Contents
+    from studies.contest.folder import Contents, Folder
     from studies.contest.imported import named_files
     from studies.contest.measures import arenas_of
     from studies.contest.problems import problems_of
-    from studies.contest.report.files import report_files
+    from studies.contest.report.files import check_places, report_files
     from studies.contest.report.notes import not_alike, wrong_claims
     from studies.contest.report.tables import summary_table
     from studies.contest.statistics import why_none
@@ -114,6 +114,8 @@ def contest(
         raise ValueError("--import-evaluations says how long imported runs are; give --import too")
     files, errors = named_files(given), Console(stderr=True)
     with working("reading", errors, quiet=quiet):
+        Folder(output).check_places(asked.keys)
+        check_places(output)
         contents = Contents.of(output)
         set_up(asked, contents, files, import_evaluations)
     pieces = pieces_of(asked, contents)

@@ -3,9 +3,12 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from lines import MOVE, run
+
+import studies.cli
 
 
 @pytest.mark.parametrize("package", ["ocp", "studies"])
@@ -75,3 +78,20 @@ def test_a_file_on_the_path_with_the_name_of_a_package_is_told_in_one_line(folde
         "its folder out of PYTHONPATH\n"
     )
     assert (folder / "o.json").exists() == ("o.json" in line)  # what was found is kept
+
+
+# Without site, which imports what it likes before the command can say anything.
+@pytest.mark.parametrize("shadow", ["enum.py", "enum/__init__.py"])
+def test_what_the_first_import_would_need_is_told_too(folder, shadow):
+    (folder / shadow).parent.mkdir(exist_ok=True)
+    (folder / shadow).write_text("x = 1\n")
+    script = Path(studies.cli.__file__).with_name("quietarm")
+    path = os.pathsep.join([str(folder), *filter(None, sys.path)])
+    ran = subprocess.run(
+        [sys.executable, "-S", "-P", script, "problems"],
+        capture_output=True, text=True, timeout=60, env={**os.environ, "PYTHONPATH": path},
+    )  # fmt: skip
+    assert ran.stderr == (
+        f"quietarm: {folder / shadow} takes the place of the package 'enum'; rename that file, or "
+        "take its folder out of PYTHONPATH\n"
+    )

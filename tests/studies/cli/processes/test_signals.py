@@ -7,10 +7,12 @@ import signal
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 from lines import MOVE
 
+import studies.cli
 import studies.runs.reports.comparison
 from ocp import Front
 
@@ -161,6 +163,22 @@ def test_while_it_is_loaded_it_ends_in_a_line(folder, module, number):
     assert (ran.returncode, ran.stdout) == (1, "")
     assert ran.stderr.strip() == "quietarm: interrupted; nothing was written"
     assert list(folder.iterdir()) == []
+
+
+def test_ctrl_c_is_answered_before_anything_else_is_loaded():
+    script = Path(studies.cli.__file__).with_name("quietarm")
+    code = (
+        "import sys; known = {*sys.modules, '_signal'}\n"
+        "class End:\n"
+        "    def find_spec(self, name, *rest):\n"
+        "        if name == 'ocp': sys.exit(' '.join({*sys.modules} - known))\n"
+        "sys.meta_path.insert(0, End())\n"
+        f"exec(open({str(script)!r}).read())\n"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=GUARD
+    )
+    assert set(ran.stderr.split()) == {"studies", "studies.early"}
 
 
 def test_a_library_that_is_loaded_leaves_signals_alone():

@@ -176,7 +176,7 @@ def test_control_characters_of_a_name_do_not_reach_the_terminal(call):
     code, out, err = call(["polish", "\x1b[32m.json"])
     assert (code, err) == (
         2,
-        "quietarm: \\x1b[32m.json cannot be read: no such file or directory\n",
+        "quietarm: \\x1b[32m.json cannot be read: no such file or directory; give another file\n",
     )
 
 

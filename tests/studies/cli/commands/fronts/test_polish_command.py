@@ -164,4 +164,7 @@ def test_bad_input_is_refused_in_one_line(call, folder, content, line, words):
 def test_a_file_that_is_not_there_is_told(call):
     code, out, err = call("polish nowhere.json")
     assert (code, out) == (2, "")
-    assert err == "quietarm: nowhere.json cannot be read: no such file or directory\n"
+    assert (
+        err
+        == "quietarm: nowhere.json cannot be read: no such file or directory; give another file\n"
+    )

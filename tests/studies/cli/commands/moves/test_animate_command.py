@@ -59,7 +59,7 @@ def test_a_plant_of_ones_own_is_drawn_from_its_file(call, crane_file):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("plan.json", "Missing option '--output'"),
+        ("plan.json", "--output is missing; give it, as --output FILE"),
         ("--output m.gif", "no plan is given; give files that were written by quietarm plan"),
         ("plan.json --output m.png", "m.png is no animation; end its name in .gif or .mp4"),
         ("plan.json --output m", "m is no animation; end its name in .gif or .mp4"),

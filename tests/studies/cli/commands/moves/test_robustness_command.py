@@ -177,7 +177,7 @@ def test_plans_of_different_plants_share_what_both_have(call):
         ("ours.json --omega", "--omega has no value; give one, as --omega 10%"),
         ("ours.json --omega 10% --omega 5%", "--omega is given twice"),
         ("ours.json --frequency 10% --frequency 5%", "--frequency is given twice; give it once"),
-        ("ours.json -x", "No such option"),
+        ("ours.json -x", "has no option '-x'; "),
         ("ours.json --samples 0", "samples is 0; give a whole number from 1 up"),
         ("ours.json --samples 1e9", "samples is 1000000000; give at most 1000000"),
         ("ours.json --samples ten", "'ten' is no whole number; give one, as 2 or 1e3"),
