@@ -55,7 +55,9 @@ def exact_front(task: PointToPoint, profile: JointProfile, bound: float) -> Fron
     KeyboardInterrupt
         When it was interrupted after the sweep.
     """
-    front = epsilon_front(task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS)
+    front = epsilon_front(
+        task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS, between=False
+    )
     if not front.complete:
         return front
     points = list(front.points)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from ocp.base.interrupts import note_interrupts
 from ocp.front.answer import Front, reference_corner
 from ocp.front.points import FailedPoint, FrontPoint, non_dominated
+from ocp.front.robust import EXCESS, held_between
 from ocp.front.sweep import Sweep
 
 
@@ -21,6 +22,7 @@ def front_of(
     iterations: int = 0,
     complete: bool = True,
     seconds: float = 0.0,
+    between: bool = True,
 ) -> Front:
     """Put points together to a front.
 
@@ -42,23 +44,29 @@ def front_of(
         Whether the sweep ran to its end.
     seconds : float
         Time that was spent before the sweep [s].
+    between : bool
+        Whether the residual of an uncertain plant is held between its samples as well.
 
     Returns
     -------
     Front
         The front.
     """
+    excess = None
+    if between and complete:
+        found, excess, complete = held_between(sweep, found)
     with note_interrupts():  # the points are found; the rest takes a moment
         reference = reference_corner(sweep.task)
     failures = tuple(point for point in found if isinstance(point, FailedPoint))
     settings = sweep.settings
+    stated = {} if excess is None else {EXCESS: excess}
     return Front(
         task=sweep.task,
         profile=sweep.profile,
         points=non_dominated(point for point in found if isinstance(point, FrontPoint)),
         method=method,
         settings={"bound": settings.bound, "points": points, "starts": settings.starts,
-                  "steps": sweep.steps},
+                  "steps": sweep.steps, **stated},
         seed=settings.seed,
         reference=reference,
         iterations=sweep.iterations + iterations,

@@ -13,8 +13,14 @@ from ocp.front.sweep import SAME, Sweep
 from ocp.plan.feasibility import least_peaks
 from ocp.plan.solver import least_energy
 from ocp.plan.verification import MOST_SOLVER_STEPS, STILL, verified
-from ocp.program.solution import Solution
+from ocp.program.solution import ENERGY, Solution
 from ocp.program.transcription import RESIDUAL
+from ocp.robustness.uncertain import UncertainPlant, on_assumed
+
+_LESS_AND_LESS = (1.0, 0.1, 0.02, 2e-3)
+"""Weights of the energy on the way to the still end of an uncertain plant. With the last, it is
+where a hundredth of the residual of the cheapest end costs five times the energy of the assumed
+plant's motion at rest."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +57,7 @@ class Ends:
         return self.width <= STILL or self.height <= SAME * self.still.energy
 
 
-def find_ends(sweep: Sweep) -> Ends:
+def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
     """Find the motion of least energy that arrives at rest, and that whose residual is free.
 
     The number of steps is raised until the independent integrator agrees with the still end.
@@ -61,6 +67,8 @@ def find_ends(sweep: Sweep) -> Ends:
     ----------
     sweep : Sweep
         What is asked.
+    between : bool
+        Whether an uncertain plant is meant between its samples as well, where no motion rests.
 
     Returns
     -------
@@ -74,6 +82,8 @@ def find_ends(sweep: Sweep) -> Ends:
     SolverFailedError
         When no start ended at an optimum for another reason.
     """
+    if between and isinstance(sweep.task.plant, UncertainPlant):
+        return _of_uncertain(sweep)
     still = _at_rest(sweep)  # first: it settles the number of steps
     free = sweep.problem(np.inf)
     cheapest = least_energy(free)
@@ -91,6 +101,30 @@ def find_ends(sweep: Sweep) -> Ends:
         found = found if found.status.solved else least[RESIDUAL]
         still = found, checked(sweep, found, {RESIDUAL_LIMIT: limit})
     return Ends(*still, cheapest)
+
+
+def _of_uncertain(sweep: Sweep) -> Ends:
+    """The ends from those of the assumed plant, whose energy it is: the cheapest is the same.
+
+    Neither rest at all samples nor the least residual is asked for: the first costs much energy
+    and leaves no rest between the samples, the second any energy. The still end is where less
+    residual costs too much energy.
+    """
+    alone = Sweep(on_assumed(sweep.task), sweep.profile, sweep.settings)
+    assumed = find_ends(alone)
+    sweep.steps, sweep.iterations = alone.steps, sweep.iterations + alone.iterations
+    guesses = [assumed.cheapest.coefficients, assumed.still.coefficients]
+    free = replace(sweep.problem(np.inf), guesses=guesses)
+    cheapest = free.solve(assumed.cheapest.coefficients)
+    if not cheapest.status.solved:
+        cheapest = least_energy(free)
+    sweep.iterations += cheapest.iterations
+    still = cheapest
+    for weight in _LESS_AND_LESS:
+        weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / assumed.still.energy}
+        found = sweep.solve(still.coefficients, minimise=weights)
+        still = found if found.status.solved else still
+    return Ends(still, checked(sweep, still, {RESIDUAL_LIMIT: still.residual}), cheapest)
 
 
 def _at_rest(sweep: Sweep) -> tuple[Solution, FrontPoint] | None:

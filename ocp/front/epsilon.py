@@ -49,6 +49,7 @@ def epsilon_front(
     starts: int = 4,
     seed: int = 0,
     steps: int | None = None,
+    between: bool = True,
     report: Report = no_report,
 ) -> Front:
     """Find the front of residual and energy by the gradient, least energy at each residual limit.
@@ -76,6 +77,9 @@ def epsilon_front(
         Seed of the random starts.
     steps : int, optional
         Steps of the solver's discretisation, as for `plan_move`.
+    between : bool
+        Whether the residual of an `UncertainPlant` is what a motion leaves at worst, whatever the
+        error within the ranges; else at the plant's samples alone, as in a search.
     report : callable, optional
         Called with the number of points done and of all.
 
@@ -83,7 +87,9 @@ def epsilon_front(
     -------
     Front
         Method ``"epsilon"``; figures by the independent integrator. Points that could not be found
-        are in its `failures`. After Ctrl-C what was found until then, with ``complete`` false.
+        are in its `failures`. Of an uncertain plant its task has the samples that this took, and
+        ``settings["excess"]`` is the share by which what a point leaves between them may pass its
+        residual. After Ctrl-C what was found until then, with ``complete`` false.
 
     Raises
     ------
@@ -98,7 +104,7 @@ def epsilon_front(
     points = number_of_points(points)
     at = [positive("residual", residual, "m") for residual in at]
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
-    ends = find_ends(sweep)
+    ends = find_ends(sweep, between=between)
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
     found.append(checked(sweep, ends.cheapest, asked, free=True))
@@ -108,11 +114,11 @@ def epsilon_front(
     try:
         limits = sorted([*_spaced_limits(sweep, ends, points), *also], reverse=True)
         stretch = _Stretch(sweep, limits, total, report)
-        between, complete = stretch.run(ends.cheapest, ends.still.coefficients)
-        found += between
+        inner, complete = stretch.run(ends.cheapest, ends.still.coefficients)
+        found += inner
     except KeyboardInterrupt:
         complete = False
-    front = front_of(sweep, "epsilon", found, points, complete=complete)
+    front = front_of(sweep, "epsilon", found, points, complete=complete, between=between)
     extra = {"at": ", ".join(f"{residual:g}" for residual in at)} if at else {}
     return replace(front, settings={**front.settings, **extra})
 

@@ -16,6 +16,7 @@ from ocp.front.answer import Front
 from ocp.front.assembly import front_of
 from ocp.front.checking import RESIDUAL_LIMIT, checked
 from ocp.front.points import FailedPoint, FrontPoint
+from ocp.front.robust import EXCESS
 from ocp.front.sweep import Report, Sweep, no_report
 
 
@@ -152,10 +153,15 @@ def _together(front: Front, sweep: Sweep, tried: Sequence[_Tried], complete: boo
         [found for one in tried for found in one.found],
         len(front.points),
         iterations=front.iterations, complete=complete, seconds=front.seconds,
+        between=EXCESS in front.settings,
     )  # fmt: skip
+    of_front = {name: value for name, value in front.settings.items() if name != EXCESS}
+    found_anew = {
+        name: value for name, value in polished.settings.items() if name in ("steps", EXCESS)
+    }
     with_origin = replace(
         polished,
-        settings={**front.settings, "steps": polished.settings["steps"]},
+        settings={**of_front, **found_anew},
         seed=front.seed,
         reference=front.reference,
         evaluations=front.evaluations,

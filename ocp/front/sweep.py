@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,6 +17,7 @@ from ocp.program.problem import Problem
 from ocp.program.solution import LEAST_ENERGY, Solution
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
+from ocp.robustness.uncertain import uncertain_plant, with_samples
 from ocp.task.point_to_point import PointToPoint
 
 Guess = NDArray[np.float64] | Solution
@@ -64,6 +65,25 @@ class Sweep:
         self.steps = first_steps(self.task, self.profile, self.settings)
         self.guesses = start_coefficients(self.profile, self.settings)
         self._program: TaskProgram | None = None
+
+    @property
+    def ranges(self) -> list[float]:
+        """The largest errors of an uncertain plant."""
+        return list(uncertain_plant(self.task.plant).ranges.values())
+
+    @property
+    def samples(self) -> list[tuple[float, ...]]:
+        """The errors at which its residual counts, none at first."""
+        return [(0.0,) * len(self.ranges), *uncertain_plant(self.task.plant).samples]
+
+    def add_samples(self, more: Sequence[Sequence[float]]) -> None:
+        """Let the residual of an uncertain plant count at more errors."""
+        if more:
+            self.take(with_samples(self.task, more))
+
+    def take(self, task: PointToPoint) -> None:
+        """Go on with another task."""
+        self.task, self._program = task, None
 
     @property
     def program(self) -> TaskProgram:

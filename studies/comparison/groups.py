@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from ocp import Front
 from ocp.answers.encoding import plain
 from ocp.base.checks import of_kind
+from ocp.front.robust import EXCESS
 from studies.paper.tasks import task_difference
 from studies.registry.methods import method_of
 
@@ -85,7 +86,8 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 
 def _settings(front: Front) -> dict[str, object]:
     profile = plain(front.profile)
-    return {**front.settings, "profile": profile.pop("name"), **profile, "whole": front.complete}
+    asked = {name: value for name, value in front.settings.items() if name != EXCESS}
+    return {**asked, "profile": profile.pop("name"), **profile, "whole": front.complete}
 
 
 def _label(front: Front, alike: Sequence[Front]) -> str:

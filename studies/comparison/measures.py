@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
 from ocp.front.points import LEVELS
+from ocp.front.robust import on_same_samples
 from ocp.robustness.uncertain import on_assumed
 from studies.comparison.groups import check_fronts, grouped
 from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
@@ -193,7 +194,8 @@ def compare_fronts(
     Parameters
     ----------
     fronts : sequence of Front
-        Two or more, of one task, by any methods.
+        Two or more, of one task, by any methods; of an uncertain plant the residuals are compared
+        at the samples of all of them.
     names : sequence of str, optional
         What to call them in messages and tables; numbered by default.
     reference : Front, optional
@@ -220,6 +222,8 @@ def compare_fronts(
         When there are fewer fronts than that, one is empty or given twice, or their tasks differ.
     """
     names = list(names) or [f"front {i}" for i in range(1, len(fronts) + 1)]
+    given = on_same_samples([*fronts, reference] if reference else fronts)
+    fronts, reference = given[: len(fronts)], given[-1] if reference else None
     check_fronts(fronts, names, least=least)
     if reference is not None:
         check_fronts([fronts[0], reference], [names[0], reference_name], twice=True)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from rich.console import Console
 
 from metaheuristics.ensemble import energy_at
-from ocp import FailedPoint, Front
+from ocp import FailedPoint, Front, UncertainPlant
 from ocp.front.checking import RESIDUAL_LIMIT
 from ocp.front.points import LEVELS
+from ocp.front.robust import EXCESS
 from studies.display.words import counted, millimetres, print_lines
 from studies.runs.reports.worst import point_in_words
 
@@ -31,6 +32,7 @@ def print_sweep(console: Console, front: Front, asked_for: int) -> None:
         f"{counted(front.iterations, 'iteration')} of the solver "
         f"in {front.seconds:.1f} s{state}",
         *point_lines(front),
+        *excess_lines(front),
         *failure_lines(front, asked_for),
         *gap_lines(front),
     )
@@ -47,6 +49,22 @@ def point_lines(front: Front) -> list[str]:
         found = f"{energy:.4g} J" if energy == energy else "none"  # NaN where there is none
         lines.append(f"  {name:15}{found}")
     return lines
+
+
+def excess_lines(front: Front) -> list[str]:
+    """Of an uncertain plant, how well the residuals hold between its samples."""
+    if not isinstance(front.task.plant, UncertainPlant):
+        return []
+    excess = front.settings.get(EXCESS)
+    if not isinstance(excess, float):
+        return ["residuals hold at the samples of the plant alone; between them more may be left"]
+    errors = ", ".join(
+        f"{name} within {100 * most:g} %" for name, most in front.task.plant.ranges.items()
+    )
+    return [
+        f"residuals hold for any {errors}: between the samples CVODES finds at most "
+        f"{100 * excess:.2g} % more at any point"
+    ]
 
 
 def failure_lines(front: Front, asked_for: int) -> list[str]:

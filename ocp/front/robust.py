@@ -1,0 +1,238 @@
+"""Hold what the points of a front leave between the samples of an uncertain plant as well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.answers.provenance import REST
+from ocp.front.answer import Front
+from ocp.front.checking import RESIDUAL_LIMIT, checked
+from ocp.front.points import FailedPoint, FrontPoint, non_dominated
+from ocp.front.sweep import Sweep
+from ocp.robustness.uncertain import UncertainPlant
+from ocp.robustness.worst import peaks_between, worst_at
+
+EXCESS = "excess"
+"""Among the settings of a front: the share by which the residual between the samples may pass that
+of a point, by CVODES, at the point where it does so most."""
+_SOLVED, _STATED = 0.02, 1e-3
+"""Shares by which it may do so before points are solved again, and before their residual is."""
+_ROUNDS, _ADDED, _PEAKS = 4, 3, 4
+"""Most times that points are solved again, most samples that each adds, peaks of a point."""
+_APART = 0.1
+"""Peaks of several points closer than this share of the ranges share a sample."""
+
+Found = FrontPoint | FailedPoint
+
+
+@dataclass(frozen=True)
+class _Point:
+    """A point with the peaks of its residual between the samples."""
+
+    point: FrontPoint
+    peaks: NDArray[np.float64]
+
+    @property
+    def excess(self) -> NDArray[np.float64]:
+        """Share by which each peak passes the point's residual."""
+        return (self.peaks[:, 0] - self.point.residual - REST) / max(self.point.residual, REST)
+
+
+def held_between(sweep: Sweep, found: Sequence[Found]) -> tuple[list[Found], float | None, bool]:
+    """Points of a sweep whose residual holds between the samples of its uncertain plant as well.
+
+    Where CVODES between the samples finds much more than a point's residual, the peaks become
+    samples, which all points share, and the points that pass their residual there are solved again,
+    each from where it is. A point that was not found is tried again from its neighbours. In the end
+    peaks become samples until every point's residual is what it leaves at worst.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        What was asked; its plant gets the samples. Without an uncertain plant nothing happens.
+    found : sequence of FrontPoint or FailedPoint
+        What the sweep found.
+
+    Returns
+    -------
+    list of FrontPoint or FailedPoint
+        The points, their residuals at the samples of the sweep's plant. After Ctrl-C those of the
+        round before, and its samples.
+    float or None
+        The largest share by which a peak between the samples passes the residual of its point;
+        None without an uncertain plant, or after Ctrl-C.
+    bool
+        Whether no Ctrl-C ended the rounds early.
+    """
+    if not isinstance(sweep.task.plant, UncertainPlant):
+        return list(found), None, True
+    kept = list(found)
+    try:
+        for _ in range(_ROUNDS):
+            more = _samples(sweep, kept)
+            missing = any(isinstance(one, FailedPoint) for one in kept)
+            if not more and not missing:
+                break
+            with _undone(sweep):
+                sweep.add_samples(more)
+                again = _solved_again(sweep, kept)
+            if not more and _failed(again) == _failed(kept):
+                break
+            kept = again
+        with _undone(sweep):
+            return *_at_worst(sweep, kept), True
+    except KeyboardInterrupt:
+        return kept, None, False
+
+
+@contextmanager
+def _undone(sweep: Sweep) -> Iterator[None]:
+    """Take back the samples that Ctrl-C in the block left without their points."""
+    before = sweep.task
+    try:
+        yield
+    except KeyboardInterrupt:
+        sweep.take(before)
+        raise
+
+
+def _failed(found: Sequence[Found]) -> int:
+    return sum(isinstance(one, FailedPoint) for one in found)
+
+
+def _looked_at(sweep: Sweep, point: FrontPoint) -> _Point:
+    where = sweep.task, sweep.profile, point.coefficients
+    return _Point(point, peaks_between(*where, _PEAKS)[1])
+
+
+def _samples(sweep: Sweep, found: Sequence[Found]) -> list[list[float]]:
+    """The errors of the peaks that pass their point's residual too far, the farthest first."""
+    points = [_looked_at(sweep, one) for one in found if isinstance(one, FrontPoint)]
+    passing = [
+        (excess, peak[1:])
+        for one in points
+        for excess, peak in zip(one.excess, one.peaks, strict=True)
+        if excess > _SOLVED
+    ]
+    near = _APART * np.array(sweep.ranges)
+    chosen = list[NDArray[np.float64]]()
+    for _, errors in sorted(passing, key=lambda one: -one[0]):
+        if len(chosen) < _ADDED and all((abs(errors - one) > near).any() for one in chosen):
+            chosen.append(errors)
+    return [errors.tolist() for errors in chosen]
+
+
+def _solved_again(sweep: Sweep, found: Sequence[Found]) -> list[Found]:
+    """The points at their residuals with the samples that there are now, the cheapest first."""
+    points = [one for one in found if isinstance(one, FrontPoint)]
+    cheapest = min(points, key=lambda one: one.energy, default=None)  # the assumed plant's
+    order = sorted((one for one in found if one is not cheapest), key=_target, reverse=True)
+    for way in (order, order[::-1]):  # what fails from one neighbour is tried from the other
+        beside = cheapest if way is order else None
+        for i, one in enumerate(way):
+            way[i] = one = _held_at(sweep, one, beside)
+            beside = one if isinstance(one, FrontPoint) else beside
+        order[:] = sorted(way, key=_target, reverse=True)
+    if cheapest is None:
+        return order
+    return [replace(cheapest, residual=_residual(sweep, cheapest)), *order]
+
+
+def _held_at(sweep: Sweep, one: Found, beside: FrontPoint | None) -> Found:
+    """A point that keeps its residual at all samples, from itself or else from one beside it."""
+    guesses = [guess for guess in (one, beside) if isinstance(guess, FrontPoint)]
+    if isinstance(one, FrontPoint):
+        residual = _residual(sweep, one)
+        if residual <= one.residual * (1 + _STATED) + REST:
+            return replace(one, residual=residual)
+    elif RESIDUAL_LIMIT not in one.asked:
+        return one
+    target, reason = _target(one), getattr(one, "reason", "")
+    asked = {RESIDUAL_LIMIT: target}
+    for guess in guesses:
+        solved = sweep.solve(np.array(guess.coefficients), target)
+        if solved.status.solved:
+            point = checked(sweep, solved, asked, target * (1 + _SOLVED))
+            if isinstance(point, FrontPoint):
+                return point
+            reason = point.reason
+        else:
+            reason = reason or solved.status.text
+    return FailedPoint(asked, reason)
+
+
+def _target(one: Found) -> float:
+    """The residual that a point is to keep [m]."""
+    return one.residual if isinstance(one, FrontPoint) else one.asked.get(RESIDUAL_LIMIT, 0.0)
+
+
+def _residual(sweep: Sweep, point: FrontPoint) -> float:
+    """The largest at the samples [m]."""
+    return max(_left(sweep, point, errors) for errors in sweep.samples)
+
+
+def _left(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> float:
+    return worst_at(sweep.task, sweep.profile, point.coefficients, errors).residual
+
+
+def _at_worst(sweep: Sweep, found: Sequence[Found]) -> tuple[list[Found], float]:
+    """The points with the residual that they leave at worst, where a peak is far above a sample."""
+    points = [one for one in found if isinstance(one, FrontPoint)]
+    others = [one for one in found if isinstance(one, FailedPoint)]
+    looked = [_looked_at(sweep, replace(p, residual=_residual(sweep, p))) for p in points]
+    while looked:
+        farthest = max(looked, key=lambda one: one.excess.max())
+        excess = float(farthest.excess.max())
+        if excess <= _STATED:
+            return [*(one.point for one in looked), *others], max(excess, 0.0)
+        errors = farthest.peaks[np.argmax(farthest.excess), 1:].tolist()
+        sweep.add_samples([errors])
+        looked = [replace(one, point=_with_sample(sweep, one.point, errors)) for one in looked]
+    return [*others], 0.0
+
+
+def _with_sample(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> FrontPoint:
+    return replace(point, residual=max(point.residual, _left(sweep, point, errors)))
+
+
+def on_same_samples(fronts: Sequence[Front]) -> list[Front]:
+    """Fronts of one uncertain plant with their residuals at the samples of all of them.
+
+    Parameters
+    ----------
+    fronts : sequence of Front
+        Any fronts.
+
+    Returns
+    -------
+    list of Front
+        Those whose uncertain plants have the same ranges and other samples are evaluated again, by
+        CVODES; all others as they are.
+    """
+    samples: dict[UncertainPlant, dict[tuple[float, ...], None]] = {}
+    for front in fronts:
+        if isinstance(front.task.plant, UncertainPlant):
+            plant = front.task.plant
+            samples.setdefault(replace(plant, samples=()), {}).update(dict.fromkeys(plant.samples))
+    return [_with_samples(front, samples) for front in fronts]
+
+
+def _with_samples(
+    front: Front, samples: Mapping[UncertainPlant, Mapping[tuple[float, ...], None]]
+) -> Front:
+    if not isinstance(front.task.plant, UncertainPlant) or not front.points:
+        return front
+    of_all = tuple(samples[replace(front.task.plant, samples=())])
+    task = replace(front.task, plant=replace(front.task.plant, samples=of_all))
+    new = [one for one in of_all if one not in front.task.plant.samples]
+    left = [
+        max([p.residual, *(worst_at(task, front.profile, p.coefficients, e).residual for e in new)])
+        for p in front.points
+    ]
+    points = (replace(p, residual=most) for p, most in zip(front.points, left, strict=True))
+    return replace(front, task=task, points=non_dominated(points))
