@@ -5,16 +5,21 @@
 The old version is taken from this repository's history into a temporary folder; nothing needs to be
 installed for it. Each version runs in a process of its own, the two in turn, so that other load on
 the machine affects both alike. Only functions that both have are called: `plan_move`,
-`epsilon_front`. Times are the processor's. Printed are medians, the ratio old / new, and how much
-higher (+) or lower (-) the new energies are, all by each version's own CVODES figures.
+`epsilon_front`, `energy_floor`, `search`, `PopulationObjective`. Times are the processor's. Printed
+are medians, the ratio old / new, and how much higher (+) or lower (-) the new energies are, all by
+each version's own CVODES figures.
 
 - plans: the second plan of the same shape, one start, six terms; the paper's six conditions in its
   boxes and four others.
 - fronts: 50 points by the epsilon constraint; the same conditions.
 - hard: 20 terms, all limits at once, two modes; one start, second plan.
 - modes: plants of 1 to 12 modes at rest on arrival, 2 x modes + 4 terms, first plan of its shape.
-- starts, only if asked for: in how many of 40 seeds the default four starts find the best plan of
-  the 40; the paper's six conditions and ten others, 6 and 10 terms, with and without a box.
+- floors: two conditions of the link and three of the arm, free accelerations and smooth.
+- searches: NSGA-II with 200 candidates and VEPSO with 2 x 100, for 60 generations.
+- population: 100 calls with 200 candidates, functions built before, on the paper's six conditions.
+- starts, only if asked for: in how many of 40 seeds (of the old version: 4) the default four starts
+  find the best plan; the paper's six conditions and ten others, 6 and 10 terms, with and without a
+  box.
 """
 
 from __future__ import annotations
@@ -34,6 +39,7 @@ from statistics import median
 from typing import ClassVar
 
 ROOT = Path(__file__).resolve().parents[1]
+GROUPS = ("plans", "fronts", "hard", "modes", "floors", "searches", "population")
 BEFORE = "a41b84d"
 """The last commit before the program was condensed."""
 
@@ -43,15 +49,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--old", default=BEFORE, help="commit of the old version")
     parser.add_argument("--repetitions", type=int, default=3)
-    parser.add_argument("--only", nargs="*", default=["plans", "fronts", "hard", "modes"])
+    parser.add_argument("--only", nargs="*", default=list(GROUPS))
+    parser.add_argument("--seeds", type=int, default=40, help="of the new version, for starts")
+    parser.add_argument("--old-seeds", type=int, default=4)
     parser.add_argument("--serve", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.serve:
-        serve()
+        serve(options.seeds)
         return
     with tempfile.TemporaryDirectory() as folder:
         unpack(options.old, Path(folder))
-        versions = [Version(Path(folder)), Version(ROOT)]
+        versions = [Version(Path(folder), options.old_seeds), Version(ROOT, options.seeds)]
         for group in options.only:
             once = group in ("modes", "starts")
             compare(group, versions, 1 if once else options.repetitions)
@@ -69,9 +77,9 @@ def unpack(commit: str, folder: Path) -> None:
 class Version:
     """A process that runs one version."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, seeds: int) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-W", "ignore", __file__, "--serve"],
+            [sys.executable, "-W", "ignore", __file__, "--serve", "--seeds", str(seeds)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=folder,
             env={"PYTHONPATH": str(folder), "PATH": "/usr/bin:/bin"},
         )  # fmt: skip
@@ -92,6 +100,7 @@ def compare(group: str, versions: list[Version], repetitions: int) -> None:
         runs = [[version(group, name) for version in versions] for _ in range(repetitions)]
         old, new = (median(run[i]["seconds"] for run in runs) for i in range(2))
         before, after = (run["energy"] for run in runs[-1])
+        count_hits(runs[-1])
         notes = " / ".join(run["note"] for run in runs[-1])
         ratio = change = "-"  # where one of them found nothing
         if before and after:
@@ -101,13 +110,23 @@ def compare(group: str, versions: list[Version], repetitions: int) -> None:
     print(f"| median | | | {median(ratios):.1f} | least {min(ratios):.1f} | |")
 
 
+def count_hits(both: list[dict]) -> None:
+    """Where many seeds were tried: how many found the best that either version found."""
+    best = min((energy for run in both for energy in run.get("seeds", [])), default=None)
+    for run in both:
+        if "seeds" in run:
+            hits = sum(energy <= best * (1 + 1e-4) for energy in run["seeds"])
+            run["note"] = f"{hits} of {run['tried']}"
+
+
 # -- in the process of one version --
 
 
-def serve() -> None:
+def serve(seeds: int) -> None:
     """Answer a line with a line, until there are no more."""
     work = {"plans": plans(), "fronts": fronts(), "hard": hard(), "modes": modes()}
-    work["starts"] = starts()
+    work |= {"floors": floors(), "searches": searches(), "population": population()}
+    work["starts"] = starts(seeds)
     for line in sys.stdin:
         group, name = json.loads(line)
         answer = list(work[group]) if not name else work[group][name]()
@@ -216,8 +235,67 @@ def modes() -> dict:
     }
 
 
-def starts() -> dict:
-    """Forty seeds of a plan, for each move, number of terms, and box."""
+def floors() -> dict:
+    """Floors of five conditions, both kinds."""
+    from ocp import energy_floor
+
+    def floor(task, smooth: bool) -> dict:
+        began = time.process_time()
+        found = energy_floor(task, smooth=smooth)
+        note = f"{len(found.levels)} grids"
+        return {"seconds": time.process_time() - began, "energy": found.energy, "note": note}
+
+    paper = {name: task for name, (task, _) in list(conditions().items())[:6]}
+    return {
+        f"{name}{', smooth' * smooth}": lambda task=task, smooth=smooth: floor(task, smooth)
+        for name, task in paper.items()
+        if name.startswith(("link, 0 to pi/6", "link, 0 to pi/2, 1.0", "arm"))
+        for smooth in (False, True)
+    }
+
+
+def searches() -> dict:
+    """The paper's two searches on its six conditions, in its boxes."""
+    from metaheuristics import search
+
+    def front(task, method: str) -> dict:
+        began = time.process_time()
+        found = search(task, method, generations=60)
+        seconds = time.process_time() - began
+        note = f"{len(found.points)} points"
+        return {"seconds": seconds, "energy": found.energies.min(), "note": note}
+
+    return {
+        f"{name}, {method}": lambda task=task, method=method: front(task, method)
+        for name, (task, _) in list(conditions().items())[:6]
+        for method in ("nsga2", "vepso")
+    }
+
+
+def population() -> dict:
+    """The objective of many candidates."""
+    import numpy as np
+
+    from metaheuristics import PopulationObjective
+    from ocp import CycloidPolynomial
+
+    def calls(task, bound: float) -> dict:
+        objective = PopulationObjective(task, CycloidPolynomial(6))
+        candidates = np.random.default_rng(0).uniform(-bound, bound, (200, 6))
+        energy = objective(candidates).energy.mean()
+        began = time.process_time()
+        for _ in range(100):
+            objective(candidates)
+        return {"seconds": time.process_time() - began, "energy": energy, "note": ""}
+
+    return {
+        name: lambda task=task, bound=bound: calls(task, bound)
+        for name, (task, bound) in list(conditions().items())[:6]
+    }
+
+
+def starts(seeds: int) -> dict:
+    """Many seeds of a plan, for each move, number of terms, and box."""
     from models import ArmOnFlexibleLink, SingleLinkManipulator
     from ocp import PointToPoint
 
@@ -237,7 +315,7 @@ def starts() -> dict:
     paper = {name: task for name, (task, _) in list(conditions().items())[:6]}
     return {
         f"{name}, {terms} terms, {f'box {bound}' if bound else 'no box'}": (
-            lambda task=task, terms=terms, bound=bound: forty_seeds(task, terms, bound)
+            lambda task=task, terms=terms, bound=bound: many_seeds(task, terms, bound, seeds)
         )
         for name, task in {**paper, **others}.items()
         for terms in (6, 10)
@@ -245,21 +323,20 @@ def starts() -> dict:
     }
 
 
-def forty_seeds(task, terms: int, bound: float | None) -> dict:
+def many_seeds(task, terms: int, bound: float | None, seeds: int) -> dict:
     """Plan with every seed; say how many found the best, and how many found none."""
     from ocp import CycloidPolynomial, QuietarmError, plan_move
 
     began, energies = time.process_time(), []
-    for seed in range(40):
+    for seed in range(seeds):
         try:
             found = plan_move(task, CycloidPolynomial(terms), bound=bound, seed=seed)
         except QuietarmError:
             continue
         energies.append(found.energy)
+    seconds = (time.process_time() - began) / seeds
     best = min(energies, default=None)
-    hits = sum(energy <= best * (1 + 1e-4) for energy in energies)
-    note = f"{hits} of 40" + f", {40 - len(energies)} without a plan" * (len(energies) < 40)
-    return {"seconds": time.process_time() - began, "energy": best, "note": note}
+    return {"seconds": seconds, "energy": best, "seeds": energies, "tried": seeds, "note": ""}
 
 
 def links(count: int):

@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -22,6 +21,7 @@ from ocp import JointProfile, PointToPoint, symbolic_rollout
 from ocp.base.checks import whole
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import one_at_a_time
+from ocp.simulation.buffered import BufferedFunction
 from ocp.simulation.residual import residual_rows
 from ocp.simulation.rollout import SymbolicRollout, default_steps
 from ocp.task.quantities import QUANTITIES, ask_for_jerk
@@ -97,7 +97,7 @@ class PopulationObjective:
         self.steps = default if steps is None else whole("steps", steps, 1)
         self._tip_of_state = residual_rows(task).T
         self._limits = np.array(list(task.limits.values()))
-        self._idle: list[_Workspace] = []
+        self._idle: list[BufferedFunction] = []
         self._function = _compiled(task.plant, profile, self.steps, tuple(task.limits), often)
 
     @keep_interrupts()
@@ -137,13 +137,13 @@ class PopulationObjective:
 
     def _evaluate(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
         try:
-            workspace = self._idle.pop()
+            buffered = self._idle.pop()
         except IndexError:  # all are in use by other threads, or none is made yet
-            workspace = _Workspace(self._function)
-        arrival, table = workspace(block.T, self.task.move, self._limits)
+            buffered = BufferedFunction(self._function)
+        arrival, table = buffered(block.T, self.task.move, self._limits)
         residual = np.abs(arrival.T @ self._tip_of_state).max(axis=1)
         rows = np.column_stack([residual, table.T])
-        self._idle.append(workspace)
+        self._idle.append(buffered)
         return rows
 
     def __getstate__(self) -> dict[str, object]:
@@ -156,31 +156,6 @@ def replace_failures(table: NDArray[np.float64]) -> NDArray[np.bool_]:
     failed = np.asarray(~usable, dtype=bool)
     table[failed] = UNUSABLE
     return failed
-
-
-class _Workspace:
-    """A function with memory of its own, for one thread at a time.
-
-    A plain call of a casadi function spends as long on converting a NumPy argument as on two steps
-    of a population, and allocates its working memory anew.
-    """
-
-    def __init__(self, function: ca.Function) -> None:
-        self._buffer: Any  # casadi's type says nothing of memoryviews
-        self._buffer, self._run = function.buffer()
-        self._inputs = [np.zeros(function.size_in(i)[::-1]) for i in range(function.n_in())]
-        self._outputs = [np.zeros(function.size_out(i)[::-1]) for i in range(function.n_out())]
-        for i, values in enumerate(self._inputs):
-            self._buffer.set_arg(i, values.data)
-        for i, values in enumerate(self._outputs):
-            self._buffer.set_res(i, values.data)
-
-    def __call__(self, *inputs: ArrayLike) -> list[NDArray[np.float64]]:
-        """The outputs, transposed as the inputs are; the next call overwrites them."""
-        for own, values in zip(self._inputs, inputs, strict=True):
-            own[...] = values
-        self._run()
-        return self._outputs
 
 
 def _blocks(population: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:

@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
-from ocp.program.pieces import EnergyPieces, NodePieces, ProfilePieces, linear_steps
+from ocp.program.pieces import NodePieces, ProfilePieces, energy_pieces, linear_steps
 from ocp.program.step_model import grouped
 from ocp.program.symbols import split
-from ocp.simulation.collocation import NODES, mesh
+from ocp.simulation.collocation import NODES
 from ocp.task.quantities import ask_for_jerk
 
 
@@ -145,8 +145,8 @@ class Condensed:
         self.plant = plant
         self.size, self.steps, self.states = profile.size, steps, 2 * plant.modes
         self.nodes = NODES * steps
-        lengths = mesh(ca.DM(np.arange(steps)).T, steps)[1]
-        self.lengths = lengths.full().ravel()
+        self.energy = energy_pieces(steps)
+        self.lengths = self.energy.lengths.full().ravel()
         self.groups = grouped(plant, quantities, times=1)
         self.rows = sum(group.rows for group in self.groups[1:])
         self.scales = self.states + len(self.groups) - 1
@@ -154,7 +154,6 @@ class Condensed:
         self._inner = self._profile.inner
         self._node = NodePieces(plant, self._profile, self.nodes, self.groups)
         self._step = linear_steps(plant.modes, self._node.by_modes, steps)
-        self.energy = EnergyPieces(lengths)
         self.basis_size = 0 if self._profile.second else self.nodes * self._inner * (1 + self.size)
         a, move, scale = (ca.MX.sym("x", n) for n in (self.size, 3, self.scales))
         march = self._march(self._profile.value(a, self._profile.fractions, move), move, scale)

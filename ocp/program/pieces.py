@@ -7,6 +7,7 @@ multipliers from the right.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -20,6 +21,8 @@ from ocp.simulation.objective import energy_derivatives, resolved_energy
 
 _INNER = 3
 """Values by `JointProfile.inner` at a node."""
+Pattern = tuple[tuple[int, ...], tuple[int, ...]]
+"""Rows and columns of a matrix's entries, by columns."""
 _LEAST_SLOPE = 1e-3
 """Smaller slopes of the power at its zeros count as this one [peak power / duration]."""
 
@@ -87,8 +90,8 @@ class NodePieces:
     linear : Function
         (inner, move) -> forcing W'' of modes that are zero (modes, nodes); its derivatives by the
         modes, all that are not zero for good (entries, nodes).
-    by_modes : Sparsity
-        Where these stand, shape (modes, states).
+    by_modes : Pattern
+        Where these stand in (modes, states).
     value : Function
         Outputs (rows, nodes), scaled.
     first : Function
@@ -117,7 +120,8 @@ class NodePieces:
             )
         )  # fmt: skip
         by_modes = ca.jacobian(forcing, modes)
-        self.by_modes = by_modes.sparsity()
+        rows_of, columns_of = by_modes.sparsity().get_triplet()
+        self.by_modes = tuple(rows_of), tuple(columns_of)
         entries = by_modes.nz[:]
         self.linear = _over("linear", [inner, move], [at_rest, entries], nodes, [1])
         inputs, shared = [inner, modes, move, scale], [2, 3]
@@ -138,7 +142,8 @@ class NodePieces:
         self.second = _over("node_second", inputs, second, nodes, shared)
 
 
-def linear_steps(modes: int, by_modes: ca.Sparsity, steps: int) -> ca.Function:
+@lru_cache(maxsize=16)
+def linear_steps(modes: int, by_modes: Pattern, steps: int) -> ca.Function:
     """Matrices of the steps, from state and forcing at the nodes to modes and state.
 
     With L the collocation's linear map to the modes at the nodes from the state before the step
@@ -148,7 +153,7 @@ def linear_steps(modes: int, by_modes: ca.Sparsity, steps: int) -> ca.Function:
     ----------
     modes : int
         Number of modes.
-    by_modes : Sparsity
+    by_modes : Pattern
         Where F has entries at a node.
     steps : int
         Number of steps.
@@ -160,7 +165,7 @@ def linear_steps(modes: int, by_modes: ca.Sparsity, steps: int) -> ca.Function:
         to modes, forcing to state, forcing to modes).
     """
     state, accelerations = ca.SX.sym("z", 2 * modes), ca.SX.sym("ddW", NODES * modes)
-    h, entries = ca.SX.sym("h"), ca.SX.sym("F", NODES * by_modes.nnz())
+    h, entries = ca.SX.sym("h"), ca.SX.sym("F", NODES * len(by_modes[0]))
     W, dW = (ca.vertsplit(part) for part in ca.vertsplit(state, modes))
     ddW = [ca.vertsplit(at_node) for at_node in ca.vertsplit(accelerations, modes)]
     step = Step(h, [], modes)
@@ -168,7 +173,8 @@ def linear_steps(modes: int, by_modes: ca.Sparsity, steps: int) -> ca.Function:
     after = [x for part in step.end(W, dW, ddW) for x in part]
     moved = ca.vertcat(*after, *at_nodes)
     by_state, by_accelerations = (ca.jacobian(moved, x) for x in (state, accelerations))
-    force = ca.SX(ca.diagcat(*[by_modes] * NODES), entries)
+    at_node = ca.Sparsity.triplet(modes, 2 * modes, *by_modes)
+    force = ca.SX(ca.diagcat(*[at_node] * NODES), entries)
     one = ca.SX.eye(NODES * modes)
     matrix = one - force @ by_accelerations[len(after) :, :]
     right = ca.horzcat(force @ by_state[len(after) :, :], one)
@@ -192,6 +198,8 @@ class EnergyPieces:
 
     Attributes
     ----------
+    lengths : DM, shape (1, steps)
+        The steps' lengths as shares of the duration.
     value : Function
         Power at the nodes (1, nodes) -> energy.
     first : Function
@@ -199,8 +207,8 @@ class EnergyPieces:
         zeros of the power move (NODES, NODES * steps).
     """
 
-    def __init__(self, lengths: ca.DM) -> None:
-        steps = lengths.numel()
+    def __init__(self, steps: int) -> None:
+        self.lengths = lengths = mesh(ca.DM(np.arange(steps)).T, steps)[1]
         at_nodes = ca.MX.sym("power", 1, NODES * steps)
         by_step = ca.reshape(at_nodes, NODES, steps)
         value = resolved_energy(ca.vertsplit(by_step), lengths)
@@ -209,6 +217,12 @@ class EnergyPieces:
         gradient *= ca.repmat(lengths, NODES, 1)
         weights = ca.kron(lengths, ca.DM.ones(NODES, NODES))
         self.first = ca.Function("energy_first", [at_nodes], [ca.vec(gradient), bends * weights])
+
+
+@lru_cache(maxsize=16)
+def energy_pieces(steps: int) -> EnergyPieces:
+    """Those of every plant and profile that are marched in so many steps."""
+    return EnergyPieces(steps)
 
 
 def _over(

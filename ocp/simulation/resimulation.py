@@ -23,6 +23,7 @@ from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointProfile
+from ocp.simulation.buffered import BufferedFunction
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from ocp.simulation.cvodes import (
     Trajectory,
@@ -199,7 +200,7 @@ def resimulated(task: PointToPoint, joint: PiecewiseMotion) -> Resimulation:
     steps = max(of_a_piece, _LEAST_STEPS_OF_A_PIECE)
     with cvodes_for(joint.remedy):
         figures = _figures(task.plant, joint.law, joint.given.shape, steps)
-        outputs, arrival, energy, net_work = (value.full() for value in figures(joint.given))
+        outputs, arrival, energy, net_work = (value.T.copy() for value in figures(joint.given.T))
     largest = extremes(_fractions(steps), outputs)
     extreme = Trajectory.from_outputs(task.plant, np.zeros(2), largest)
     motion = Motion.from_samples(
@@ -223,7 +224,7 @@ def _fractions(steps: int) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=16)
 @keep_interrupts()
-def _figures(plant: Plant, law: Law, shape: tuple[int, int], steps: int) -> ca.Function:
+def _figures(plant: Plant, law: Law, shape: tuple[int, int], steps: int) -> BufferedFunction:
     """(given) -> outputs at nodes and ends of all pieces, state on arrival, energy, net work."""
     given, fractions = ca.MX.sym("p", *shape), _fractions(steps)
     states, outputs = _along(plant, law, shape, fractions)(given)
@@ -234,9 +235,9 @@ def _figures(plant: Plant, law: Law, shape: tuple[int, int], steps: int) -> ca.F
     beyond = (ca.horzcat(*at_nodes) @ weights for weights in beyond_quadratic(steps))
     energy = ca.sum1(resolved_energy(at_nodes, h, *beyond))
     net_work = h * sum(w * p for w, p in zip(GAUSS_WEIGHTS, at_nodes, strict=True))
-    return ca.Function(
-        "figures", [given], [outputs, states[:, -1], energy, ca.sum1(ca.sum2(net_work))]
-    )
+    figures = [outputs, states[:, -1], energy, ca.sum1(ca.sum2(net_work))]
+    dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
+    return BufferedFunction(ca.Function("figures", [given], dense))
 
 
 def _along(

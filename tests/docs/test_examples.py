@@ -14,6 +14,7 @@ from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
 import studies.runs.reports.comparison
 import studies.study.pieces
 from ocp import Front, Plan, energy_floor
+from ocp.floor import search as floor_search
 from studies import figures
 from studies.cli import main
 
@@ -166,6 +167,7 @@ def called(capfd, monkeypatch):
     rough = partial(energy_floor, starts=1, tolerance=0.05)
     monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", rough)
     monkeypatch.setattr(studies.study.pieces, "energy_floor", rough)
+    monkeypatch.setattr(floor_search, "FIRST_INTERVALS", 24)
 
     def call(words):
         with pytest.raises(SystemExit) as ended:

@@ -6,11 +6,11 @@ import os
 import shlex
 import signal
 import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from lines import COARSELY
 
 from metaheuristics import ensemble
 from models import SingleLinkManipulator
@@ -25,6 +25,7 @@ from ocp import (
     non_dominated,
     plan_move,
 )
+from ocp.floor import search as floor_search
 from studies.cli import main
 from studies.display import progress
 from studies.registry.methods import METHODS
@@ -68,6 +69,14 @@ def reproduction(begun):
         return recompute.recompute_paper(begun.append)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _coarse_floors():
+    """Floors begin on coarser grids: how low they are is asked in tests/ocp/floor."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(floor_search, "FIRST_INTERVALS", 24)
+        yield
+
+
 @pytest.fixture
 def let_sweep(monkeypatch):
     """Put another function in the place of what sweeps a gradient's front."""
@@ -101,7 +110,7 @@ def at_a_terminal():
     def start(line):
         begun.append(
             subprocess.Popen(
-                [sys.executable, "-m", "studies", *shlex.split(line)],
+                [*COARSELY, *shlex.split(line)],
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 text=True,

@@ -194,7 +194,7 @@ def made_up_plans(draw):
         **limits,
     )
     coefficients = tuple(draw(st.lists(finite, max_size=20)))
-    texts = st.text(st.characters(exclude_categories=["Cs", "Cc"]))
+    texts = st.text(st.characters(exclude_categories=["Cs", "Cc", "Cf", "Zl", "Zp"]))
     words = st.dictionaries(texts, st.none() | finite | st.integers() | texts)
     return Plan(
         task,
@@ -207,7 +207,7 @@ def made_up_plans(draw):
     )
 
 
-@settings(max_examples=50)
+@settings(max_examples=30)
 @given(plan=made_up_plans())
 def test_any_plan_saves_and_loads_equal(tmp_path_factory, plan):
     path = tmp_path_factory.mktemp("plans") / "plan.json"

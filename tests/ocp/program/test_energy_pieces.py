@@ -2,22 +2,20 @@
 
 from dataclasses import replace
 
-import casadi as ca
 import numpy as np
 import pytest
 from both_motions import TERMS, Both, full, of_bends
 
 from ocp import CycloidPolynomial
 from ocp.program.pieces import EnergyPieces
-from ocp.simulation.collocation import NODES, mesh
+from ocp.simulation.collocation import NODES
 
 # -- the energy --
 
 
 @pytest.mark.parametrize("steps", [1, 2, 4, 30])
 def test_the_energys_gradient_by_the_power_is_the_limit_of_differences(steps):
-    lengths = ca.DM([float(mesh(k, steps)[1]) for k in range(steps)]).T
-    energy, h, random = EnergyPieces(lengths), 1e-7, np.random.default_rng(6)
+    energy, h, random = EnergyPieces(steps), 1e-7, np.random.default_rng(6)
     power = random.normal(size=(1, NODES * steps))
     gradient = energy.first(power)[0].full().ravel()
     for away in random.normal(size=(3, *power.shape)):

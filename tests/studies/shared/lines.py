@@ -10,6 +10,13 @@ MOVE = "single-link --target 30deg --duration 0.8"
 PLAN = f"plan {MOVE}"
 TWO_TERMS = "--coefficients=0.003347,-0.1697"  # the paper's Table 1
 EVERY_FILE = "--output plan.json --csv move.csv --figure move.png"
+COARSELY = [
+    sys.executable,
+    "-c",
+    "from ocp.floor import search; search.FIRST_INTERVALS = 24\n"
+    "from studies.cli import main; main()",
+]
+"""The command with coarser floors, as a process: how low these are is asked in tests/ocp/floor."""
 
 
 def run(line, **settings):

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from lines import MOVE
+from lines import COARSELY, MOVE
 
 from ocp import Plan
 
@@ -18,7 +18,7 @@ FULL = Path("/dev/full")
 
 def shell(line):
     """Run a line of a shell, in which `quietarm` is the command."""
-    command = f"{shlex.quote(sys.executable)} -m studies"
+    command = shlex.join(COARSELY)
     script = f'set -o pipefail\nquietarm() {{ {command} "$@"; }}\n{line}'
     return subprocess.run(
         ["bash", "-c", script], capture_output=True, text=True, timeout=240, check=False
