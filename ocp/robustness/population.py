@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -109,11 +110,12 @@ class ErrorPopulation:
         self._errors = self._given[0]
         self._found = [np.empty(function.size_out(i)[::-1]) for i in range(function.n_out())]
         # by their memory: taking values out of casadi's arrays takes as long as the plants
+        buffer: Any
         buffer, self._call = function.buffer()
         for i, array in enumerate(self._given):
-            buffer.set_arg(i, memoryview(array))
+            buffer.set_arg(i, array.data)
         for i, array in enumerate(self._found):
-            buffer.set_res(i, memoryview(array))
+            buffer.set_res(i, array.data)
         self._buffer = buffer
 
     @keep_interrupts()
