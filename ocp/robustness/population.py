@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -23,8 +24,12 @@ from ocp.simulation.residual import residual_samples
 from ocp.simulation.rollout import ROLLOUT_STEPS, default_steps, node_times, rollout_along
 from ocp.task.point_to_point import PointToPoint
 
-_BLOCK = 100
+_BLOCK = 50
 """Plants a call: their intermediate values fit the processor's cache."""
+
+_DOUBLINGS = 4
+_STRIDE = 2**_DOUBLINGS
+"""The residual is sampled at a multiple of so many times."""
 
 _LEAST_STEPS = 6
 """Least steps between two times at which the motion is not smooth: no step crosses one."""
@@ -91,10 +96,27 @@ class ErrorPopulation:
         faster = 1 + max(ranges.values())  # any of the parameters may be a frequency
         resolved = default_steps(task, least=1)
         steps = max(ROLLOUT_STEPS, int(np.ceil(faster * resolved)))
-        self._samples = int(np.ceil(faster * residual_samples(task)))
-        times, self._length = _mesh(profile.breaks(task.duration), steps)
-        self._joint = _joint_at(times, task, profile, coefficients)
-        self._function = _compiled(task.plant, self._length.shape[1], self.names)
+        self._samples = _STRIDE * int(np.ceil(faster * residual_samples(task) / _STRIDE))
+        times, length = _mesh(profile.breaks(task.duration), steps)
+        function = _compiled(task.plant, length.shape[1], self.names)
+        between = task.residual_window / (self._samples - 1)
+        joint = _joint_at(times, task, profile, coefficients)
+        self._given = [
+            np.array(ca.densify(ca.DM(value)).T.full(), order="C")
+            for value in (
+                np.zeros((_BLOCK, len(ranges))), joint, length, *task.move[1:], between,
+            )
+        ]  # fmt: skip
+        self._errors = self._given[0]
+        self._found = [np.empty(function.size_out(i)[::-1]) for i in range(function.n_out())]
+        # by their memory: taking values out of casadi's arrays takes as long as the plants
+        buffer: Any
+        buffer, self._call = function.buffer()
+        for i, array in enumerate(self._given):
+            buffer.set_arg(i, array.data)
+        for i, array in enumerate(self._found):
+            buffer.set_res(i, array.data)
+        self._buffer = buffer
 
     @keep_interrupts()
     def __call__(
@@ -131,31 +153,41 @@ class ErrorPopulation:
         return Figures(*np.vstack(rows).T.copy())
 
     def _evaluate(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
-        count, window = len(block), self._task.residual_window
-        padded = np.zeros((_BLOCK, block.shape[1]))
-        padded[:count] = block
-        between = window / (self._samples - 1)
-        move = self._task.target, self._task.duration
-        found = self._function(ca.DM(padded), self._joint, self._length, *move, between)
-        values = [value.full()[:count] for value in found]
-        arrival, transition, tips, energy, torque = values
-        size = arrival.shape[1]
-        of_window = _marched(
-            arrival[:, :, None], transition.reshape(count, size, size), self._samples
-        )
-        tip_of_mode = tips.reshape(count, -1, size // 2)
-        residual = np.abs(tip_of_mode @ of_window[:, : size // 2]).max(axis=(1, 2))
-        return np.column_stack([residual, energy, np.abs(torque).max(axis=1)])
+        count = len(block)
+        self._errors[:] = 0.0
+        self._errors[:, :count] = block.T
+        self._call()
+        arrival, transition, tips, energy, torque = self._found
+        size = len(arrival)
+        tip_of_state = np.zeros((_BLOCK, len(tips) // (size // 2), size))
+        tip_of_state[:, :, : size // 2] = tips.T.reshape(_BLOCK, -1, size // 2)
+        of_window = _at_samples(
+            tip_of_state, transition.T.reshape(_BLOCK, size, size), arrival.T[:, :, None],
+            self._samples,
+        )  # fmt: skip
+        residual = np.abs(of_window).max(axis=(1, 2))
+        return np.column_stack([residual, energy[0], np.abs(torque).max(axis=0)])[:count]
 
 
-def _marched(
-    state: NDArray[np.float64], transition: NDArray[np.float64], samples: int
+def _at_samples(
+    tips: NDArray[np.float64],
+    transition: NDArray[np.float64],
+    state: NDArray[np.float64],
+    samples: int,
 ) -> NDArray[np.float64]:
-    """States (plants, states, samples) by powers of the transition (plants, states, states)."""
-    while state.shape[2] < samples:
+    """Tips at rest at every sample of the window, by powers of the transition between two.
+
+    Tips (plants, tips, states) are taken over `_STRIDE` samples, states (plants, states, 1) over
+    strides; each product of the two is a sample.
+    """
+    for _ in range(_DOUBLINGS):
+        tips = np.concatenate([tips, tips @ transition], axis=1)
+        transition = transition @ transition
+    strides = samples // _STRIDE
+    while state.shape[2] < strides:
         state = np.concatenate([state, transition @ state], axis=2)
         transition = transition @ transition
-    return state[:, :, :samples]
+    return tips @ state[:, :, :strides]
 
 
 def _mesh(breaks: Sequence[float], steps: int) -> tuple[list[ca.DM], ca.DM]:
