@@ -9,7 +9,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -19,6 +18,7 @@ from models import Expression, JointMotion, Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
 from ocp.robustness.plants import with_errors
+from ocp.simulation.buffered import BufferedFunction
 from ocp.simulation.collocation import NODES, step
 from ocp.simulation.residual import residual_samples
 from ocp.simulation.rollout import ROLLOUT_STEPS, default_steps, node_times, rollout_along
@@ -98,25 +98,10 @@ class ErrorPopulation:
         steps = max(ROLLOUT_STEPS, int(np.ceil(faster * resolved)))
         self._samples = _STRIDE * int(np.ceil(faster * residual_samples(task) / _STRIDE))
         times, length = _mesh(profile.breaks(task.duration), steps)
-        function = _compiled(task.plant, length.shape[1], self.names)
-        between = task.residual_window / (self._samples - 1)
         joint = _joint_at(times, task, profile, coefficients)
-        self._given = [
-            np.array(ca.densify(ca.DM(value)).T.full(), order="C")
-            for value in (
-                np.zeros((_BLOCK, len(ranges))), joint, length, *task.move[1:], between,
-            )
-        ]  # fmt: skip
-        self._errors = self._given[0]
-        self._found = [np.empty(function.size_out(i)[::-1]) for i in range(function.n_out())]
-        # by their memory: taking values out of casadi's arrays takes as long as the plants
-        buffer: Any
-        buffer, self._call = function.buffer()
-        for i, array in enumerate(self._given):
-            buffer.set_arg(i, array.data)
-        for i, array in enumerate(self._found):
-            buffer.set_res(i, array.data)
-        self._buffer = buffer
+        between = task.residual_window / (self._samples - 1)
+        self._function = BufferedFunction(_compiled(task.plant, length.shape[1], self.names))
+        self._along = joint.T.full(), length.T.full(), *task.move[1:], between
 
     @keep_interrupts()
     def __call__(
@@ -154,10 +139,9 @@ class ErrorPopulation:
 
     def _evaluate(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
         count = len(block)
-        self._errors[:] = 0.0
-        self._errors[:, :count] = block.T
-        self._call()
-        arrival, transition, tips, energy, torque = self._found
+        errors = np.zeros((block.shape[1], _BLOCK))
+        errors[:, :count] = block.T
+        arrival, transition, tips, energy, torque = self._function(errors, *self._along)
         size = len(arrival)
         tip_of_state = np.zeros((_BLOCK, len(tips) // (size // 2), size))
         tip_of_state[:, :, : size // 2] = tips.T.reshape(_BLOCK, -1, size // 2)
