@@ -5,9 +5,12 @@ from __future__ import annotations
 import copyreg
 import hashlib
 import inspect
+import os
+import reprlib
 import sys
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -114,19 +117,33 @@ def _loaded(file: PlantFile) -> Mapping[str, type[Plant]]:
 def _run(file: PlantFile) -> ModuleType:
     """The module of a file."""
     module = ModuleType(f"plant file {file.path}")
+    module.__package__ = ""  # it is part of none
     module.__file__ = file.path
     sys.modules[module.__name__] = module  # dataclasses look their annotations up there
     try:
-        exec(compile(file.source, file.path, "exec", dont_inherit=True), vars(module))
+        with _left_as_it_was():
+            exec(compile(file.source, file.path, "exec", dont_inherit=True), vars(module))
     except BaseException as error:
         del sys.modules[module.__name__]
-        if not isinstance(error, Exception | SystemExit):
+        if isinstance(error, KeyboardInterrupt):
             raise
         raise ValueError(_in_a_line(file.path, error)) from None
     return module
 
 
-def _in_a_line(path: str, error: Exception | SystemExit) -> str:
+@contextmanager
+def _left_as_it_was() -> Iterator[None]:
+    """Undo what a file changes of the process: its folder, where it prints, its recursion limit."""
+    folder, streams, limit = os.getcwd(), (sys.stdout, sys.stderr), sys.getrecursionlimit()
+    try:
+        yield
+    finally:
+        os.chdir(folder)
+        sys.stdout, sys.stderr = streams
+        sys.setrecursionlimit(limit)
+
+
+def _in_a_line(path: str, error: BaseException) -> str:
     """Why a file cannot be imported, and where."""
     if isinstance(error, SystemExit):
         return (
@@ -139,15 +156,18 @@ def _in_a_line(path: str, error: Exception | SystemExit) -> str:
         lines = [error.lineno]
     place = f", line {lines[-1]}" if lines and lines[-1] else ""
     if isinstance(error, SyntaxError):
-        said = f"{error.msg}; mend it"
+        what = f"{reprlib.repr(error.text.strip())} is not Python: " if error.text else ""
+        said = f"{what}{error.msg}; mend it"
         if "null bytes" in said or "utf-8" in said:
             said = "it is no text in UTF-8; save it so"
     elif isinstance(error, ImportError):
-        said = f"{error}; a plant is one file: put what it needs into it, or install that"
+        beside = "relative import" in str(error)
+        what = "it imports what lies beside it" if beside else error
+        said = f"{what}; a plant is one file: put what it needs into it, or install that"
     elif isinstance(error, ValueError):  # `Plant` refused a class
         said = str(error)
     else:
-        said = f"{type(error).__name__}: {error}; mend it"
+        said = f"{f'{type(error).__name__}: {error}'.rstrip(': ')}; mend it"
     return f"plant file {path}{place}: {' '.join(said.split())}"
 
 

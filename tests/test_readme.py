@@ -139,6 +139,25 @@ def test_the_order_of_the_packages_is_that_of_the_contract():
     assert "  <-  ".join(reversed(layers)) in README
 
 
+def _rows(table):
+    return [[cell.strip() for cell in row.strip("|").split("|")] for row in table if row[:1] == "|"]
+
+
+@pytest.mark.parametrize("heading", ["energy [J]", "10 % off [mm]"])
+def test_the_tables_of_all_systems_are_those_of_a_reproduction(heading):
+    measured = {}  # by move and system
+    for part in (ROOT / "docs/systems.md").read_text().split("\n## ")[1:]:
+        names, _, *rows = _rows(part.splitlines())
+        move = part.split("\n", 1)[0].split(", ", 1)[1]
+        measured[move] = {row[0]: row[names.index(heading)] for row in rows}
+    (table,) = [block for block in README.split("\n\n") if f"{heading} | link" in block]
+    names, _, *rows = _rows(table.splitlines())
+    assert [name.split(", ", 1)[1] for name in names[1:]] == list(measured)
+    for row in rows:
+        assert row[1:] == [systems[row[0]] for systems in measured.values()]
+    assert [row[0] for row in rows] == list(measured["0 to pi/6, 0.8 s"])
+
+
 def test_the_picture_says_what_is_computed():
     # The picture's text: the plain cycloid leaves so much, the plan needs such a share.
     (alt,) = re.findall(r"!\[([^]]*)\]\(docs/images/move\.gif\)", README)

@@ -9,13 +9,11 @@ from __future__ import annotations
 
 from dataclasses import Field, is_dataclass
 from functools import lru_cache
+from inspect import getattr_static
 
-from models.contract.calls import is_number
+from models.contract.calls import MOST, is_number
 from models.contract.values import Equations
 from models.plant import Plant
-
-MOST_MODES = 100
-"""With more the equations fill the memory; a link's shape takes a few."""
 
 
 def check_contract(plant: Plant) -> None:
@@ -43,6 +41,11 @@ def _check_class(plant: Plant) -> None:
             f"plant {called} is no frozen dataclass; write @dataclass(frozen=True) above class "
             f"{kind.__name__}"
         )
+    for name in ("parameters", "parts", "tips"):
+        if not isinstance(getattr_static(kind, name), property):
+            raise ValueError(
+                f"plant {called} has {name} of its own, a name that Plant needs; call it otherwise"
+            )
     modes: object = getattr(plant, "modes", None)
     if isinstance(modes, bool) or not isinstance(modes, int) or modes < 1:
         has = "no modes" if modes is None else f"{modes!r} modes"
@@ -50,8 +53,8 @@ def _check_class(plant: Plant) -> None:
             f"plant {called} has {has}; write how many it has, 1 or more, as "
             "modes: ClassVar[int] = 1"
         )
-    if modes > MOST_MODES:
-        raise ValueError(f"plant {called} has {modes} modes; give at most {MOST_MODES}")
+    if modes > MOST:
+        raise ValueError(f"plant {called} has {modes} modes; give at most {MOST}")
     small = plant.small_deflection
     if small is not None and not (is_number(small) and small > 0):
         raise ValueError(

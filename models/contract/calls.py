@@ -26,6 +26,8 @@ _WRITE = {
 }
 """For every method its arguments, and what it should return."""
 
+MOST = 100
+"""Modes, and tips: with more the equations fill the memory; a link's shape takes a few modes."""
 _NUMPYS = r"\s*casadi: a numpy function"
 """How casadi's warning begins where a function of NumPy is given a symbol."""
 
@@ -76,6 +78,10 @@ class Calls:
                 f"plant {self._plant.name!r} has no tip displacement; return 1 or more from "
                 "tip_displacements"
             )
+        if len(tips) > MOST:
+            raise ValueError(
+                f"plant {self._plant.name!r} has {len(tips)} tip displacements; give at most {MOST}"
+            )
         return Outputs(accelerations, torque, tips)
 
     def structure(self, angle: float, tips: Sequence[float]) -> list[Body]:
@@ -106,6 +112,9 @@ class Calls:
         return found
 
     def _called(self, method: str, *arguments: object) -> object:
+        written = inspect.getattr_static(self._plant, method)
+        if not callable(written) and not isinstance(written, classmethod):
+            raise self.wrong(method, f"is a {type(written).__name__}, which cannot be called")
         call = getattr(self._plant, method)
         try:
             inspect.signature(call).bind(*arguments)

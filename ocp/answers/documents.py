@@ -104,9 +104,11 @@ def content_of(
     if found_name != f"quietarm-{name}":
         its = f"its format is {reprlib.repr(found_name)}"
         says = its if found_name else "it has no quietarm format name"
-        raise FileFormatError(f"{path} is not a {name}: {says}")
+        raise FileFormatError(f"{path} is not a {name}: {says}; give a {name} file")
     if not isinstance(found, int) or isinstance(found, bool) or found < 1:
-        raise FileFormatError(f"{path} is not a {name}: its version is {reprlib.repr(found)}")
+        raise FileFormatError(
+            f"{path} is not a {name}: its version is {reprlib.repr(found)}; give a {name} file"
+        )
     if found > version:
         raise FileFormatError(
             f"{path} has version {reprlib.repr(found)} of the {name} format and this quietarm "

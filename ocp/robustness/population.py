@@ -18,13 +18,18 @@ from models import Expression, JointMotion, Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
 from ocp.robustness.plants import with_errors
+from ocp.simulation.buffered import BufferedFunction
 from ocp.simulation.collocation import NODES, step
 from ocp.simulation.residual import residual_samples
 from ocp.simulation.rollout import ROLLOUT_STEPS, default_steps, node_times, rollout_along
 from ocp.task.point_to_point import PointToPoint
 
-_BLOCK = 100
+_BLOCK = 50
 """Plants a call: their intermediate values fit the processor's cache."""
+
+_DOUBLINGS = 4
+_STRIDE = 2**_DOUBLINGS
+"""The residual is sampled at a multiple of so many times."""
 
 _LEAST_STEPS = 6
 """Least steps between two times at which the motion is not smooth: no step crosses one."""
@@ -91,10 +96,12 @@ class ErrorPopulation:
         faster = 1 + max(ranges.values())  # any of the parameters may be a frequency
         resolved = default_steps(task, least=1)
         steps = max(ROLLOUT_STEPS, int(np.ceil(faster * resolved)))
-        self._samples = int(np.ceil(faster * residual_samples(task)))
-        times, self._length = _mesh(profile.breaks(task.duration), steps)
-        self._joint = _joint_at(times, task, profile, coefficients)
-        self._function = _compiled(task.plant, self._length.shape[1], self.names)
+        self._samples = _STRIDE * int(np.ceil(faster * residual_samples(task) / _STRIDE))
+        times, length = _mesh(profile.breaks(task.duration), steps)
+        joint = _joint_at(times, task, profile, coefficients)
+        between = task.residual_window / (self._samples - 1)
+        self._function = BufferedFunction(_compiled(task.plant, length.shape[1], self.names))
+        self._along = joint.T.full(), length.T.full(), *task.move[1:], between
 
     @keep_interrupts()
     def __call__(
@@ -131,31 +138,40 @@ class ErrorPopulation:
         return Figures(*np.vstack(rows).T.copy())
 
     def _evaluate(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
-        count, window = len(block), self._task.residual_window
-        padded = np.zeros((_BLOCK, block.shape[1]))
-        padded[:count] = block
-        between = window / (self._samples - 1)
-        move = self._task.target, self._task.duration
-        found = self._function(ca.DM(padded), self._joint, self._length, *move, between)
-        values = [value.full()[:count] for value in found]
-        arrival, transition, tips, energy, torque = values
-        size = arrival.shape[1]
-        of_window = _marched(
-            arrival[:, :, None], transition.reshape(count, size, size), self._samples
-        )
-        tip_of_mode = tips.reshape(count, -1, size // 2)
-        residual = np.abs(tip_of_mode @ of_window[:, : size // 2]).max(axis=(1, 2))
-        return np.column_stack([residual, energy, np.abs(torque).max(axis=1)])
+        count = len(block)
+        errors = np.zeros((block.shape[1], _BLOCK))
+        errors[:, :count] = block.T
+        arrival, transition, tips, energy, torque = self._function(errors, *self._along)
+        size = len(arrival)
+        tip_of_state = np.zeros((_BLOCK, len(tips) // (size // 2), size))
+        tip_of_state[:, :, : size // 2] = tips.T.reshape(_BLOCK, -1, size // 2)
+        of_window = _at_samples(
+            tip_of_state, transition.T.reshape(_BLOCK, size, size), arrival.T[:, :, None],
+            self._samples,
+        )  # fmt: skip
+        residual = np.abs(of_window).max(axis=(1, 2))
+        return np.column_stack([residual, energy[0], np.abs(torque).max(axis=0)])[:count]
 
 
-def _marched(
-    state: NDArray[np.float64], transition: NDArray[np.float64], samples: int
+def _at_samples(
+    tips: NDArray[np.float64],
+    transition: NDArray[np.float64],
+    state: NDArray[np.float64],
+    samples: int,
 ) -> NDArray[np.float64]:
-    """States (plants, states, samples) by powers of the transition (plants, states, states)."""
-    while state.shape[2] < samples:
+    """Tips at rest at every sample of the window, by powers of the transition between two.
+
+    Tips (plants, tips, states) are taken over `_STRIDE` samples, states (plants, states, 1) over
+    strides; each product of the two is a sample.
+    """
+    for _ in range(_DOUBLINGS):
+        tips = np.concatenate([tips, tips @ transition], axis=1)
+        transition = transition @ transition
+    strides = samples // _STRIDE
+    while state.shape[2] < strides:
         state = np.concatenate([state, transition @ state], axis=2)
         transition = transition @ transition
-    return state[:, :, :samples]
+    return tips @ state[:, :, :strides]
 
 
 def _mesh(breaks: Sequence[float], steps: int) -> tuple[list[ca.DM], ca.DM]:

@@ -120,7 +120,7 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     Returns
     -------
     ModalSystem
-        g, K and D; of a plant of several parts, 0.0 between modes of different ones.
+        g, K and D; 0.0 between modes that do not act on each other.
     """
     parts = [_system_of(part, joint) for part in plant.parts]
     if len(parts) == 1:
@@ -143,6 +143,7 @@ def _on_diagonal(blocks: Sequence[list[list[Expression]]]) -> list[list[Expressi
 
 def _system_of(plant: Plant, joint: JointMotion) -> ModalSystem:
     modes, zero = range(plant.modes), [0.0] * plant.modes
+    acts = _acting(plant)
     g = list(plant.modal_accelerations(joint, zero, zero))
 
     def columns(of_rate: bool) -> list[list[Expression]]:
@@ -151,9 +152,18 @@ def _system_of(plant: Plant, joint: JointMotion) -> ModalSystem:
             unit = [float(other == mode) for other in modes]
             W, dW = (zero, unit) if of_rate else (unit, zero)
             response.append(plant.modal_accelerations(joint, W, dW))
-        return [[g[i] - response[j][i] for j in modes] for i in modes]
+        return [[g[i] - response[j][i] if acts[i][j] else 0.0 for j in modes] for i in modes]
 
     return ModalSystem(g, K=columns(of_rate=False), D=columns(of_rate=True))
+
+
+def _acting(plant: Plant) -> list[list[bool]]:
+    """Whether mode j is in the equation of mode i at all: else there is no term to compute with."""
+    modes = range(plant.modes)
+    joint = JointMotion(*(ca.MX.sym("joint") for _ in range(3)))
+    W, dW = ([ca.MX.sym("W") for _ in modes] for _ in range(2))
+    after = [ca.MX(entry) for entry in plant.modal_accelerations(joint, W, dW)]
+    return [[ca.depends_on(after[i], ca.vertcat(W[j], dW[j])) for j in modes] for i in modes]
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from ocp.base.files import written
 from ocp.base.interrupts import as_ctrl_c
 from ocp.base.names import unknown
 from ocp.base.printable import printable
+from studies.cli.drawing_words import matplotlib_in_one_line
 from studies.cli.refusals import in_our_words
 from studies.cli.streams import patient_streams
 from studies.early import in_the_way, ready
@@ -113,7 +114,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if loaded_by_itself:  # pictures go to files: no window, whatever the user's notebooks use
         os.environ["MPLBACKEND"] = "agg"
     try:
-        with patient_streams() as out, as_ctrl_c():
+        with patient_streams() as out, as_ctrl_c(), matplotlib_in_one_line():
             status = _run(arguments)
             out.flush()
             if out.trouble:

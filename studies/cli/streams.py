@@ -51,6 +51,9 @@ class Stream:
             except OSError as error:
                 self._give_up(error)
 
+    def close(self) -> None:
+        """Stay open: a plant's file that closes it ends no output."""
+
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 

@@ -36,7 +36,9 @@ def check_fronts(
         in one line, with what differs.
     """
     if len(fronts) < least:
-        raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given")
+        raise ValueError(
+            f"a comparison takes two fronts or more; {len(fronts)} given: name more files"
+        )
     for front, name in zip(fronts, names, strict=True):
         of_kind(name, front, Front, "a Front, as of epsilon_front, search or Front.load")
         if not front.points:

@@ -117,7 +117,14 @@ def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
     def write(path: Path) -> None:
         from studies.display.pictures import save_figure
 
-        save_figure(draw(), path)
+        try:
+            figure = draw()
+        except UnicodeDecodeError:  # what matplotlib reads when it is loaded
+            raise ValueError(
+                f"{path} cannot be drawn: matplotlibrc is no text in UTF-8; save it so, or take it "
+                "away"
+            ) from None
+        save_figure(figure, path)
 
     return write
 

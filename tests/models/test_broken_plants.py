@@ -82,6 +82,20 @@ def test_a_plant_without_a_tip_is_refused():
         _broken(tip_displacements=lambda p, W: []).validate()
 
 
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"torque": property(lambda p: 1)}, "torque is a property, which cannot be called; write"),
+        ({"torque": 3}, "torque is a int, which cannot be called"),
+        ({"parameters": 3}, "has parameters of its own, a name that Plant needs; call it other"),
+        ({"tip_displacements": lambda p, W: [W[0]] * 101}, "has 101 tip .* give at most 100"),
+    ],
+)
+def test_members_that_are_no_methods_or_too_many_are_refused(changes, told):
+    with pytest.raises(ValueError, match=f"plant 'broken':? {told}"):
+        _broken(**changes).validate()
+
+
 def test_a_tip_that_is_not_linear_is_refused():
     with pytest.raises(ValueError, match=r"'broken'.*tip displacement is not linear"):
         _broken(tip_displacements=lambda p, W: [W[0] ** 2]).validate()

@@ -99,7 +99,11 @@ OWN = "from models import Plant, SingleLinkManipulator\n"
     [
         ("x = 1\n", "defines no plant; write a class in it"),
         (OWN, "defines no plant; write a class in it"),
-        ("def x(:\n", ", line 1: invalid syntax"),
+        ("def x(:\n", ", line 1: 'def x(:' is not Python: invalid syntax; mend it"),
+        ("import .\n", ", line 1: 'import .' is not Python: invalid syntax; mend it"),
+        ("from . import x\n", ", line 1: it imports what lies beside it; a plant is one file"),
+        ("assert False\n", ", line 1: AssertionError; mend it"),
+        ("raise GeneratorExit\n", ", line 1: GeneratorExit; mend it"),
         ("\n\nx = 1 / 0\n", ", line 3: ZeroDivisionError: division by zero"),
         ("import a_module_that_is_not\n", ", line 1: No module named 'a_module_that_is_not'"),
         ("import sys\nsys.exit(3)\n", "ends the program"),
@@ -115,6 +119,16 @@ def test_a_file_that_gives_no_plant_is_refused_with_the_line(tmp_path, content, 
     path = tmp_path / "crane.py"
     path.write_text(content)
     assert told in _refused(path)
+
+
+def test_what_it_does_to_the_process_is_undone(crane_file, capsys):
+    code = "import os, sys\nos.chdir('/')\nsys.stdout = None\nsys.setrecursionlimit(99)\n"
+    before = os.getcwd(), sys.getrecursionlimit()
+    crane_file.write_text(code + crane_file.read_text())
+    assert "crane" in load_plant_file(crane_file)
+    assert (os.getcwd(), sys.getrecursionlimit()) == before
+    print("here")
+    assert capsys.readouterr().out == "here\n"
 
 
 def test_bytes_that_are_no_text_are_refused(tmp_path):

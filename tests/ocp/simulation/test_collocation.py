@@ -6,9 +6,17 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from models import ArmOnFlexibleLink, JointMotion, SingleLinkManipulator
+from models import ArmOnFlexibleLink, DualLinkManipulator, JointMotion, SingleLinkManipulator
 from ocp import CycloidPolynomial
-from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh, modal_system, step
+from ocp.simulation.collocation import (
+    GAUSS_NODES,
+    GAUSS_WEIGHTS,
+    NODES,
+    is_zero,
+    mesh,
+    modal_system,
+    step,
+)
 
 AT_REST = JointMotion(0.4, 0.0, 0.0)
 
@@ -233,3 +241,14 @@ def test_a_population_takes_the_same_step_as_each_of_its_members(plant):
             alone = end(joints[..., row, column].tolist(), states[..., row, column].tolist())
             here = [float(entry[row, column]) for entry in together]
             assert here == pytest.approx([float(entry) for entry in alone], rel=1e-12)
+
+
+def test_modes_that_do_not_act_on_each_other_have_no_terms():
+    # the two links of docs/physics.md, 'A third plant': each equation has its own W alone
+    joint = JointMotion(*(ca.MX.sym("joint", 1, 5) for _ in range(3)))
+    system = modal_system(DualLinkManipulator(), joint)
+    for matrix in (system.K, system.D):
+        assert [[is_zero(entry) for entry in row] for row in matrix] == [
+            [False, True],
+            [True, False],
+        ]

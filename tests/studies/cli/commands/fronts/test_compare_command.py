@@ -100,7 +100,10 @@ def test_other_tasks_are_refused_in_a_line(call, files, front_of):
     [
         (None, "cannot be read: no such file"),
         ("t_s,theta_rad\n0,0\n", "is not a front: it is not whole, valid JSON"),
-        ('{"format": "quietarm-plan", "version": 1}', "its format is 'quietarm-plan'"),
+        (
+            '{"format": "quietarm-plan", "version": 1}',
+            "its format is 'quietarm-plan'; give a front file",
+        ),
         ('{"format": "quietarm-front", "version": 3}', "is not a whole front"),
         ('{"format": "quietarm-front", "version": 1}', "reads 2 to 3; find the front again"),
     ],
