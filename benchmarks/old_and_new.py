@@ -258,16 +258,18 @@ def searches() -> dict:
     """The paper's two searches on its six conditions, in its boxes."""
     from metaheuristics import search
 
-    def front(task, method: str) -> dict:
+    def front(task, bound: float, method: str) -> dict:
         began = time.process_time()
-        found = search(task, method, generations=60)
+        found = search(task, method, bound=bound, generations=60)
         seconds = time.process_time() - began
         note = f"{len(found.points)} points"
         return {"seconds": seconds, "energy": found.energies.min(), "note": note}
 
     return {
-        f"{name}, {method}": lambda task=task, method=method: front(task, method)
-        for name, (task, _) in list(conditions().items())[:6]
+        f"{name}, {method}": (
+            lambda task=task, bound=bound, method=method: front(task, bound, method)
+        )
+        for name, (task, bound) in list(conditions().items())[:6]
         for method in ("nsga2", "vepso")
     }
 

@@ -15,6 +15,8 @@ LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANT
 """The limits that a task may set, with their units."""
 MOST_ANGLE, LEAST_DURATION, MOST_DURATION = 1e6, 1e-6, 1e6
 """Beyond these [rad, s, s] no joint moves, and double precision does not follow."""
+LEAST_MOVE = 1e-6
+"""Of a shorter move [rad] the integrators' absolute tolerances would be a part that shows."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +86,10 @@ class PointToPoint:
         if self.target == self.start:
             raise ValueError(
                 f"target equals start ({self.target:g} rad): there is no move; change one of them"
+            )
+        if abs(self.span) < LEAST_MOVE:
+            raise ValueError(
+                f"target - start is {self.span:g} rad; give a move of at least {LEAST_MOVE:g} rad"
             )
 
     def _keep(self, name: str, value: float) -> None:

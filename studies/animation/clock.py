@@ -13,8 +13,8 @@ from studies.figures import Line
 
 MOST_FRAMES = 500
 """More would take minutes, and make a file that is too large to be shown."""
-MOST_A_SECOND = 50
-"""Browsers show no more of a GIF."""
+LEAST_A_SECOND, MOST_A_SECOND = 1, 50
+"""Fewer frames are no motion; browsers show no more of a GIF."""
 _ROUNDING = 1e-6
 """Of a frame: one that is this close to the end belongs to it."""
 
@@ -40,7 +40,7 @@ class Clock:
     Raises
     ------
     ValueError
-        When a number is not positive, or there would be too many frames.
+        When a number is out of range, or there would be too many frames.
     """
 
     end: float
@@ -55,6 +55,11 @@ class Clock:
             raise ValueError(
                 f"frames per second is {rate:g}; give at most {MOST_A_SECOND}: browsers show no "
                 "more of a GIF"
+            )
+        if rate < LEAST_A_SECOND:
+            raise ValueError(
+                f"frames per second is {rate:g}; give at least {LEAST_A_SECOND}, and a lower speed "
+                "for slow motion"
             )
         frames = self.end * rate / speed
         if frames > MOST_FRAMES:

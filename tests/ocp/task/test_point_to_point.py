@@ -110,6 +110,11 @@ def test_a_target_equal_to_the_start_is_named(angle):
     _refused("target equals start", float(angle), start=angle, target=float(angle))
 
 
+@pytest.mark.parametrize("span", [1e-300, -9e-7])
+def test_a_move_too_short_to_be_integrated_is_named(span):
+    _refused("target - start is", span, target=span)
+
+
 @pytest.mark.parametrize("value", [True, "0.8"])
 def test_what_only_looks_like_a_number_is_refused(value):
     _refused("duration is", repr(value), duration=value)

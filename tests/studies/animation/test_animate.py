@@ -98,6 +98,7 @@ def test_slow_motion_has_more_frames():
         ({"speed": 0}, "speed is 0; give a positive number"),
         ({"speed": 0.001}, "make 45000 frames, where 500 are the most"),
         ({"frames_per_second": 60}, "frames per second is 60; give at most 50: browsers"),
+        ({"frames_per_second": 1e-9}, "frames per second is 1e-09; give at least 1, and a lower"),
         ({"width": 100}, "width is 100; give a whole number from 200 up"),
         ({"width": 5000}, "width is 5000; give at most 2000: more pixels make a huge file"),
         ({"deflection_scale": -1}, "deflection scale is -1; give a positive number"),
