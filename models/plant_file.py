@@ -88,7 +88,7 @@ def _read(path: Path) -> bytes:
             source = file.read(MOST_BYTES + 1)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        raise ValueError(f"plant file {path} cannot be read: {reason}") from None
+        raise ValueError(f"plant file {path} cannot be read: {reason}; give another file") from None
     if len(source) > MOST_BYTES:
         raise ValueError(
             f"plant file {path} has over {MOST_BYTES} bytes; give a Python file, such as crane.py"

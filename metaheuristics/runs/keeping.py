@@ -85,7 +85,10 @@ def resume_from(path: str | Path, loop: Loop) -> None:
         theirs, mine = typed(document, Header), Header(loop.spec, _versions())
     difference = _difference(plain(theirs.search), plain(mine.search))
     if difference:
-        raise ValueError(f"{path} is of another search: its {difference}")
+        raise ValueError(
+            f"{path} is of another search: its {difference}; ask for the same, or begin anew "
+            "without it"
+        )
     difference = _difference(theirs.versions, mine.versions)
     if difference:
         raise ValueError(
@@ -108,7 +111,7 @@ def _difference(theirs: Mapping[str, Any], mine: Mapping[str, Any]) -> str:
         if isinstance(value, Mapping) and isinstance(other, Mapping):
             inner = _difference(other, value)
             if inner:
-                return f"{name} {inner}"
+                return inner if name in ("settings", "task") else f"{name} {inner}"
         elif other != value:
             return f"{name} is {other!r}, not {value!r}"
     return ""

@@ -129,7 +129,9 @@ class Calls:
                 f"plant {self._plant.name!r} says modes = {self._modes} but its {method} uses "
                 "more; set modes to their number"
             ) from None
-        except (Exception, SystemExit) as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # SystemExit and a user's own, too
             remedy = ""
             equation = method != "structure"
             # what casadi raises over its symbols

@@ -23,6 +23,10 @@ _MIXED = (
     "mixes motions that stand side by side in a matrix",
     "use operations that work element by element: no sum, dot, mtimes or max over entries",
 )
+_OTHER = (
+    "gives other values when it is called again",
+    "compute it from its arguments and the plant's parameters alone: no random number, no clock",
+)
 _KINDS = 5
 """Motions at every angle: forwards, backwards, at a turning point, at constant speed, at rest."""
 
@@ -81,7 +85,9 @@ class Equations:
             finite = np.isfinite(alone) & np.isfinite(together)
             largest = np.abs(alone[finite]).max(initial=0.0)
             if not np.allclose(alone[finite], together[finite], rtol=1e-9, atol=1e-9 * largest):
-                raise self._calls.wrong(method, *_MIXED)
+                again = self._evaluated(ca.vertcat(*self._calls.outputs(self._one).all))[:, i]
+                steady = np.array_equal(again, alone, equal_nan=True)
+                raise self._calls.wrong(method, *(_MIXED if steady else _OTHER))
 
     def check_finite(self) -> None:
         """Values and slopes are finite at every speed, wherever they are at some speed."""

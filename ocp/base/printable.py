@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from unicodedata import category
 
-_OBEYED = ("Cc", "Cf", "Zl", "Zp")
+_OBEYED = ("Cc", "Cf", "Cs", "Zl", "Zp")
 """Categories of what is obeyed: control characters, those that turn the direction of the text or
-cannot be seen, and other ends of lines."""
+cannot be seen, other ends of lines, and bytes that are no characters, which no file can hold."""
 
 
 def has_control_characters(text: str) -> bool:

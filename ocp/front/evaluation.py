@@ -89,7 +89,7 @@ def refuse_beyond_box(profile: JointProfile, table: NDArray[np.float64], bound: 
         row, column = beyond[0]
         raise ValueError(
             f"point {row + 1} of {len(table)} has the coefficient {table[row, column]:.4g}, "
-            f"beyond the stated bound of {most:g}"
+            f"beyond the stated bound of {most:g}; correct it, or state a wider bound"
         )
 
 

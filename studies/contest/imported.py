@@ -160,7 +160,8 @@ def imported_run(
     columns, size = found.coefficients.shape[1], problem.profile.size
     if columns != size:
         raise ValueError(
-            f"{path} has {columns} coefficients a motion, and {problem.name} takes {size}"
+            f"{path} has {columns} coefficients a motion, and {problem.name} takes {size}; give a "
+            "file of that problem"
         )
     settings: dict[str, Setting] = {"imported": printable(path.name), "bound": problem.bound}
     try:

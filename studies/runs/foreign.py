@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import re
 import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,11 +29,6 @@ _CLAIMS: Mapping[str, tuple[int, float]] = {
 """Columns that state a figure: which of residual [m] and energy [J], and its unit in these."""
 _MATRICES = ("coefficients", "x", "a", "pareto_set")
 _FIGURES = ("f", "objectives", "pareto_front")
-_DAMAGE = (
-    OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, RuntimeError, MemoryError,
-    IndexError, OverflowError, zipfile.BadZipFile, zlib.error,
-)  # fmt: skip
-"""What numpy, scipy and zipfile raise over a file that is damaged or of another kind."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +92,11 @@ def _of_text(content: bytes) -> Found:
         raise FileFormatError(
             "it is no text; give .npy, .npz and .mat files their ending, and save text as UTF-8"
         ) from None
+    if text.lstrip().startswith(("{", "[")):
+        raise FileFormatError(
+            "it is JSON, no table; give a row for each motion; a front that quietarm wrote needs "
+            "no import"
+        )
     lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), start=1)]
     lines = [(i, line) for i, line in lines if line and not line.startswith(("#", "%"))]
     if not lines:
@@ -105,7 +104,7 @@ def _of_text(content: bytes) -> Found:
     between = next((mark for mark in (";", "\t", ",") if mark in lines[0][1]), None)
     rows = [(i, [cell.strip().strip('"') for cell in line.split(between)]) for i, line in lines]
     names: list[str] | None = None
-    if not all(_is_number(cell, between) for cell in rows[0][1]):
+    if not any(_is_number(cell, between) for cell in rows[0][1]):
         names = rows.pop(0)[1]
     width = len(names) if names else len(rows[0][1])
     table = np.empty((len(rows), width))
@@ -120,7 +119,10 @@ def _of_text(content: bytes) -> Found:
                 row[k] = _number(cell, between)
             except ValueError:
                 shown = printable(repr(cell[:30]))
-                raise FileFormatError(f"line {i} has {shown} where a number should be") from None
+                raise FileFormatError(
+                    f"line {i} has {shown} where a number should be; give a number there, and put "
+                    "semicolons between numbers with decimal commas"
+                ) from None
     return _by_columns(names, table)
 
 
@@ -172,7 +174,7 @@ def _without_claims(table: Array) -> Found:
 def _of_npy(content: bytes) -> Found:
     try:
         values = np.load(io.BytesIO(content), allow_pickle=False)
-    except _DAMAGE:
+    except Exception:  # whatever numpy's parsers make of a damaged file
         raise FileFormatError(
             "it is no whole .npy file of numbers; save the array by numpy.save"
         ) from None
@@ -189,7 +191,7 @@ def _of_npz(content: bytes) -> Found:
                 raise ValueError
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
             values = {name: arrays[name] for name in arrays.files}
-    except _DAMAGE:
+    except Exception:
         raise FileFormatError(
             "it is no whole .npz file of numbers, or a huge one; save the arrays by numpy.savez"
         ) from None
@@ -199,13 +201,12 @@ def _of_npz(content: bytes) -> Found:
 def _of_mat(content: bytes) -> Found:
     # comes with pymoo; takes long to load
     from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
 
     try:
         values = loadmat(io.BytesIO(content))
     except NotImplementedError:
         raise FileFormatError("it is a .mat file of version 7.3; save it with -v7") from None
-    except (*_DAMAGE, MatReadError):
+    except Exception:
         raise FileFormatError("it is no whole .mat file; save it again, with -v7") from None
     return _by_variables({k: v for k, v in values.items() if not k.startswith("__")})
 

@@ -123,7 +123,7 @@ def import_front(
     usable = np.flatnonzero(~failed & ~broken)
     near = usable[_not_beaten(objectives[usable])]
     if not near.size:
-        raise SolverFailedError(_why_none(len(rows), int(failed.sum()), int(broken.sum()), task))
+        raise SolverFailedError(_why_none(rows, failed, violations, task))
     front = Front.from_coefficients(
         task, rows[near], method=method, profile=profile, settings=settings
     )
@@ -147,11 +147,21 @@ def _checked(
         raise ValueError(f"motion {number}: {error}") from None
 
 
-def _why_none(count: int, failed: int, broken: int, task: PointToPoint) -> str:
-    limits = ", ".join(f"{name} {most:g}" for name, most in task.limits.items())
-    words = [f"{broken} break the limits ({limits})" if broken else "",
-             f"{failed} overflow" if failed else ""]  # fmt: skip
-    return f"no motion of {count} can be used: {' and '.join(filter(None, words))}"
+def _why_none(rows: Array, failed: NDArray[np.bool_], violations: Array, task: PointToPoint) -> str:
+    none = f"no motion of {len(rows)} can be used: "
+    if failed.all():
+        return (
+            f"{none}with coefficients of up to {np.abs(rows).max():.4g} their figures overflow; "
+            "give those of the profile, in radians"
+        )
+    nearest = violations[~failed].max(axis=1).argmin()
+    passed = violations[~failed][nearest]
+    name, limit = list(task.limits.items())[int(passed.argmax())]
+    reached = (1 + passed.max()) * limit
+    return (
+        f"{none}the {name} of the one that keeps the limits best is {reached:.4g}, above "
+        f"{limit:g}; widen that limit, or give a longer duration"
+    )
 
 
 def _not_beaten(F: Array) -> NDArray[np.bool_]:

@@ -148,7 +148,9 @@ def run_front(
     """
     runs = options["runs"]
     if runs > 1 and (options.get("checkpoint") or options.get("resume")):
-        raise ValueError("--checkpoint and --resume are for one run, not with --runs")
+        raise ValueError(
+            "--checkpoint and --resume are for one run, not with --runs; leave one of them out"
+        )
     seeds = seeds_of(options["seed"], runs)
     targets = _targets("--output", files.output, seeds)
     tables = _targets("--csv", files.csv, seeds)

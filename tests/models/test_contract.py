@@ -4,6 +4,7 @@ The words that a person may rely on are the name of the method and what it shoul
 """
 
 import math
+import random
 from dataclasses import dataclass
 
 import casadi as ca
@@ -114,6 +115,23 @@ def test_entries_that_mix_the_motions_of_a_population_are_told():
     told = _told(torque=lambda p, j, W, dW, ddW: j.acceleration + ca.sum1(ddW[0]))
     assert "torque mixes motions" in told
     assert "element by element" in told
+
+
+def test_values_that_change_from_call_to_call_are_told():
+    told = _told(torque=lambda p, j, W, dW, ddW: j.acceleration * random.random())
+    assert "torque gives other values when it is called again" in told
+    assert "no random number, no clock" in told
+
+
+class _Own(BaseException):
+    pass
+
+
+def test_an_error_of_any_kind_is_told():
+    def fail(p, W):
+        raise _Own("of the user's")
+
+    assert "tip_displacements fails at line " in _told(tip_displacements=fail)
 
 
 # -- at rest --

@@ -44,7 +44,7 @@ def test_a_search_goes_on_from_a_checkpoint_of_version_1(monkeypatch, tmp_path, 
 @pytest.mark.parametrize("method", ["nsga2", "vepso"])
 def test_it_is_of_that_search_alone(tmp_path, method):
     path = FOLDER / f"{method}.checkpoint"
-    with pytest.raises(ValueError, match=r"of another search: its task duration is 0\.8, not 0\.9"):
+    with pytest.raises(ValueError, match=r"of another search: its duration is 0\.8, not 0\.9"):
         search(PointToPoint(LINK.plant, LINK.target, 0.9, LINK.start, deflection_limit=0.5),
                method, profile=CycloidPolynomial(2), bound=0.2, population=8, generations=6,
                seed=2, resume=path)  # fmt: skip

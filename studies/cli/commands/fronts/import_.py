@@ -69,10 +69,10 @@ def import_(
     if terms is not None:
         size = FAMILIES[profile](terms).size
         if size != columns:
-            turned = "; transpose it" if len(found.coefficients) == size else ""
+            remedy = "transpose it" if len(found.coefficients) == size else "leave --terms out"
             raise ValueError(
                 f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
-                f"{size}{turned}"
+                f"{size}; {remedy}"
             )
     try:
         motions = FAMILIES[profile].of_size(columns)

@@ -3,6 +3,7 @@
 import io
 import math
 import os
+import re
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from lines import MOVE
 
 from metaheuristics import problem_of
 from models import SingleLinkManipulator
-from ocp import Front, PointToPoint
+from ocp import CycloidPolynomial, Front, PointToPoint, rollout
 
 IMPORT = f"{MOVE} --quiet"
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
@@ -152,15 +153,18 @@ def test_the_front_is_compared_and_polished_like_any_other(call, folder):
 
 BAD = [
     ("a_1,a_2\n0.1\n", "line 2 has 1 column, the first 2; give as many in every line"),
-    ("a_1,a_2\n0.1,x\n", "line 2 has 'x' where a number should be"),
+    ("a_1,a_2\n0.1,x\n", "line 2 has 'x' where a number should be; give a number there"),
+    ("0.1,0.2,\n", "line 1 has '' where a number should be; give a number there"),
+    ("0,1 0,2\n", "line 1 has '1 0' where a number should be; give a number there, and put semico"),
     ("a_1,a_3\n0.1,0.1\n", "there is no column for coefficient 2; give all of them"),
     ("a_1,x1\n0.1,0.1\n", "coefficient 1 has two columns; leave one"),
     ("time,energy\n0.1,0.1\n", "no column is a coefficient; name them a_1, a_2"),
     ("a_1,a_2\n", "holds no coefficients; give a row for each motion"),
     ("", "it is empty; give a row for each motion"),
+    ('{"format": "quietarm-plan"}', "it is JSON, no table; give a row for each motion; a front"),
     (b"\xff\xfe\x00", "it is no text"),
     ("a_1,a_2\nnan,0.1\n", "motion 1: coefficient 1 is nan; give a finite number"),
-    ("a_1,a_2\n0.3,0.1\n", "beyond the stated bound of 0.2"),
+    ("a_1,a_2\n0.3,0.1\n", "beyond the stated bound of 0.2; correct it, or state a wider bound"),
     ("a_1\x1b[31m,a_2\n0.1,0.1\n", "there is no column for coefficient 1"),
 ]
 
@@ -179,7 +183,10 @@ def test_a_file_that_does_not_fit_is_refused_in_one_line(call, folder, content, 
 def test_coefficients_that_do_not_fit_the_profile_are_refused(call, folder):
     written("f.csv", table(["a_1", "a_2"], X.tolist()))
     _, _, err = call(f"import f.csv {IMPORT} --terms 6")
-    assert err == "quietarm: f.csv has 2 coefficients a motion, and polynomial of 6 terms takes 6\n"
+    assert err == (
+        "quietarm: f.csv has 2 coefficients a motion, and polynomial of 6 terms takes 6; "
+        "leave --terms out\n"
+    )
     written("f.npy", numpy_file(np.zeros((6, 4))))
     assert "takes 6; transpose it" in call(f"import f.npy {IMPORT} --terms 6")[2]
     _, _, err = call(f"import f.csv {IMPORT} --profile network")
@@ -191,6 +198,7 @@ def test_coefficients_that_do_not_fit_the_profile_are_refused(call, folder):
     [
         ("f.npy", numpy_file(np.array([{}, 1], dtype=object)), "no whole .npy file of numbers"),
         ("f.npy", numpy_file(X)[:-9], "no whole .npy file of numbers"),
+        ("f.npy", numpy_file(X).replace(b"(", b"9"), "no whole .npy file of numbers"),
         ("f.npy", numpy_file(np.zeros(4)), "has shape (4,); give (motions, coefficients)"),
         ("f.npy", numpy_file(X * 1j), "is no array of real numbers; save it as numbers"),
         ("f.npz", b"PK", "no whole .npz file of numbers"),
@@ -225,4 +233,10 @@ def test_a_file_without_a_motion_that_can_be_used(call, folder):
     written("f.csv", table(["a_1", "a_2"], X.tolist()))
     code, out, err = call(f"import f.csv {IMPORT} --torque-limit 0.001 --output f.json")
     assert (code, out) == (1, "")
-    assert f"no motion of {len(X)} can be used: {len(X)} break the limits (torque 0.001)" in err
+    (least,) = re.findall(r"keeps the limits best is (\S+), above 0.001; widen that limit", err)
+    peaks = [rollout(TASK, CycloidPolynomial(2), x).motion.peak_torque for x in X]
+    assert float(least) == pytest.approx(min(peaks), rel=1e-2)
+    written("f.csv", "1e300,1\n")
+    code, _, err = call(f"import f.csv {IMPORT}")
+    assert code == 1
+    assert "with coefficients of up to 1e+300 their figures overflow; give those of the" in err
