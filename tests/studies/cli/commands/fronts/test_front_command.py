@@ -224,7 +224,7 @@ def test_a_checkpoint_that_is_lost_on_the_way_is_told_at_the_end(call, folder, m
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        (f'{SMALL} --resume ""', "'--resume': the name is empty; give one"),
+        (f'{SMALL} --resume ""', "--resume: the name is empty; give one"),
         (f"{SMALL} --runs 2 --checkpoint state", "are for one run, not with --runs"),
         (f"{SMALL} --runs 1000000000 --output f.json", "runs is 1000000000; give at most 10000"),
         (f"front {MOVE} --method vepso --bound 1e308", "is 1e+308; give at most 1e+06"),
