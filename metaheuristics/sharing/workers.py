@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from importlib.util import find_spec
 
@@ -9,6 +10,8 @@ from ocp.base.checks import whole
 
 MOST_WORKERS = 1000
 _EXTRA = "pip install 'quietarm[cluster]'"
+_FEW = 4
+"""More processes than this are started only where they are asked for: each takes memory."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,18 @@ class Workers:
     def local(self, pieces: int) -> int:
         """How many processes are started here for so many pieces."""
         return 0 if self.scheduler is not None else min(self.number, pieces)
+
+
+def cores_at_hand() -> int:
+    """How many processes share long work best: the cores of this process, a few at most.
+
+    1 without dask, which starts them.
+    """
+    if find_spec("distributed") is None:
+        return 1
+    able = getattr(os, "sched_getaffinity", None)  # not on every system
+    cores = len(able(0)) if able else os.cpu_count() or 1
+    return min(cores, _FEW)
 
 
 HERE = Workers()

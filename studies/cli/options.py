@@ -272,12 +272,16 @@ _OUTPUT_OPTIONS = (
     click.option("--figure", type=PICTURE,
                  help="Draw the move over the plain cycloid (.png, .pdf or .svg)."),
 )  # fmt: skip
-_WORKERS_OPTIONS = (
-    click.option("--workers", type=WHOLE, default=1, show_default=True,
-                 help="Processes of this machine that share the work; 1 stays in this one."),
-    click.option("--scheduler", metavar="ADDRESS",
-                 help="Let the workers of this dask scheduler share the work, as in "
-                 "tcp://host:8786."),
+_SHARE = "Processes of this machine that share the work; 1 stays in this one."
+_WORKERS = click.option("--workers", type=WHOLE, default=1, show_default=True, help=_SHARE)
+_WORKERS_AT_HAND = click.option(
+    "--workers",
+    type=WHOLE,
+    help=f"{_SHARE} By default one for each core, up to 4, if dask is here.",
+)
+_SCHEDULER = click.option(
+    "--scheduler", metavar="ADDRESS",
+    help="Let the workers of this dask scheduler share the work, as in tcp://host:8786.",
 )  # fmt: skip
 
 
@@ -301,7 +305,12 @@ def output_options(command: F) -> F:
 
 def workers_options(command: F) -> F:
     """Add the options for where the work is done."""
-    return _with(_WORKERS_OPTIONS, command)
+    return _with((_WORKERS, _SCHEDULER), command)
+
+
+def workers_at_hand_options(command: F) -> F:
+    """The same for long work, which takes the cores at hand by default."""
+    return _with((_WORKERS_AT_HAND, _SCHEDULER), command)
 
 
 def _with(options: tuple[Callable[[F], F], ...], command: F) -> F:

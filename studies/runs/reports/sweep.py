@@ -61,9 +61,9 @@ def excess_lines(front: Front) -> list[str]:
     errors = ", ".join(
         f"{name} within {100 * most:g} %" for name, most in front.task.plant.ranges.items()
     )
+    more = f"at most {100 * excess:.2g} % more" if excess > 0 else "no more"
     return [
-        f"residuals hold for any {errors}: between the samples CVODES finds at most "
-        f"{100 * excess:.2g} % more at any point"
+        f"residuals hold for any {errors}: between the samples CVODES finds {more} at any point"
     ]
 
 

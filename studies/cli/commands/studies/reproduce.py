@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from studies.cli.options import FOLDER, WHOLE, quiet_option, workers_options
+from studies.cli.options import FOLDER, WHOLE, quiet_option, workers_at_hand_options
 
 
 @click.command()
@@ -19,20 +19,20 @@ from studies.cli.options import FOLDER, WHOLE, quiet_option, workers_options
     show_default=True,
     help="Seeds of VEPSO and NSGA-II; 5 give medians and quartiles.",
 )
-@workers_options
+@workers_at_hand_options
 @quiet_option
 def reproduce(
-    output: Path | None, seeds: int, workers: int, scheduler: str | None, quiet: bool
+    output: Path | None, seeds: int, workers: int | None, scheduler: str | None, quiet: bool
 ) -> None:
     """Recompute the paper's Tables 2, 3, 5 and 6 and its claims; compare every system.
 
     \b
     Examples:
       quietarm reproduce --output results
-      quietarm reproduce --output results --workers 2
+      quietarm reproduce --output results --workers 1
     """  # noqa: D301  # \b is click's: do not rewrap
     from metaheuristics.sharing.pieces import InterruptedPiece
-    from metaheuristics.sharing.workers import Workers
+    from metaheuristics.sharing.workers import Workers, cores_at_hand
     from ocp import QuietarmError
     from studies.display.progress import progress
     from studies.display.saving import finish, inside
@@ -44,10 +44,12 @@ def reproduce(
     from studies.reproduction.unfinished import FILE, unfinished_table
     from studies.runs.files import warn_of_workers
 
-    pieces, where, errors = (
-        pieces_of_paper(seeds),
+    if workers is None:
+        workers = cores_at_hand() if scheduler is None else 1
+    where, errors, pieces = (
         Workers(workers, scheduler),
         Console(stderr=True),
+        pieces_of_paper(seeds),
     )
     warn_of_workers(errors, workers, len(pieces))
     try:

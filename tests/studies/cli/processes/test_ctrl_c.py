@@ -118,7 +118,7 @@ def test_ctrl_c_keeps_the_best_of_the_starts_that_were_solved(solving):
 
 def test_ctrl_c_ends_a_reproduction_and_keeps_what_was_solved(folder):
     process = subprocess.Popen(
-        [sys.executable, "-m", "studies", "reproduce", "--output", "results"],
+        [sys.executable, "-m", "studies", "reproduce", "--workers", "1", "--output", "results"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

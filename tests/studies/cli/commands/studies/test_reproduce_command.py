@@ -13,7 +13,9 @@ import studies.runs.loading
 import studies.runs.polishing
 import studies.runs.searching
 import studies.study.work
+from metaheuristics.sharing import workers
 from metaheuristics.sharing.workers import Workers
+from ocp import QuietarmError
 from studies.paper.printed import ROWS
 from studies.reproduction.pieces import pieces_of_paper
 from studies.reproduction.report import reproduction_files
@@ -76,8 +78,24 @@ def test_reproduce_is_shared_by_as_many_workers_as_are_asked_for(call, reproduct
 
     monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", note)
     assert call("reproduce --quiet --workers 2 --seeds 5")[0] == 0
-    assert call("reproduce --quiet")[0] == 0
+    assert call("reproduce --quiet --workers 1")[0] == 0
     assert asked == [(5, Workers(2)), (1, Workers())]
+
+
+@pytest.mark.parametrize("dask", [True, False])
+def test_by_default_it_takes_the_cores_at_hand(call, monkeypatch, dask):
+    asked = []
+
+    def note(begin, seeds, where):
+        asked.append(where)
+        raise QuietarmError("this is enough")
+
+    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", note)
+    monkeypatch.setattr(workers.os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
+    monkeypatch.setattr(workers.os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(workers, "find_spec", lambda _: object() if dask else None)
+    assert "this is enough" in call("reproduce --quiet")[2]
+    assert asked == [Workers(2) if dask else Workers()]
 
 
 def test_reproduce_makes_the_folder(call, reproduced, folder, monkeypatch):
