@@ -118,7 +118,7 @@ def import_front(
     refuse_beyond_box(profile, rows, settings.get("bound"))
     widest = max(float(np.abs(rows).max()), 1e-3)  # any box: the function needs one
     objectives, violations = MoveFunction(task, profile, bound=min(widest, 1e6))(rows)
-    failed = (objectives >= UNUSABLE).any(axis=1)
+    failed = np.asarray((objectives >= UNUSABLE).any(axis=1))
     broken = ~failed & (violations > _NEAR).any(axis=1)
     usable = np.flatnonzero(~failed & ~broken)
     near = usable[_not_beaten(objectives[usable])]
