@@ -74,7 +74,7 @@ class Plant(ABC):
     Raises
     ------
     ValueError
-        When a parameter is not a finite number.
+        When a parameter is not a finite number, or beyond all scale.
     """
 
     name: ClassVar[str]
@@ -120,6 +120,11 @@ class Plant(ABC):
                 raise ValueError(
                     f"{self.name}: parameter {entry.name} is {reprlib.repr(value)}; give a finite "
                     "number"
+                )
+            if abs(value) > _MOST_PARAMETER:
+                raise ValueError(
+                    f"{self.name}: parameter {entry.name} is {value:g}; give at most "
+                    f"{_MOST_PARAMETER:g} in size, in SI units"
                 )
             object.__setattr__(self, entry.name, float(value))
 
@@ -209,6 +214,8 @@ class Plant(ABC):
 
 _OF_CLASS = {"name": "str", "modes": "int", "small_deflection": "float | None"}
 """What a class of plants sets beside its parameters, with the type."""
+_MOST_PARAMETER = 1e100
+"""Powers of larger ones are beyond double precision."""
 
 
 def _is_finite(value: object) -> bool:

@@ -50,9 +50,11 @@ TESTS = {
     "ocp/simulation/collocation.py": [
         "ocp/simulation/test_collocation.py",
         "ocp/simulation/test_rollout.py",
+        "ocp/robustness/test_uncertain.py",
     ],
     "ocp/simulation/objective.py": [
         "ocp/simulation/test_objective.py",
+        "ocp/simulation/test_energy_derivatives.py",
         "ocp/simulation/test_rollout.py",
     ],
     "ocp/profiles/joint_profile.py": ["ocp/profiles/test_polynomial.py"],
@@ -60,6 +62,7 @@ TESTS = {
     "ocp/simulation/residual.py": [
         "ocp/simulation/test_residual.py",
         "ocp/simulation/test_rollout.py",
+        "ocp/profiles/test_shapers.py",
     ],
     "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py"],
     "ocp/simulation/resimulation.py": [

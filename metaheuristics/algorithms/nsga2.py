@@ -148,7 +148,7 @@ class PaperNSGA2(NSGA2):
         count = len(individuals)
         if not 1 <= count <= self._size:
             raise ValueError(
-                f"the population has {count} individuals; give a state with 1 to {self._size}"
+                f"the population has {count} individuals, where a state has 1 to {self._size}"
             )
         feasible = individuals.get("FEAS").ravel()
         ranks = array_of(columns, "rank", (count,), math.nan)

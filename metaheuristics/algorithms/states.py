@@ -89,7 +89,7 @@ def array_of(
         values = values.reshape(0, *shape[1:])  # no rows; a list of none does not say how long
     wanted = (len(values) if shape[0] == -1 and values.ndim else shape[0], *shape[1:])
     if values.shape != wanted:
-        raise ValueError(f"{name} has shape {values.shape}; give a state with {shape}")
+        raise ValueError(f"{name} has shape {values.shape}, where a state has {shape}")
     low, high = (-sys.float_info.max, sys.float_info.max) if least is None else (least, most)
     if not (math.isnan(low) or np.all((values >= low) & (values <= high))):
         raise ValueError(f"{name} has entries that are not from {low:g} to {high:g}")

@@ -134,7 +134,8 @@ def reading(path: str | Path, name: str) -> Iterator[None]:
     except KeyError as error:
         raise FileFormatError(f"{path} is not a whole {name}: {error} is missing") from None
     except ValueError as error:
-        raise FileFormatError(f"{path} is not a valid {name}: {error}") from None
+        remedy = "" if ";" in str(error) else f"; write the {name} again"
+        raise FileFormatError(f"{path} is not a valid {name}: {error}{remedy}") from None
     except (TypeError, AttributeError, IndexError, OverflowError, RecursionError):
         # in Python's own words, which help nobody
         raise FileFormatError(

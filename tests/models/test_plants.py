@@ -216,6 +216,13 @@ def test_plants_are_equal_by_class_and_parameters():
     assert SingleLinkManipulator() != ArmOnFlexibleLink()
 
 
+def test_a_parameter_beyond_all_scale_is_refused_with_what_would_do():
+    with pytest.raises(
+        ValueError, match=r"omega is -1e\+300; give at most 1e\+100 in size"
+    ):
+        SingleLinkManipulator(omega=-1e300)
+
+
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, "10", None, True, [1.0]])
 def test_a_parameter_that_is_not_a_finite_number_is_named(value):
     with pytest.raises(ValueError, match=r"single-link: parameter omega is .*finite number") as e:

@@ -114,5 +114,5 @@ def test_no_state_before_the_first_iteration():
 def test_state_of_another_run_is_refused():
     state = minimize(Targets(), VEPSO(5), ("n_gen", 2), seed=1).algorithm.state()
     for particles, problem in ((6, Targets()), (5, Targets(n_var=4)), (5, Targets(n_obj=3))):
-        with pytest.raises(ValueError, match="give a state with"):
+        with pytest.raises(ValueError, match="where a state has"):
             VEPSO(particles).setup(problem).restore(state)
