@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from models import Expression, Plant
 from ocp import JointProfile, PointToPoint, symbolic_rollout
-from ocp.base.checks import whole
+from ocp.base.checks import real_array, whole
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import one_at_a_time
 from ocp.simulation.buffered import BufferedFunction
@@ -117,9 +117,9 @@ class PopulationObjective:
         Raises
         ------
         ValueError
-            When the shape does not fit the profile.
+            When they are no real numbers, or their shape does not fit the profile.
         """
-        population = np.asarray(coefficients, dtype=float)
+        population = real_array("coefficients", coefficients, "rows of numbers")
         if population.ndim != 2 or population.shape[1] != self.profile.size:
             raise ValueError(
                 f"the population has shape {population.shape}; give (candidates, "

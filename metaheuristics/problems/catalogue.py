@@ -129,7 +129,7 @@ def _loaded(path: Path) -> Front:
 
 def problem_of(name: str) -> NamedProblem:
     """A named problem; ValueError suggests the nearest one."""
-    if name not in PROBLEMS:
+    if not isinstance(name, str) or name not in PROBLEMS:
         raise ValueError(unknown("problem", name, PROBLEMS))
     return PROBLEMS[name]
 

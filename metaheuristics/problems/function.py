@@ -13,6 +13,7 @@ from metaheuristics.objective.population import PopulationObjective, replace_fai
 from ocp import CycloidPolynomial, JointProfile, PointToPoint
 from ocp.answers.provenance import coefficient_bound
 from ocp.base.names import unknown
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.simulation.rollout import default_steps
 from ocp.task.quantities import QUANTITIES
 
@@ -65,6 +66,9 @@ class MoveFunction:
         threads: int = 1,
     ) -> None:
         profile = CycloidPolynomial() if profile is None else profile
+        refuse_other_kinds(task, profile)
+        if isinstance(peaks, str):
+            raise ValueError(f"peaks is {peaks!r}; give a list of quantities, as [{peaks!r}]")
         bound = profile.default_bound if bound is None else bound
         if bound is None:
             raise ValueError("give a bound on the coefficients: the box that is searched")
@@ -123,6 +127,6 @@ class MoveFunction:
 
 
 def _known(name: str) -> str:
-    if name not in QUANTITIES:
-        raise ValueError(unknown("quantity", str(name), QUANTITIES))
+    if not isinstance(name, str) or name not in QUANTITIES:
+        raise ValueError(unknown("quantity", name, QUANTITIES))
     return name

@@ -132,7 +132,9 @@ def reading(path: str | Path, name: str) -> Iterator[None]:
     try:
         yield
     except KeyError as error:
-        raise FileFormatError(f"{path} is not a whole {name}: {error} is missing") from None
+        raise FileFormatError(
+            f"{path} is not a whole {name}: {error} is missing; write the {name} again"
+        ) from None
     except ValueError as error:
         remedy = "" if ";" in str(error) else f"; write the {name} again"
         raise FileFormatError(f"{path} is not a valid {name}: {error}{remedy}") from None

@@ -8,6 +8,7 @@ from numbers import Integral, Real
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 T = TypeVar("T")
 
@@ -39,6 +40,36 @@ def of_kind(name: str, value: object, kind: type[T], remedy: str) -> T:
     if not isinstance(value, kind):
         raise ValueError(f"{name} is {reprlib.repr(value)}; give {remedy}")
     return value
+
+
+def real_array(name: str, values: object, remedy: str) -> NDArray[np.float64]:
+    """Numbers as an array of any shape.
+
+    Parameters
+    ----------
+    name : str
+        What they are, for the message.
+    values : object
+        What was given.
+    remedy : str
+        What to give, for the message.
+
+    Returns
+    -------
+    ndarray
+        The numbers.
+
+    Raises
+    ------
+    ValueError
+        When they are no real numbers, or in rows of different lengths.
+    """
+    try:
+        if values is None or np.iscomplexobj(values):
+            raise TypeError  # NumPy takes None for nan, and drops an imaginary part
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} are {reprlib.repr(values)}; give {remedy}") from None
 
 
 def finite(name: str, value: object, unit: str = "") -> float:

@@ -35,6 +35,7 @@ def read_whole(path: str | Path) -> bytes:
     ValueError
         When it cannot be read, is no ordinary file, or is larger than `MOST_BYTES`.
     """
+    _refuse_null(path)
     try:
         with open(path, "rb", opener=_open_at_once) as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
@@ -49,6 +50,11 @@ def read_whole(path: str | Path) -> bytes:
             "another"
         )
     return content
+
+
+def _refuse_null(path: str | Path) -> None:
+    if "\0" in str(path):
+        raise ValueError(f"the name {str(path)!r} has a null character; give another name")
 
 
 def _open_at_once(path: str, flags: int) -> int:
@@ -73,6 +79,7 @@ def check_writable(path: str | Path) -> Path:
     ValueError
         When its folder does not exist or cannot be written, or it is a folder itself.
     """
+    _refuse_null(path)
     target = Path(path)
     folder = target.parent
     if os.path.islink(target):  # it may lead to another folder

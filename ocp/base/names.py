@@ -11,7 +11,7 @@ _PART = 3
 """So many letters of a longer name are enough."""
 
 
-def unknown(what: str, name: str, known: Iterable[str], also: str = "") -> str:
+def unknown(what: str, name: object, known: Iterable[str], also: str = "") -> str:
     """The message about a name that is not known.
 
     Parameters
@@ -35,7 +35,7 @@ def unknown(what: str, name: str, known: Iterable[str], also: str = "") -> str:
     return f"unknown {what} {name!r}{_question(name, known)} (known: {', '.join(known)}{also})"
 
 
-def has_no(owner: str, what: str, name: str, known: Iterable[str]) -> str:
+def has_no(owner: str, what: str, name: object, known: Iterable[str]) -> str:
     """The message about a name that something does not have.
 
     Parameters
@@ -81,6 +81,8 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"did you mean {near[0]!r}? " if near else ""
 
 
-def _question(name: str, known: list[str]) -> str:
+def _question(name: object, known: list[str]) -> str:
+    if not isinstance(name, str):
+        return ""
     question = nearest(name, known).rstrip()
     return f"; {question}" if question else ""

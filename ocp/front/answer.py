@@ -16,7 +16,7 @@ from ocp.answers.documents import Upgrades
 from ocp.answers.older import front_of_version_2
 from ocp.answers.provenance import Setting, versions
 from ocp.answers.saved import Saved
-from ocp.base.checks import not_negative, of_kind
+from ocp.base.checks import finite, not_negative, of_kind
 from ocp.base.files import write_whole
 from ocp.base.ranges import Count, NotNegative, Positive
 from ocp.base.readonly import ReadOnlyDict
@@ -111,6 +111,9 @@ class Front(Saved):
             raise ValueError(f"method is {self.method!r}; give the name of what found the points")
         for name in ("settings", "versions"):
             object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
+        for name, value in self.settings.items():
+            if isinstance(value, float):
+                finite(f"setting {name}", value)
         object.__setattr__(self, "points", tuple(self.points))
         for i, point in enumerate(self.points, start=1):
             if not isinstance(point, FrontPoint):
@@ -120,8 +123,8 @@ class Front(Saved):
             not_negative(f"energy of point {i}", point.energy, "J")
         if self.points != non_dominated(self.points):
             raise ValueError(
-                "its points are out of order, or one is better than another; give "
-                "non_dominated(points)"
+                "its points are out of order, or one is better than another; order them by "
+                "residual and leave out what others beat, as non_dominated(points) does"
             )
 
     @property
@@ -253,11 +256,13 @@ class Front(Saved):
         if residual_limit is None:
             return points[-1]
         of_kind("residual limit", residual_limit, Real, "a number in m")
+        if not residual_limit >= 0:  # nor NaN; all of them are below infinity
+            raise ValueError(f"residual limit is {residual_limit:g} m; give 0 or more")
         still = [point for point in points if point.residual <= residual_limit]
         if not still:
             raise ValueError(
-                f"no point of the front has a residual of {residual_limit:g} m or less; the "
-                f"stillest has {points[0].residual:.3g} m"
+                f"no point of the front has a residual of {residual_limit:g} m or less; give at "
+                f"least that of the stillest, {points[0].residual:.3g} m"
             )
         return still[-1]
 

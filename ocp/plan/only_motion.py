@@ -6,12 +6,14 @@ from ocp.answers.provenance import SolveSettings
 from ocp.base.errors import InfeasibleTaskError
 from ocp.plan.answer import Plan, evaluate_coefficients
 from ocp.plan.feasibility import UNITS
-from ocp.plan.verification import OVERRUN
+from ocp.plan.verification import OVERRUN, STILL
 from ocp.profiles.joint_profile import JointProfile
 from ocp.task.point_to_point import PointToPoint
 
 
-def only_motion(task: PointToPoint, profile: JointProfile, residual_limit: float = 0.0) -> Plan:
+def only_motion(
+    task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
+) -> Plan:
     """The figures of the only motion that a profile has, within the task's limits.
 
     Parameters
@@ -20,8 +22,8 @@ def only_motion(task: PointToPoint, profile: JointProfile, residual_limit: float
         The move and its limits.
     profile : JointProfile
         A profile of size 0.
-    residual_limit : float
-        Largest F1 [m]; 0 asks for none, since there is nothing to choose.
+    residual_limit : float, optional
+        Largest F1 [m], or 0 for rest; any by default, since there is nothing to choose.
 
     Returns
     -------
@@ -37,11 +39,13 @@ def only_motion(task: PointToPoint, profile: JointProfile, residual_limit: float
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    SolveSettings(residual_limit=residual_limit)  # refused before the integration, not after
+    asked = 0.0 if residual_limit is None else residual_limit
+    SolveSettings(residual_limit=asked)  # refused before the integration, not after
     plan = evaluate_coefficients(
-        task, [], profile=profile, method="evaluated", settings={"residual_limit": residual_limit}
+        task, [], profile=profile, method="evaluated", settings={"residual_limit": asked}
     )
-    limits = {**({"residual": residual_limit} if residual_limit else {}), **task.limits}
+    residual = {} if residual_limit is None else {"residual": max(residual_limit, STILL)}
+    limits = {**residual, **task.limits}
     broken = [
         f"its {name} reaches {plan.motion.peak(name):.4g} {UNITS[name]}, above {limits[name]:g}"
         for name in plan.motion.passed(limits, OVERRUN)

@@ -100,7 +100,7 @@ def plan_move(
     least = 0.0 if residual_limit is None else residual_limit
     settings = SolveSettings(least, bound, starts, seed, steps, guess)
     if profile.size == 0:
-        return only_motion(task, profile, settings.residual_limit)
+        return only_motion(task, profile, residual_limit)
     settings = replace(settings, residual_limit=limit_of(task, residual_limit))
     if isinstance(task.plant, UncertainPlant):
         return robust_plan(task, profile, settings, plan_at_samples)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models import Expression, JointMotion
+from ocp.base.checks import real_array
 
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
@@ -228,14 +228,7 @@ class JointProfile(ABC):
 
 def numbers_of(coefficients: object) -> NDArray[np.float64]:
     """Coefficients as an array of one axis; ValueError where they are no numbers in a row."""
-    try:
-        if coefficients is None:
-            raise TypeError  # which NumPy takes for nan
-        values = np.atleast_1d(np.asarray(coefficients, dtype=float))
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(
-            f"coefficients are {reprlib.repr(coefficients)}; give a list of numbers"
-        ) from None
+    values = np.atleast_1d(real_array("coefficients", coefficients, "a list of numbers"))
     if values.ndim != 1:
         raise ValueError(f"coefficients have shape {values.shape}; give one row of numbers")
     return values

@@ -236,8 +236,8 @@ def settings_by_method(
         method, dot, own = name.partition(".")
         if not dot or method not in methods:
             raise ValueError(
-                f"setting {name} names no method that runs; give it as {methods[0]}.{own or name}, "
-                f"with one of {', '.join(methods)}"
+                f"setting {name} names no method that runs; begin it with one of these and a dot: "
+                f"{', '.join(methods)}"
             )
         found.setdefault(method, {})[own] = value
     return found

@@ -236,9 +236,10 @@ def _check_amounts(run: Run, contest: Contest, folder: Path) -> None:
             "the method's own" if size is None else size
             for size in (run.population, contest.population)
         )
+        remedy = f"give --population {theirs}" if run.population else "leave --population out"
         raise ValueError(
             f"{folder} has a run whose population is {theirs} ({run.words}) and {asked} is asked "
-            "for; give the same, or another --output"
+            f"for; {remedy}, or another --output"
         )
 
 

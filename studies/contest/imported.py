@@ -109,7 +109,10 @@ def _named(text: str) -> tuple[str, Path]:
     path = Path(text)
     name, equals, rest = text.partition("=")
     if not equals or path.exists():
-        name = path.stem if path.suffix and not path.is_dir() else path.name
+        whole = path.resolve() if path.name in ("", "..") else path  # as . and /
+        name = whole.stem if whole.suffix and not whole.is_dir() else whole.name
+    elif not rest:
+        raise ValueError(f"nothing follows {printable(text)}; give a file or folder to --import")
     else:
         path = Path(rest)
     if not path.exists():

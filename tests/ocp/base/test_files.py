@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from ocp.base.files import check_writable, write_whole
+from ocp.base.files import check_writable, read_whole, write_whole
 
 
 def _left_over(folder):
@@ -177,3 +177,9 @@ def test_a_reader_never_sees_half_a_file(tmp_path):
         reader.join()
     assert seen
     assert seen <= contents
+
+
+@pytest.mark.parametrize("use", [read_whole, lambda path: write_whole(path, "")])
+def test_a_name_that_no_system_takes_is_refused(use):
+    with pytest.raises(ValueError, match=r"the name 'a\\x00b' has a null character; give another"):
+        use("a\0b")

@@ -90,12 +90,6 @@ def test_a_file_has_the_keys_that_others_read(tmp_path):
     assert document["versions"] == versions()
 
 
-def test_a_front_that_is_no_number_is_not_written(tmp_path):
-    with pytest.raises(ValueError, match="JSON"):
-        front(settings={"bound": math.nan}).save(tmp_path / "front.json")
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_an_older_file_is_replaced_whole(tmp_path):
     path = tmp_path / "front.json"
     front().save(path)

@@ -203,6 +203,8 @@ def test_a_limit_that_the_only_motion_breaks_is_named(tasks):
         plan_move(broken, plan.profile)
     with pytest.raises(InfeasibleTaskError, match="its residual reaches"):
         plan_move(task, plan.profile, residual_limit=plan.residual / 2)
+    with pytest.raises(InfeasibleTaskError, match="its residual reaches"):  # 0: at rest
+        plan_move(task, CycloidPolynomial(0), residual_limit=0.0)
     plan_move(task, plan.profile, residual_limit=plan.residual * 2)
 
 

@@ -80,7 +80,10 @@ def test_it_takes_part_beside_the_same_method_without(call, copy):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ("crossover=0.5", "setting crossover names no method that runs; give it as nsga2.cross"),
+        (
+            "crossover=0.5",
+            "setting crossover names no method that runs; begin it with",
+        ),
         ("gde3.crossover=0.5", "setting gde3.crossover names no method that runs"),
         ("nsga2.crosover=0.5", "nsga2 has no setting 'crosover'; did you mean 'crossover'"),
         ("nsga2.crossover=2", "crossover is 2; give a number from 0 to 1"),
