@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import reprlib
 from numbers import Integral, Real
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,7 @@ def of_kind(name: str, value: object, kind: type[T], remedy: str) -> T:
     return value
 
 
-def real_array(name: str, values: object, remedy: str) -> NDArray[np.float64]:
+def real_array(name: str, values: Any, remedy: str) -> NDArray[np.float64]:
     """Numbers as an array of any shape.
 
     Parameters
