@@ -42,11 +42,13 @@ TESTS = {
     "models/plant.py": [
         "models/test_plants.py",
         "models/test_broken_plants.py",
+        "models/test_contract.py",
+        "models/test_plant_file.py",
         "ocp/task/test_point_to_point.py",
     ],
-    "models/single_link.py": ["models/test_plants.py"],
-    "models/dual_link.py": ["models/test_dual_link.py"],
-    "models/arm_on_flexible_link.py": ["models/test_plants.py"],
+    "models/single_link.py": ["models/test_plants.py", "models/test_drawing.py"],
+    "models/dual_link.py": ["models/test_dual_link.py", "models/test_drawing.py"],
+    "models/arm_on_flexible_link.py": ["models/test_plants.py", "models/test_drawing.py"],
     "ocp/simulation/collocation.py": [
         "ocp/simulation/test_collocation.py",
         "ocp/simulation/test_rollout.py",
@@ -57,7 +59,11 @@ TESTS = {
         "ocp/simulation/test_energy_derivatives.py",
         "ocp/simulation/test_rollout.py",
     ],
-    "ocp/profiles/joint_profile.py": ["ocp/profiles/test_polynomial.py"],
+    "ocp/profiles/joint_profile.py": [
+        "ocp/profiles/test_polynomial.py",
+        "ocp/profiles/test_own.py",
+        "ocp/simulation/test_jerk.py",
+    ],
     "ocp/profiles/polynomial.py": ["ocp/profiles/test_polynomial.py"],
     "ocp/simulation/residual.py": [
         "ocp/simulation/test_residual.py",
