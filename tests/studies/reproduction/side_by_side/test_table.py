@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from studies.paper.printed import ARM_HALF, DUAL_LINK_HALF, SINGLE_LINK_SIXTH
 from studies.reproduction.side_by_side.table import (
     all_systems,
     print_systems,
@@ -80,30 +79,6 @@ def test_markdown_has_a_table_for_each_move_and_what_is_missing(reproduction):
         assert systems_table(case, systems).markdown() in text
         for why in why_not(systems):
             assert f"\n- {why}\n" in text
-
-
-def test_the_readme_shows_what_is_computed(reproduction):
-    readme = (PAGES / "README.md").read_text()
-    cells = {
-        line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]]
-        for line in readme.split("## What it finds\n")[1].split("\n## ")[0].splitlines()
-        if line.startswith("| ")
-    }
-    moves = [
-        {found.name: found for found in reproduction.systems[case]}
-        for case in (SINGLE_LINK_SIXTH, ARM_HALF, DUAL_LINK_HALF)
-    ]
-    for name in WHOLE:
-        shown = [None if cell == "-" else float(cell) for cell in cells[name][1:]]
-        for energy, residual, wrong, found in zip(
-            shown[::3], shown[1::3], shown[2::3], [move[name] for move in moves], strict=True
-        ):
-            if found.motion is None:
-                assert energy is residual is wrong is None
-                continue
-            assert energy == pytest.approx(found.energy, abs=1e-4)
-            assert residual == pytest.approx(found.motion.residual * 1e3, abs=0.011)
-            assert wrong == pytest.approx(found.wrong_residual * 1e3, abs=0.011)
 
 
 def test_the_page_of_systems_shows_what_is_computed(reproduction):
