@@ -118,7 +118,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
             status = _run(arguments)
             out.flush()
             if out.trouble:
-                status = _complain(f"standard output cannot be written: {out.trouble}", BAD_INPUT)
+                status = _complain(
+                    f"standard output cannot be written: {out.trouble}; send it elsewhere",
+                    BAD_INPUT,
+                )
     except KeyboardInterrupt:  # one more, while the first was being answered
         status = NOT_SOLVED
     if loaded_by_itself:  # nothing is left to be stopped

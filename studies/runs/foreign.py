@@ -21,6 +21,7 @@ from studies.display.words import counted
 
 Array = NDArray[np.float64]
 
+MOST_MOTIONS = 1_000_000
 _COEFFICIENT = re.compile(r"(?:a|x|coefficient)[ _]?\(?\[?(\d+)\]?\)?", re.IGNORECASE)
 _CLAIMS: Mapping[str, tuple[int, float]] = {
     "residual": (0, 1.0), "residual_m": (0, 1.0), "residual_mm": (0, 1e-3), "f1": (0, 1.0),
@@ -101,6 +102,8 @@ def _of_text(content: bytes) -> Found:
     lines = [(i, line) for i, line in lines if line and not line.startswith(("#", "%"))]
     if not lines:
         raise FileFormatError("it is empty; give a row for each motion")
+    if len(lines) > 1 + MOST_MOTIONS:  # told before a minute is spent on their numbers
+        raise FileFormatError(f"it has {len(lines)} lines; give at most {MOST_MOTIONS} motions")
     between = next((mark for mark in (";", "\t", ",") if mark in lines[0][1]), None)
     rows = [(i, [cell.strip().strip('"') for cell in line.split(between)]) for i, line in lines]
     names: list[str] | None = None

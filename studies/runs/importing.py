@@ -21,7 +21,7 @@ from studies.display.progress import working
 from studies.display.saving import drawing, finish
 from studies.display.words import print_lines
 from studies.runs.files import FrontFiles
-from studies.runs.foreign import Found
+from studies.runs.foreign import MOST_MOTIONS, Found
 from studies.runs.reports.search import print_fronts
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-MOST_MOTIONS = 1_000_000
 _NEAR = 1e-3
 """Motions that another beats by more than this share are not evaluated a second time."""
 _NEAR_REST = 1e-6

@@ -69,10 +69,10 @@ def import_(
     if terms is not None:
         size = FAMILIES[profile](terms).size
         if size != columns:
-            remedy = "transpose it" if len(found.coefficients) == size else "leave --terms out"
+            turned = ", or transpose it" if len(found.coefficients) == size else ""
             raise ValueError(
                 f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
-                f"{size}; {remedy}"
+                f"{size}; leave --terms out{turned}"
             )
     try:
         motions = FAMILIES[profile].of_size(columns)

@@ -87,7 +87,9 @@ def test_progress_that_nobody_reads_stops_no_work(folder):
 def test_a_full_output_costs_no_file_and_is_said(folder):
     ran = shell(f"quietarm {EVALUATE} --output o.json --csv o.csv > /dev/full")
     assert ran.returncode == 2
-    words = "quietarm: standard output cannot be written: no space left on device\n"
+    words = (
+        "quietarm: standard output cannot be written: no space left on device; send it elsewhere\n"
+    )
     assert ran.stderr == words
     assert sorted(path.name for path in folder.iterdir()) == ["o.csv", "o.json"]
 

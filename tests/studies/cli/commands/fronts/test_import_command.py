@@ -161,6 +161,7 @@ BAD = [
     ("time,energy\n0.1,0.1\n", "no column is a coefficient; name them a_1, a_2"),
     ("a_1,a_2\n", "holds no coefficients; give a row for each motion"),
     ("", "it is empty; give a row for each motion"),
+    ("1\n" * 1_000_002, "it has 1000002 lines; give at most 1000000 motions"),
     ('{"format": "quietarm-plan"}', "it is JSON, no table; give a row for each motion; a front"),
     (b"\xff\xfe\x00", "it is no text"),
     ("a_1,a_2\nnan,0.1\n", "motion 1: coefficient 1 is nan; give a finite number"),
@@ -188,7 +189,8 @@ def test_coefficients_that_do_not_fit_the_profile_are_refused(call, folder):
         "leave --terms out\n"
     )
     written("f.npy", numpy_file(np.zeros((6, 4))))
-    assert "takes 6; transpose it" in call(f"import f.npy {IMPORT} --terms 6")[2]
+    _, _, err = call(f"import f.npy {IMPORT} --terms 6")
+    assert "takes 6; leave --terms out, or transpose it" in err
     _, _, err = call(f"import f.csv {IMPORT} --profile network")
     assert "f.csv: got 2 coefficients; cycloid-network has one and three for each unit" in err
 
