@@ -109,3 +109,16 @@ def test_a_structure_that_cannot_be_drawn_is_told(structure, message):
         Calls(plant, 1).structure(0.0, [0.0])
     assert "return a list of models.Body" in str(told.value)
     assert "casadi" not in str(told.value)
+
+
+def test_what_is_drawn_thick_is_hubs_motor_arm_and_clamp():
+    hub = SingleLinkManipulator().structure(0.3, [0.01])[1]
+    assert (hub.points.tolist(), hub.rigid) == ([[0.0, 0.0]], True)
+    clamp, link, arm, motor = ArmOnFlexibleLink().structure(0.3, [0.01])
+    assert [body.rigid for body in (clamp, link, arm, motor)] == [True, False, True, True]
+    # upright at the link's root, half of it on either side
+    assert clamp.points[:, 0] == pytest.approx([0, 0])
+    assert clamp.points[0, 1] == -clamp.points[1, 1] < 0
+    assert motor.points.tolist() == [link.points[-1].tolist()] == [arm.points[0].tolist()]
+    hub = Sound().structure(0.3, [0.01])[-1]
+    assert (hub.points.tolist(), hub.rigid) == ([[0.0, 0.0]], True)

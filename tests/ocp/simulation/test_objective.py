@@ -191,3 +191,14 @@ def test_overshoot_is_how_far_the_joint_passes_the_target(target, angles, oversh
     assert (motion.peak_jerk, motion.peak("jerk")) == (None, math.inf)  # its jerk is not known
     assert motion.overshoot == pytest.approx(overshoot, abs=1e-15)
     assert math.copysign(1.0, motion.overshoot) == 1.0  # else a table prints -0
+
+
+def test_what_passes_a_limit_is_named_with_its_share_of_it():
+    motion = Motion(2e-3, 0.1, 0.05, 0.3, 2.0, 9.0, 0.02, 0.0)
+    limits = {"torque": 0.2, "speed": 2.5, "acceleration": 10.0, "deflection": 0.016}
+    assert motion.passed(limits) == pytest.approx({"torque": 1.5, "deflection": 1.25})
+    assert motion.passed(limits, room=0.3) == pytest.approx({"torque": 1.5})
+    assert motion.passed({"residual": 1e-3, "jerk": 1.0}) == pytest.approx(
+        {"residual": 2.0, "jerk": math.inf}
+    )
+    assert motion.passed({"residual": 0.0}) == {}  # rest is judged elsewhere
