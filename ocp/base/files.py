@@ -35,7 +35,7 @@ def read_whole(path: str | Path) -> bytes:
     ValueError
         When it cannot be read, is no ordinary file, or is larger than `MOST_BYTES`.
     """
-    _refuse_null(path)
+    _refuse_no_name(path)
     try:
         with open(path, "rb", opener=_open_at_once) as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
@@ -52,7 +52,11 @@ def read_whole(path: str | Path) -> bytes:
     return content
 
 
-def _refuse_null(path: str | Path) -> None:
+def _refuse_no_name(path: object) -> None:
+    if not isinstance(path, str | Path):
+        raise ValueError(f"the name of the file is {path!r}; give a text or a Path")
+    if not str(path):
+        raise ValueError("the name of the file is empty; give one")
     if "\0" in str(path):
         raise ValueError(f"the name {str(path)!r} has a null character; give another name")
 
@@ -79,7 +83,7 @@ def check_writable(path: str | Path) -> Path:
     ValueError
         When its folder does not exist or cannot be written, or it is a folder itself.
     """
-    _refuse_null(path)
+    _refuse_no_name(path)
     target = Path(path)
     folder = target.parent
     if os.path.islink(target):  # it may lead to another folder

@@ -212,7 +212,8 @@ class Front(Saved):
         ValueError
             When the array is no table of finite numbers, or does not fit the profile or the bound.
         """
-        began, settings = time.perf_counter(), {} if settings is None else dict(settings)
+        began = time.perf_counter()
+        settings = dict(of_kind("settings", settings or {}, Mapping, "a dict"))
         table = table_of(coefficients)
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
         found = evaluated(task, profile, table, settings.get("bound"))

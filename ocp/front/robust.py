@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.answers.provenance import REST
+from ocp.base.checks import of_kind
 from ocp.front.answer import Front
 from ocp.front.checking import RESIDUAL_LIMIT, checked
 from ocp.front.points import FailedPoint, FrontPoint, non_dominated
@@ -213,7 +214,14 @@ def on_same_samples(fronts: Sequence[Front]) -> list[Front]:
     list of Front
         Those whose uncertain plants have the same ranges and other samples are evaluated again, by
         CVODES; all others as they are.
+
+    Raises
+    ------
+    ValueError
+        When one is no front.
     """
+    for i, front in enumerate(fronts, start=1):
+        of_kind(f"front {i}", front, Front, "a Front")
     samples: dict[UncertainPlant, dict[tuple[float, ...], None]] = {}
     for front in fronts:
         if isinstance(front.task.plant, UncertainPlant):

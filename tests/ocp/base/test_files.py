@@ -85,7 +85,7 @@ class TestRefused:
             write(tmp_path)
 
     def test_an_empty_name_is_not_a_file(self, write):
-        with pytest.raises(ValueError, match="folder"):
+        with pytest.raises(ValueError, match="the name of the file is empty; give one"):
             write("")
 
     def test_a_name_too_long_is_refused(self, tmp_path, write):
@@ -179,7 +179,15 @@ def test_a_reader_never_sees_half_a_file(tmp_path):
     assert seen <= contents
 
 
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("a\0b", r"the name 'a\\x00b' has a null character; give another"),
+        ("", "the name of the file is empty; give one"),
+        (None, "the name of the file is None; give a text or a Path"),
+    ],
+)
 @pytest.mark.parametrize("use", [read_whole, lambda path: write_whole(path, "")])
-def test_a_name_that_no_system_takes_is_refused(use):
-    with pytest.raises(ValueError, match=r"the name 'a\\x00b' has a null character; give another"):
-        use("a\0b")
+def test_a_name_that_no_system_takes_is_refused(use, path, words):
+    with pytest.raises(ValueError, match=words):
+        use(path)

@@ -175,3 +175,8 @@ def test_a_residual_limit_that_is_none_is_refused(limit):
 def test_a_setting_that_no_file_can_hold_is_refused():
     with pytest.raises(ValueError, match=r"setting bound is nan; give a finite number"):
         dataclasses.replace(front(), settings={"bound": math.nan})
+
+
+def test_settings_that_are_no_table_are_refused():
+    with pytest.raises(ValueError, match=r"settings is \[1\]; give a table"):
+        dataclasses.replace(front(), settings=[1])
