@@ -71,7 +71,11 @@ def test_the_licence_is_mit_and_shipped():
 
 def test_the_command_is_the_script_of_studies():
     (script,) = PYPROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["shared-scripts"]
-    (installed,) = (path for path in metadata.files("quietarm") if path.name == "quietarm")
+    (installed,) = (  # beside the one in the package
+        path
+        for path in metadata.files("quietarm")
+        if path.name == "quietarm" and path.parent.name == "bin"
+    )
     lines = (ROOT / script).read_text().splitlines()
     assert installed.locate().read_text().splitlines()[1:] == lines[1:]
     assert lines[0] == "#!python"  # pip puts its own Python there
