@@ -49,7 +49,7 @@ def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjecti
     return PopulationObjective(task, profile, steps=default_steps(task), often=False)
 
 
-def check_figures(front: Front, name: str) -> None:
+def check_figures(front: Front, name: str, remedy: str = "find the front again") -> None:
     """Evaluate motions of a front again, and refuse it where the figures differ.
 
     Parameters
@@ -58,6 +58,8 @@ def check_figures(front: Front, name: str) -> None:
         The front; an empty one passes.
     name : str
         What to call it in a message.
+    remedy : str
+        The end of the message.
 
     Raises
     ------
@@ -68,10 +70,10 @@ def check_figures(front: Front, name: str) -> None:
         objective = objective_of(front.task, front.profile)
         if front.points:
             table = np.array([point.coefficients for point in front.points])
-            refuse_beyond_box(front.profile, table, front.settings.get("bound"))
+            refuse_beyond_box(front.profile, table, front.settings.get("bound"), remedy="")
         check_points(objective, front.points, limited=True)
     except ValueError as error:
-        raise ValueError(f"{name}: {error}; find the front again") from None
+        raise ValueError(f"{name}: {error}; {remedy}") from None
 
 
 def check_plan(plan: Plan, name: str) -> None:

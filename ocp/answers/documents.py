@@ -136,6 +136,7 @@ def reading(path: str | Path, name: str) -> Iterator[None]:
             f"{path} is not a whole {name}: {error} is missing; write the {name} again"
         ) from None
     except ValueError as error:
+        # what is wrong and what to do about it are parted by a semicolon
         remedy = "" if ";" in str(error) else f"; write the {name} again"
         raise FileFormatError(f"{path} is not a valid {name}: {error}{remedy}") from None
     except (TypeError, AttributeError, IndexError, OverflowError, RecursionError):

@@ -213,7 +213,7 @@ class Front(Saved):
             When the array is no table of finite numbers, or does not fit the profile or the bound.
         """
         began = time.perf_counter()
-        settings = dict(of_kind("settings", settings or {}, Mapping, "a dict"))
+        settings = dict(of_kind("settings", settings or {}, Mapping, "a table"))
         table = table_of(coefficients)
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
         found = evaluated(task, profile, table, settings.get("bound"))

@@ -18,9 +18,9 @@ from ocp.program.transcription import RESIDUAL
 from ocp.robustness.uncertain import UncertainPlant, on_assumed
 
 _LESS_AND_LESS = (1.0, 0.1, 0.02, 2e-3)
-"""Weights of the energy on the way to the still end of an uncertain plant. With the last, it is
-where a hundredth of the residual of the cheapest end costs five times the energy of the assumed
-plant's motion at rest."""
+"""Weights of the energy beside the residual, one solve after the other, on the way to the still end
+of an uncertain plant. There, to take another hundredth of the cheapest end's residual off would
+cost five times the energy of the assumed plant's motion at rest."""
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,12 @@ def table_of(coefficients: ArrayLike) -> NDArray[np.float64]:
     return table
 
 
-def refuse_beyond_box(profile: JointProfile, table: NDArray[np.float64], bound: object) -> None:
+def refuse_beyond_box(
+    profile: JointProfile,
+    table: NDArray[np.float64],
+    bound: object,
+    remedy: str = "; correct it, or state a wider bound",
+) -> None:
     """Refuse coefficients beyond the box of a profile for the bound that is stated.
 
     Parameters
@@ -73,6 +78,8 @@ def refuse_beyond_box(profile: JointProfile, table: NDArray[np.float64], bound: 
         Coefficients, one row for each motion.
     bound : float or None
         The bound, as `JointProfile.box` takes it; None refuses nothing.
+    remedy : str
+        The end of the message, for whom the table is no input.
 
     Raises
     ------
@@ -89,7 +96,7 @@ def refuse_beyond_box(profile: JointProfile, table: NDArray[np.float64], bound: 
         row, column = beyond[0]
         raise ValueError(
             f"point {row + 1} of {len(table)} has the coefficient {table[row, column]:.4g}, "
-            f"beyond the stated bound of {most:g}; correct it, or state a wider bound"
+            f"beyond the stated bound of {most:g}{remedy}"
         )
 
 

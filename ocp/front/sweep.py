@@ -73,7 +73,7 @@ class Sweep:
 
     @property
     def samples(self) -> list[tuple[float, ...]]:
-        """The errors at which its residual counts, none at first."""
+        """The errors at which its residual counts; the first sample has none."""
         return [(0.0,) * len(self.ranges), *uncertain_plant(self.task.plant).samples]
 
     def add_samples(self, more: Sequence[Sequence[float]]) -> None:

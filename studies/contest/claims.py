@@ -13,6 +13,7 @@ from studies.contest.runs import Run
 _AGREEMENT = 2e-3
 """Hypervolumes of a front and of its search differ by less: the front's figures are of finer
 steps."""
+_REMEDY = "remove it to have it made again"
 
 
 def check_run(run: Run | Imported, yardstick: Yardstick, path: Path) -> None:
@@ -33,13 +34,9 @@ def check_run(run: Run | Imported, yardstick: Yardstick, path: Path) -> None:
         When motions of the front have other figures, or the last mark is neither the hypervolume
         of the front nor possible at all.
     """
-    try:
-        check_figures(run.front, str(path))
-        if isinstance(run, Run):
-            _check_end(run, yardstick, path)
-    except ValueError as error:
-        said = str(error).removesuffix("; find the front again")
-        raise ValueError(f"{said}; remove it to have it made again") from None
+    check_figures(run.front, str(path), _REMEDY)
+    if isinstance(run, Run):
+        _check_end(run, yardstick, path)
 
 
 def _check_end(run: Run, yardstick: Yardstick, path: Path) -> None:
@@ -49,8 +46,9 @@ def _check_end(run: Run, yardstick: Yardstick, path: Path) -> None:
         f"{end.hypervolume:.6g}"
     )
     if end.hypervolume > yardstick.hypervolume + _AGREEMENT:
-        raise ValueError(f"{states}, and the exact front has {yardstick.hypervolume:.6g}")
+        best = yardstick.hypervolume
+        raise ValueError(f"{states}, and the exact front has {best:.6g}; {_REMEDY}")
     # with limits, motions that break one a little on the finer steps are not in the front
     beyond = own - end.hypervolume if run.front.task.limits else abs(own - end.hypervolume)
     if not beyond <= _AGREEMENT:
-        raise ValueError(f"{states}, but its front dominates {own:.6g}")
+        raise ValueError(f"{states}, but its front dominates {own:.6g}; {_REMEDY}")
