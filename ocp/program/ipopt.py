@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -77,6 +79,8 @@ RESOLVED = {
 """From a minimum close by, with its multipliers. Where zeros of the power meet, second derivatives
 no longer help: the iterations end when the energy has hardly changed three times.
 """
+
+_THREADS = "OPENBLAS_NUM_THREADS"
 
 
 @dataclass(frozen=True)
@@ -155,10 +159,28 @@ def ipopt(
     if gradient is not None:
         names = ["x", "p"], ["f", "grad_f_x"]
         functions["grad_f"] = ca.Function("nlp_grad_f", [x, p], [f, gradient], *names)
+    _load()
     chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
     return ca.nlpsol(
         "program", "ipopt", dict(problem), {**functions, **chosen, "ipopt": dict(options)}
     )
+
+
+@lru_cache(maxsize=1)
+def _load() -> None:
+    """Load IPOPT with one thread for its linear algebra, unless the environment says how many.
+
+    Its matrices are small: a second thread shortens nothing, and keeps a core from other processes.
+    OpenBLAS reads the variable once, when it is loaded.
+    """
+    asked = os.environ.get(_THREADS)
+    os.environ[_THREADS] = asked or os.environ.get("OMP_NUM_THREADS", "1")
+    try:
+        ca.load_nlpsol("ipopt")
+    finally:
+        del os.environ[_THREADS]
+        if asked is not None:
+            os.environ[_THREADS] = asked
 
 
 Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]

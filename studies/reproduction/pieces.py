@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import product
@@ -88,25 +88,32 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
     for case, terms, boxed in SOLVES:
         name = f"gradient: {_label(case, terms)}{', in the box' * boxed}"
         work.append(Piece((case, terms, boxed), name, partial(_solved, case, terms, boxed)))
-    for case, profile in product(CASES, OTHERS):
-        name = f"gradient: {case.name}, {profile}"
-        work.append(Piece((case, profile), name, partial(_solved_with, case, profile)))
+    # long ones first, so that in the end no worker waits long for another
+    work += [
+        piece
+        for method in reversed(SEARCHES)
+        for case, terms in SEARCHED
+        for piece in _searches(method, case, terms, seeds)
+    ]
+    work += [Piece(case, f"floor: {case.name}", partial(_floor, case)) for case in reversed(CASES)]
     work += [
         Piece((case, ROBUST), f"gradient: {case.name}, robust", partial(_solved_robustly, case))
-        for case in CASES
+        for case in reversed(CASES)
     ]
-    work += [Piece(case, f"floor: {case.name}", partial(_floor, case)) for case in CASES]
-    for method in SEARCHES:
-        for case, terms in SEARCHED:
-            for seed in range(seeds):
-                name = f"{method.name}: {_label(case, terms)}, seed {seed}"
-                settings = {"profile": CycloidPolynomial(terms), "bound": case.bound}
-                search = partial(one_seed, case.task, method.name, settings, seed)
-                work.append(Piece((method, case, terms, seed), name, search))
+    for profile, case in product(OTHERS, reversed(CASES)):
+        name = f"gradient: {case.name}, {profile}"
+        work.append(Piece((case, profile), name, partial(_solved_with, case, profile)))
     for case in CASES:
         name, needed = f"{SYSTEMS}: {case.name}", _needed(case, seeds)
         work.append(Piece((case, SYSTEMS), name, partial(_systems, case, seeds), tuple(needed)))
     return work
+
+
+def _searches(method: Method, case: Case, terms: int, seeds: int) -> Iterator[Piece]:
+    settings = {"profile": CycloidPolynomial(terms), "bound": case.bound}
+    for seed, key in enumerate(searches_of(method, case, terms, seeds)):
+        name = f"{method.name}: {_label(case, terms)}, seed {seed}"
+        yield Piece(key, name, partial(one_seed, case.task, method.name, settings, seed))
 
 
 def searches_of(method: Method, case: Case, terms: int, seeds: int) -> list[Hashable]:

@@ -243,7 +243,9 @@ def run_import(
         print_fronts(console, [front])
         lines = [claim.line() for claim in claims]
         if not claims:
-            lines.append("the file states neither residual nor energy: nothing to hold against")
+            lines.append(
+                "the file states no residual and no energy as a number: nothing to hold against"
+            )
         if found.ignored:
             lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
         print_lines(console, *lines)

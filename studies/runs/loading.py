@@ -27,9 +27,11 @@ def load_front(path: Path) -> Front:
     FileFormatError
         When the file is no front.
     ValueError
-        When its figures are not those of its motions.
+        When it has no point, or its figures are not those of its motions.
     """
     front = Front.load(path)
+    if not front.points:
+        raise ValueError(f"{path}: {front.why_empty()}")
     check_figures(front, str(path))
     return front
 

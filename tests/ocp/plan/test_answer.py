@@ -159,6 +159,7 @@ def test_a_saved_plan_loads_equal(any_plan, tmp_path):
     any_plan.save(tmp_path / "plan.json")
     loaded = Plan.load(tmp_path / "plan.json")
     assert loaded == any_plan
+    assert {loaded, any_plan} == {any_plan}  # so that plans can be looked up
     assert loaded.provenance.seconds == any_plan.provenance.seconds
     assert loaded.motion == resimulate(loaded.task, loaded.profile, loaded.coefficients)
 

@@ -128,7 +128,7 @@ def test_an_empty_front_is_refused_by_its_file(call, files, front_of):
     front_of([(math.nan, 1.0)]).save("empty.json")
     code, _, err = call("compare good.json empty.json")
     assert (code, err.count("\n")) == (2, 1)
-    assert "empty.json has no finite point" in err
+    assert "empty.json: the front has no point" in err
 
 
 def test_a_folder_that_cannot_be_made_is_refused_before_the_work(call, files, no_place):

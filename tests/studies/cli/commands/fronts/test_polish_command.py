@@ -144,7 +144,7 @@ def without(**changes):
         (lambda: "a,b\n", "", "bad.json is not a front"),
         (lambda: without(task={"plant": "crane"}), "", "crane"),
         (lambda: without(profile={"kind": "spline"}), "", "bad.json"),
-        (lambda: without(points=[]), "", "the front has no point"),
+        (lambda: without(points=[]), "", "bad.json: the front has no point"),
         (lambda: without(settings={"bound": "wide"}), "", "bound is 'wide'; give a number"),
         (without, "--points 1", "points is 1; give a whole number from 2 up"),
         (without, "--output ./bad.json", "FRONT and --output are both bad.json"),
