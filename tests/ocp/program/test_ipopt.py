@@ -1,0 +1,33 @@
+"""How IPOPT is loaded."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+THREADS = """
+import os
+before = dict(os.environ)
+from math import pi
+from models import SingleLinkManipulator
+from ocp import PointToPoint, plan_move
+import numpy, casadi
+def threads():
+    return len(os.listdir("/proc/self/task"))
+loaded = threads()
+plan_move(PointToPoint(SingleLinkManipulator(), pi / 6, 0.8), starts=1)
+assert dict(os.environ) == before, "the environment changed"
+print(threads() - loaded)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="threads are counted on Linux")
+@pytest.mark.parametrize(("asked", "more"), [({}, 0), ({"OPENBLAS_NUM_THREADS": "2"}, 1)])
+def test_ipopt_takes_one_thread_unless_asked_for_more(asked, more):
+    ours = {name: value for name, value in os.environ.items() if "NUM_THREADS" not in name}
+    command = [sys.executable, "-c", THREADS]
+    done = subprocess.run(command, env=ours | asked, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert int(done.stdout) == min(more, (os.cpu_count() or 1) - 1)
