@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -159,24 +159,23 @@ def ipopt(
     if gradient is not None:
         names = ["x", "p"], ["f", "grad_f_x"]
         functions["grad_f"] = ca.Function("nlp_grad_f", [x, p], [f, gradient], *names)
-    _load()
     chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
-    return ca.nlpsol(
-        "program", "ipopt", dict(problem), {**functions, **chosen, "ipopt": dict(options)}
-    )
+    everything = {**functions, **chosen, "ipopt": dict(options)}
+    with _on_one_thread():
+        return ca.nlpsol("program", "ipopt", dict(problem), everything)
 
 
-@lru_cache(maxsize=1)
-def _load() -> None:
-    """Load IPOPT with one thread for its linear algebra, unless the environment says how many.
+@contextmanager
+def _on_one_thread() -> Iterator[None]:
+    """Let casadi load IPOPT with one thread for its linear algebra, or as many as are asked for.
 
     Its matrices are small: a second thread shortens nothing, and keeps a core from other processes.
-    OpenBLAS reads the variable once, when it is loaded.
+    OpenBLAS reads the variable once, when it is loaded with the first solver.
     """
     asked = os.environ.get(_THREADS)
     os.environ[_THREADS] = asked or os.environ.get("OMP_NUM_THREADS", "1")
     try:
-        ca.load_nlpsol("ipopt")
+        yield
     finally:
         del os.environ[_THREADS]
         if asked is not None:

@@ -244,7 +244,7 @@ def run_import(
         lines = [claim.line() for claim in claims]
         if not claims:
             lines.append(
-                "the file states no residual and no energy as a number: nothing to hold against"
+                "the file states neither residual nor energy in numbers: nothing to hold against"
             )
         if found.ignored:
             lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
