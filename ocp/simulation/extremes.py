@@ -53,17 +53,25 @@ def _between(
     width = (times[near[:, -1]] - times[near[:, 0]])[:, None]
     values = np.take_along_axis(rows, piece[:, None] * len(times) + near, axis=1)
     x = (times[near] - centre) / width
-    powers = np.arange(_POINTS)
-    by_power = np.linalg.solve(x[:, :, None] ** powers, values[:, :, None])[:, :, 0]
+    by_power = np.linalg.solve(_powers(x, _POINTS), values[:, :, None])[:, :, 0]
     below = ((times[np.maximum(at - 1, 0)])[:, None] - centre) / width
     above = ((times[np.minimum(at + 1, len(times) - 1)])[:, None] - centre) / width
+    slope = by_power[:, 1:] * np.arange(1, _POINTS)
+    bend = slope[:, 1:] * np.arange(1, _POINTS - 1)
     root = np.zeros_like(centre)
-    slope, bend = powers[1:], powers[2:] * powers[1:-1]
     for _ in range(_NEWTON):
-        first_derivative = (by_power[:, 1:] * slope * root ** powers[:-1]).sum(axis=1)
-        second = (by_power[:, 2:] * bend * root ** powers[:-2]).sum(axis=1)
-        step = np.divide(first_derivative, second, where=second < 0, out=np.zeros_like(second))
-        root = np.clip(root - step[:, None], below, above)
-    peak = (by_power * root**powers).sum(axis=1)
-    finest = np.abs(by_power[:, -2:] * 0.5 ** powers[-2:]).sum(axis=1)
+        powers = _powers(root, _POINTS - 1)
+        second = (powers[:, :, :-1] @ bend[:, :, None])[:, 0]
+        step = np.zeros_like(root)
+        np.divide((powers @ slope[:, :, None])[:, 0], second, where=second < 0, out=step)
+        root = np.minimum(np.maximum(root - step, below), above)
+    peak = (_powers(root, _POINTS) @ by_power[:, :, None])[:, 0, 0]
+    finest = np.abs(by_power[:, -2:]) @ 0.5 ** np.arange(_POINTS - 2, _POINTS)
     return np.where(finest <= _SMOOTH * np.ptp(values, axis=1), peak, -np.inf)
+
+
+def _powers(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """Powers 0 to count - 1 of values of any shape, along one more axis."""
+    factors = np.empty((*values.shape, count))
+    factors[..., 0], factors[..., 1:] = 1.0, values[..., None]
+    return np.multiply.accumulate(factors, axis=-1)
