@@ -9,19 +9,19 @@ import pytest
 
 from metaheuristics import search
 from metaheuristics.objective.claims import check_figures
-from models import SingleLinkManipulator
+from models import ArmOnFlexibleLink
 from ocp import Front, PointToPoint, UncertainPlant, epsilon_front, polish_front, resimulate
 
 
 @pytest.fixture(scope="module")
 def task():
-    plant = UncertainPlant(SingleLinkManipulator(), {"frequency": 0.1})
-    return PointToPoint(plant, target=pi / 6, duration=0.8)
+    plant = UncertainPlant(ArmOnFlexibleLink(), {"frequency": 0.1})
+    return PointToPoint(plant, target=pi / 2, duration=0.8)
 
 
 @pytest.fixture(scope="module")
 def searched(task):
-    return search(task, "nsga2", bound=0.2, population=20, generations=4)
+    return search(task, "nsga2", bound=0.5, population=20, generations=4)
 
 
 @pytest.fixture(scope="module")
