@@ -69,6 +69,7 @@ TESTS = {
         "ocp/simulation/test_residual.py",
         "ocp/simulation/test_rollout.py",
         "ocp/profiles/test_shapers.py",
+        "ocp/plan/test_shaping.py",
     ],
     "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py"],
     "ocp/simulation/resimulation.py": [
