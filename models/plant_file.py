@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from models.plant import Plant
 
@@ -119,6 +120,7 @@ def _run(file: PlantFile) -> ModuleType:
     module = ModuleType(f"plant file {file.path}")
     module.__package__ = ""  # it is part of none
     module.__file__ = file.path
+    vars(module)["print"] = _print_beside
     sys.modules[module.__name__] = module  # dataclasses look their annotations up there
     try:
         with _left_as_it_was():
@@ -129,6 +131,11 @@ def _run(file: PlantFile) -> ModuleType:
             raise
         raise ValueError(_in_a_line(file.path, error)) from None
     return module
+
+
+def _print_beside(*values: object, **settings: Any) -> None:
+    """Print to standard error: standard output may be a file that a command was asked for."""
+    print(*values, **{"file": sys.stderr, **settings})
 
 
 @contextmanager

@@ -131,6 +131,19 @@ def test_what_it_does_to_the_process_is_undone(crane_file, capsys):
     assert capsys.readouterr().out == "here\n"
 
 
+def test_what_it_prints_goes_beside_the_answer(crane_file, capsys):
+    # `--output -` writes the answer to standard output
+    mass = "    def torque(self, joint, W, dW, ddW):\n"
+    lines = crane_file.read_text()
+    assert mass in lines
+    crane_file.write_text("print('run')\n" + lines.replace(mass, f"{mass}        print(1, 2)\n"))
+    crane = load_plant_file(crane_file)["crane"]()
+    assert capsys.readouterr() == ("", "run\n")
+    crane.validate()
+    said = capsys.readouterr()
+    assert (said.out, set(said.err.splitlines())) == ("", {"1 2"})
+
+
 def test_bytes_that_are_no_text_are_refused(tmp_path):
     for content in (b"\xff\xfe\x00", "x = 1\n".encode("utf-16"), b"# \xe4\nx = '\xe4'\n"):
         (tmp_path / "crane.py").write_bytes(content)
