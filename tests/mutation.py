@@ -51,6 +51,7 @@ TESTS = {
     "models/arm_on_flexible_link.py": ["models/test_plants.py", "models/test_drawing.py"],
     "ocp/simulation/collocation.py": [
         "ocp/simulation/test_collocation.py",
+        "ocp/simulation/test_jerk.py",
         "ocp/simulation/test_rollout.py",
         "ocp/robustness/test_uncertain.py",
     ],
@@ -71,7 +72,7 @@ TESTS = {
         "ocp/profiles/test_shapers.py",
         "ocp/plan/test_shaping.py",
     ],
-    "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py"],
+    "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py", "ocp/simulation/test_jerk.py"],
     "ocp/simulation/resimulation.py": [
         "ocp/simulation/test_resimulation.py",
         "ocp/simulation/test_third_opinion.py",
