@@ -11,14 +11,14 @@ from metaheuristics import PRESETS, NamedProblem
 from metaheuristics.algorithms.settings import Value, with_defaults
 from metaheuristics.budget.run import check_method, number_of_evaluations, parts_of
 from metaheuristics.ensemble import seeds_of
+from metaheuristics.objective.claims import check_figures
 from metaheuristics.runs.settings import number_of_individuals, search_versions
 from metaheuristics.sharing.workers import HERE, Workers
-from studies.contest.claims import check_run
 from studies.contest.folder import EXACT, Contents
 from studies.contest.imported import Imported
 from studies.contest.names import POPULATION, name_of, sets_population
 from studies.contest.problems import Yardstick
-from studies.contest.runs import Key, Run
+from studies.contest.runs import REMEDY, Key, Run, check_end
 from studies.display.words import counted
 
 _CODE = ("quietarm", "pymoo")
@@ -174,8 +174,9 @@ def check_alike(contents: Contents, contest: Contest) -> None:
     ------
     ValueError
         When a problem is another one there, or a run has other evaluations, another population or
-        box, was measured against another exact front, or is of another version of quietarm or
-        pymoo than the runs to come; in one line, with the remedy.
+        box, was measured against another exact front, states figures that are not those of its
+        motions, or is of another version of quietarm or pymoo than the runs to come; in one line,
+        with the remedy.
     """
     folder = contents.folder.path
     for problem in contest.problems:
@@ -184,7 +185,10 @@ def check_alike(contents: Contents, contest: Contest) -> None:
             _check_problem(known, problem, folder)
     for run in [*contents.runs.values(), *contents.imports.values()]:
         yardstick = _check_front(run, contents.yardsticks.get(run.problem), folder)
-        check_run(run, yardstick, contents.folder.place(run))
+        place = contents.folder.place(run)
+        check_figures(run.front, str(place), REMEDY)
+        if isinstance(run, Run):
+            check_end(run, yardstick, place)
     for run in contents.runs.values():
         _check_amounts(run, contest, folder)
     if any(key not in contents.runs for key in contest.keys):

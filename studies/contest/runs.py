@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import ClassVar, NamedTuple, Self
 
 from metaheuristics.budget.record import Mark, Scale, Visits
@@ -11,7 +12,14 @@ from metaheuristics.budget.run import BudgetRun
 from ocp import Front
 from ocp.answers.saved import Saved
 from ocp.base.ranges import CountFromOne
+from studies.comparison.staircase import objectives
 from studies.contest.problems import Yardstick
+
+REMEDY = "remove it to have it made again"
+"""What helps where a file states what its run did not find."""
+_AGREEMENT = 2e-3
+"""Hypervolumes of a front and of its search differ by less: the front's figures are of finer
+steps."""
 
 
 class Key(NamedTuple):
@@ -86,6 +94,37 @@ class Run(Saved):
     def words(self) -> str:
         """Which run it is, in words."""
         return f"{self.method} on {self.problem} from seed {self.key.seed}"
+
+
+def check_end(run: Run, yardstick: Yardstick, path: Path) -> None:
+    """Refuse a run whose last mark is not that of its front.
+
+    Parameters
+    ----------
+    run : Run
+        What a file holds.
+    yardstick : Yardstick
+        The exact front of its problem, in whose extent the run was measured.
+    path : Path
+        The file, for the message.
+
+    Raises
+    ------
+    ValueError
+        When the last mark is neither the hypervolume of the front nor possible at all.
+    """
+    end, own = run.marks[-1], run.scale.hypervolume(objectives(run.front))
+    states = (
+        f"{path}: its mark after {end.evaluations} evaluations states hypervolume "
+        f"{end.hypervolume:.6g}"
+    )
+    if end.hypervolume > yardstick.hypervolume + _AGREEMENT:
+        best = yardstick.hypervolume
+        raise ValueError(f"{states}, and the exact front has {best:.6g}; {REMEDY}")
+    # with limits, motions that break one a little on the finer steps are not in the front
+    beyond = own - end.hypervolume if run.front.task.limits else abs(own - end.hypervolume)
+    if not beyond <= _AGREEMENT:
+        raise ValueError(f"{states}, but its front dominates {own:.6g}; {REMEDY}")
 
 
 def _check_order(before: Mark, mark: Mark) -> None:
