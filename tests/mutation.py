@@ -63,6 +63,7 @@ TESTS = {
     "ocp/profiles/joint_profile.py": [
         "ocp/profiles/test_polynomial.py",
         "ocp/profiles/test_own.py",
+        "ocp/profiles/test_shapers.py",
         "ocp/simulation/test_jerk.py",
     ],
     "ocp/profiles/polynomial.py": ["ocp/profiles/test_polynomial.py"],
