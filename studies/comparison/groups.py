@@ -100,6 +100,8 @@ def _label(front: Front, alike: Sequence[Front]) -> str:
         if any(other != value for other in others):
             if name == "whole":
                 words += [] if value else ["interrupted"]
+            elif value is None:
+                words.append(f"no {name}")
             else:
                 shown = f"{value:g}" if isinstance(value, float) else str(value)
                 words.append(f"{name} {shown}")

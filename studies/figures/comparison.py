@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import count, cycle
+from textwrap import fill
 from typing import Protocol
 
 import numpy as np
@@ -35,6 +36,8 @@ _NEARLY_STILL = 5.0
 """The nearly still end reaches at least to this multiple of the least residual of all."""
 _TALLEST = 1.6
 """Upper end of the panels, as a multiple of the energy of the best front's stillest motion."""
+_LEGEND = 48
+"""Characters in a line of the legend beside the panels."""
 
 BANDS = (
     "Several seeds: the line is what half of them reach\n"
@@ -94,9 +97,10 @@ def comparison_figure(
         ax.set_title(f"({letter}) {ax.get_title(loc='left')}", **TITLE)
     axes[3].axis("off")
     several = any(len(group.runs) > 1 for group in comparison.groups)
+    handles, labels = legend_of(axes)
     axes[3].legend(
-        *legend_of(axes), loc="center left", frameon=False, fontsize=10, alignment="left",
-        title=BANDS if several else None,
+        handles, [fill(label, _LEGEND) for label in labels], loc="center left", frameon=False,
+        fontsize=10, alignment="left", title=BANDS if several else None,
     )  # fmt: skip
     figure.suptitle(title_of(comparison.task) if title is None else title, fontsize=12)
     return figure

@@ -16,6 +16,8 @@ from studies.display.words import millimetres, move_of, plant_words
 from studies.runs.reports.worst import worst_in_words
 
 Row = tuple[str, str]
+_ROUNDING = 1e-12
+"""Angles below this [rad] are rounding errors."""
 
 
 def print_plan(console: Console, plan: Plan) -> None:
@@ -49,7 +51,9 @@ def _worst_rows(plan: Plan) -> list[Row]:
     words = worst_in_words(plan.worst)
     if plan.excess is not None:
         side = "above" if plan.excess > 0 else "below"
-        words += f", {abs(plan.excess):.1%} {side} the limit{_not_held(plan)}"
+        share = f"{100 * abs(plan.excess):.1f} %"
+        where = "at" if share == "0.0 %" else f"{share} {side}"
+        words += f", {where} the limit{_not_held(plan)}"
     return [("at worst", words)]
 
 
@@ -107,7 +111,7 @@ def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
             f"{millimetres(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
         ),
         *((f"peak {name}", _peak(name, task, motion)) for name in known),
-        ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot else "none"),
+        ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot > _ROUNDING else "none"),
     ]
 
 

@@ -56,10 +56,11 @@ def cycloid():
 @pytest.mark.parametrize(
     ("excess", "stopped", "says"),
     [
-        (0.2, None, "20.0% above the limit; not robust enough: more than 5% above; give a larger"),
+        (0.2, None, "20.0 % above the limit; not robust enough: more than 5% above; give a larger"),
         (0.2, "some rounds", "more than 5% above; let the plan run to its end"),
-        (0.04, None, "4.0% above the limit"),
-        (-0.1, None, "10.0% below the limit"),
+        (0.04, None, "4.0 % above the limit"),
+        (-0.1, None, "10.0 % below the limit"),
+        (-1e-9, None, ", at the limit"),
     ],
 )
 def test_a_plan_that_is_not_robust_enough_says_so(cycloid, excess, stopped, says):
