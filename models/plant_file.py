@@ -135,7 +135,8 @@ def _run(file: PlantFile) -> ModuleType:
 
 def _print_beside(*values: object, **settings: Any) -> None:
     """Print to standard error: standard output may be a file that a command was asked for."""
-    print(*values, **{"file": sys.stderr, **settings})
+    settings.setdefault("file", sys.stderr)
+    print(*values, **settings)
 
 
 @contextmanager
