@@ -194,6 +194,15 @@ def test_the_least_duration_is_named_and_is_enough(shaper):
     assert profile.path([], 0.0, 1.0, named)(named) == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("frequency", np.linspace(5.0, 15.0, 11))
+def test_the_least_duration_is_never_rounded_down(frequency):
+    profile = ShapedCycloid("zv", (frequency,), (0.01,))
+    with pytest.raises(ValueError, match="too short") as caught:
+        profile.path([], 0.0, 1.0, 0.1)
+    named = float(str(caught.value).split("give ")[1].split()[0])
+    assert profile.least_duration <= named < profile.least_duration * 1.001
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
