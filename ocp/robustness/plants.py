@@ -92,7 +92,13 @@ def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     -------
     Plant
         A plant with parameters 1 + error times the assumed ones; of symbols where they are symbols.
+
+    Raises
+    ------
+    ValueError
+        When there is no such parameter.
     """
+    refuse_unknown(plant, errors)
     values = {
         name: getattr(plant, name) * (1 + error)
         for name, error in errors.items()

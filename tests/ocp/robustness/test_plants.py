@@ -135,6 +135,11 @@ def test_ranges_that_cannot_be(ranges, message):
         checked_ranges(SingleLinkManipulator(), ranges)
 
 
+def test_an_error_of_no_parameter_is_refused():
+    with pytest.raises(ValueError, match=r"no parameter 'omga'; did you mean 'omega'\?"):
+        with_errors(SingleLinkManipulator(), {"omga": 0.1})
+
+
 def test_no_damping_at_all_is_a_plant():
     assert checked_ranges(ArmOnFlexibleLink(), {"damping": 1.0}) == {"damping": 1.0}
 
