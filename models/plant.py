@@ -121,12 +121,13 @@ class Plant(ABC):
                     f"{self.name}: parameter {entry.name} is {reprlib.repr(value)}; give a finite "
                     "number"
                 )
+            value = float(value)
             if abs(value) > _MOST_PARAMETER:
                 raise ValueError(
                     f"{self.name}: parameter {entry.name} is {value:g}; give at most "
                     f"{_MOST_PARAMETER:g} in size, in SI units"
                 )
-            object.__setattr__(self, entry.name, float(value))
+            object.__setattr__(self, entry.name, value)
 
     @abstractmethod
     def modal_accelerations(

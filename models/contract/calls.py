@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+import linecache
+import operator
 import re
 import reprlib
 import warnings
@@ -120,10 +122,11 @@ class Calls:
             inspect.signature(call).bind(*arguments)
         except TypeError:
             raise self.wrong(method, "takes other arguments than it is given") from None
+        own: list[Any] = [list(given) if isinstance(given, list) else given for given in arguments]
         try:
             with warnings.catch_warnings():
                 warnings.filterwarnings("error", _NUMPYS, FutureWarning)
-                return call(*arguments)
+                found = call(*own)
         except IndexError:
             raise ValueError(
                 f"plant {self._plant.name!r} says modes = {self._modes} but its {method} uses "
@@ -132,15 +135,13 @@ class Calls:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # SystemExit and a user's own, too
-            remedy = ""
-            equation = method != "structure"
-            # what casadi raises over its symbols
-            if equation and isinstance(error, RuntimeError | TypeError | FutureWarning):
-                remedy = (
-                    "write it with casadi.cos, casadi.fmax, casadi.if_else and so on: math's and "
-                    "numpy's functions, if, max and float() take no symbols"
-                )
+            remedy = "" if method == "structure" else _remedy(error)
             raise self.wrong(method, f"fails{_line_of(error)} ({_words(error)})", remedy) from None
+        names = _WRITE[method][0].split(", ")[1:]
+        for name, given, left in zip(names, arguments, own, strict=True):
+            if isinstance(given, list) and not _same(given, left):
+                raise self.wrong(method, f"writes into {name}", f"leave {name} as it is")
+        return found
 
     def wrong(self, method: str, what: str, remedy: str = "") -> ValueError:
         """What to say of a method: what it does, what to do about it, what it should return."""
@@ -156,6 +157,26 @@ def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
+def _same(before: Sequence[object], after: Sequence[object]) -> bool:
+    return len(before) == len(after) and all(map(operator.is_, before, after))
+
+
+def _remedy(error: BaseException) -> str:
+    """What to do about an equation that fails; empty where it is not known."""
+    if isinstance(error, RecursionError):
+        return "it calls itself without end: compute it"
+    if "NoneType" in str(error) and "jerk" in _source_of(error):
+        return "write it with joint.angle, joint.speed and joint.acceleration: joint.jerk is None"
+    if "complex" in str(error):
+        return "write it with real numbers"
+    if isinstance(error, RuntimeError | TypeError | FutureWarning):  # of casadi, over its symbols
+        return (
+            "write it with casadi.cos, casadi.fmax, casadi.if_else and so on: math's and "
+            "numpy's functions, if, max and float() take no symbols"
+        )
+    return ""
+
+
 def _brief(value: object) -> str:
     if isinstance(value, ca.SX | ca.MX | ca.DM):
         return "an expression"
@@ -169,6 +190,14 @@ def _line_of(error: BaseException) -> str:
     if inside is None:
         return ""
     return f" at line {inside.tb_lineno} of {Path(inside.tb_frame.f_code.co_filename).name}"
+
+
+def _source_of(error: BaseException) -> str:
+    """The line of the user's method that an error came from."""
+    inside = error.__traceback__.tb_next if error.__traceback__ else None
+    if inside is None:
+        return ""
+    return linecache.getline(inside.tb_frame.f_code.co_filename, inside.tb_lineno)
 
 
 def _words(error: BaseException) -> str:

@@ -66,7 +66,7 @@ class SolveSettings:
         object.__setattr__(self, "starts", number_of_starts(self.starts))
         object.__setattr__(self, "seed", whole("seed", self.seed, 0))
         if self.steps is not None:
-            steps = whole("steps", self.steps, 1, MOST_STEPS, "finer ones differ by rounding alone")
+            steps = whole("steps", self.steps, 2, MOST_STEPS, "finer ones differ by rounding alone")
             object.__setattr__(self, "steps", steps)
         if self.guess is not None:
             object.__setattr__(self, "guess", tuple(finite("guess", a) for a in self.guess))

@@ -94,7 +94,8 @@ def sample_trajectory(
     with cvodes_for(joint.remedy):
         states, outputs = _along(task.plant, joint.law, joint.given.shape, fractions)(joint.given)
         rows = outputs.full()[:, at[:-2]]
-        if later.size:
+    if later.size:
+        with cvodes_for(f"'s vibration until {grid[-1]:g} s; give earlier sample times"):
             resting = after_arrival(task.plant, task.target, later)(x0=states[:, -1])["xf"]
             rows = np.hstack([rows, outputs_at_rest(task, resting)])
     return Trajectory.from_outputs(task.plant, grid, rows)

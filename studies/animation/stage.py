@@ -18,6 +18,7 @@ from ocp.base.printable import printable
 from studies.animation.cast import Actor, Array
 from studies.animation.clock import Clock
 from studies.animation.formats import Picture
+from studies.display.pictures import as_written
 from studies.display.words import millimetres, move_of, plant_words, title_of
 from studies.figures.axes import TITLE, axes_or_new, new_figure
 
@@ -98,7 +99,8 @@ class Stage:
         """The frames, in order; what does not move is drawn once."""
         canvas = self._figure.canvas
         assert isinstance(canvas, FigureCanvasAgg)
-        canvas.draw()
+        with as_written(self._figure):
+            canvas.draw()
         self._figure.set_layout_engine("none")
         self._time.set_y(self._title.get_position()[1])
         background = canvas.copy_from_bbox(self._figure.bbox)

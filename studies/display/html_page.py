@@ -9,6 +9,7 @@ from html import escape
 
 from matplotlib.figure import Figure
 
+from studies.display.pictures import as_written
 from studies.display.tables import Table
 
 _STYLE = """
@@ -154,7 +155,8 @@ def picture(figure: Figure, alternative: str, caption: str) -> Markup:
         The figure as SVG, so that it is sharp at any size.
     """
     content = io.BytesIO()
-    figure.savefig(content, format="svg", metadata={"Date": None})
+    with as_written(figure):
+        figure.savefig(content, format="svg", metadata={"Date": None})
     data = base64.b64encode(content.getvalue()).decode()
     image = element("img", src=f"data:image/svg+xml;base64,{data}", alt=alternative)
     return element("figure", image, element("figcaption", caption))

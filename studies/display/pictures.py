@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import io
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from ocp.base.files import check_writable, write_whole
 
@@ -40,7 +43,8 @@ def save_figure(figure: Figure, path: str | Path) -> None:
     target = check_figure(path)
     content = io.BytesIO()
     try:
-        figure.savefig(content, format=target.suffix[1:].lower(), dpi=150)
+        with as_written(figure):
+            figure.savefig(content, format=target.suffix[1:].lower(), dpi=150)
     except (RuntimeError, ValueError, ImportError) as error:  # by the user's settings alone
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise ValueError(
@@ -48,3 +52,21 @@ def save_figure(figure: Figure, path: str | Path) -> None:
             "MPLBACKEND, SOURCE_DATE_EPOCH"
         ) from error
     write_whole(target, content.getvalue())
+
+
+@contextmanager
+def as_written(figure: Figure) -> Iterator[None]:
+    """Let the block draw names as they are: no formula at a dollar, a box for what no font has.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The picture, with all its texts.
+    """
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        cast("Text", text).set_parse_math(False)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")
+        yield

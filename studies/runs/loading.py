@@ -7,6 +7,7 @@ from pathlib import Path
 
 from metaheuristics.objective.claims import check_figures, check_plan
 from ocp import Front, Plan
+from ocp.base.printable import printable
 
 
 def load_front(path: Path) -> Front:
@@ -64,6 +65,7 @@ def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
             raise ValueError(f"{path} is given twice; give it once")
     stems = [path.stem for path in paths]
     names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
+    names = [printable(name) for name in names]  # no picture or table takes bytes that are no text
     plans = {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
     for plan, path in zip(plans.values(), paths, strict=True):
         check_plan(plan, str(path))

@@ -11,6 +11,7 @@ from rich.console import Console
 
 from ocp import Plan, Robustness, evaluate_robustness
 from ocp.robustness.plants import checked_ranges
+from ocp.robustness.uncertain import assumed_plant
 from studies.display.progress import count
 from studies.display.saving import finish, interruption
 from studies.runs.loading import load_plans
@@ -56,7 +57,7 @@ def run_robustness(
     plans = load_plans(paths)
     for path, plan in zip(paths, plans.values(), strict=True):
         try:
-            checked_ranges(plan.task.plant, ranges)
+            checked_ranges(assumed_plant(plan.task.plant), ranges)
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
     figured, trouble = _evaluated(plans, ranges, samples, seed, quiet), None

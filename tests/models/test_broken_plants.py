@@ -1,12 +1,11 @@
 """A plant that breaks its contract is refused."""
 
 import casadi as ca
+import numpy as np
 import pytest
 from sound_plant import Sound
 
-from models import (
-    Plant,
-)
+from models import Plant, SingleLinkManipulator
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
@@ -126,3 +125,53 @@ def test_a_tip_that_is_not_linear_is_refused():
 def test_a_structure_that_does_not_stay_at_rest_is_refused(changes):
     with pytest.raises(ValueError, match="'broken' does not stay at rest"):
         _broken(**changes).validate()
+
+
+def _writing(W):
+    W[0] = 2 * W[0]
+    return W[0]
+
+
+def _recursing(p, j, W, dW):
+    return p.modal_accelerations(j, W, dW)
+
+
+@pytest.mark.parametrize(
+    ("method", "equation", "told"),
+    [
+        (
+            "modal_accelerations",
+            lambda p, j, W, dW: [-_writing(W) - j.acceleration],
+            "modal_accelerations writes into W; leave W as it is",
+        ),
+        (
+            "modal_accelerations",
+            lambda p, j, W, dW: [-W[0] - _writing(dW) - j.acceleration],
+            "modal_accelerations writes into dW; leave dW as it is",
+        ),
+        (
+            "torque",
+            lambda p, j, W, dW, ddW: j.acceleration + _writing(W),
+            "torque writes into W; leave W as it is",
+        ),
+        (
+            "modal_accelerations",
+            lambda p, j, W, dW: [-W[0] - 0.4 * j.jerk],
+            "write it with joint.angle, joint.speed and joint.acceleration: joint.jerk is None",
+        ),
+        ("modal_accelerations", _recursing, "it calls itself without end: compute it"),
+        (
+            "modal_accelerations",
+            lambda p, j, W, dW: [-W[0] - 1j * j.acceleration],
+            "write it with real numbers",
+        ),
+    ],
+)
+def test_a_fault_is_told_with_what_helps(method, equation, told):
+    with pytest.raises(ValueError, match=f"'broken': {method}") as error:
+        _broken(**{method: equation}).validate()
+    assert told in str(error.value)
+
+
+def test_a_parameter_in_single_precision_is_taken_without_a_warning():
+    assert SingleLinkManipulator(omega=np.float32(9)).omega == 9.0

@@ -315,6 +315,7 @@ def test_two_links_keep_limits(tasks, solved, limit, share):
         ({"seed": 1.5}, "seed is 1.5"),
         ({"seed": None}, "seed is None"),
         ({"steps": 0}, "steps is 0"),
+        ({"steps": 1}, "steps is 1; give a whole number from 2 up"),
         ({"steps": 10.0}, "steps is 10.0"),
     ],
 )

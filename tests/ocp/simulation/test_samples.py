@@ -6,11 +6,8 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    sample_trajectory,
-)
+from ocp import CycloidPolynomial, PointToPoint, SolverFailedError, sample_trajectory
+from ocp.simulation import cvodes
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)
@@ -85,3 +82,9 @@ def test_a_sample_may_be_close_to_arrival(plants, gap):
 def test_times_that_do_not_increase_from_zero_are_refused(tasks, times):
     with pytest.raises(ValueError, match="times"):
         sample_trajectory(tasks["arm"], PLAIN, [], times)
+
+
+def test_a_time_too_far_to_follow_the_vibration_to_is_named(tasks, monkeypatch):
+    monkeypatch.setattr(cvodes, "_MOST_STEPS", 2_000)  # else it takes some seconds
+    with pytest.raises(SolverFailedError, match=r"until 1e\+09 s; give earlier sample times"):
+        sample_trajectory(tasks["arm"], PLAIN, [], [0.0, 1e9])

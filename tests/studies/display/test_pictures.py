@@ -21,3 +21,11 @@ def test_a_date_that_is_none_is_told_in_one_line(tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "today")
     with pytest.raises(ValueError, match=r"a\.pdf cannot be drawn \(.*'today'\); "):
         save_figure(Figure(), tmp_path / "a.pdf")
+
+
+@pytest.mark.parametrize("name", [r"$\frac{$", "one $ and $x_{$", "кран 🏗"])
+def test_names_are_drawn_as_they_are_written(tmp_path, name):
+    figure = Figure()
+    figure.subplots().set_title(name)
+    save_figure(figure, tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

@@ -46,6 +46,7 @@ def compare(
       quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
     """  # noqa: D301  # \b is click's: do not rewrap
     from ocp import QuietarmError
+    from ocp.base.printable import printable
     from studies.comparison.measures import FILL, compare_fronts
     from studies.display.saving import finish
     from studies.runs.loading import load_front
@@ -60,7 +61,8 @@ def compare(
         loaded = [load_front(path) for path in fronts]
         named = None if reference is None else load_front(reference)
         comparison = compare_fronts(
-            loaded, list(map(str, fronts)), reference=named, reference_name=str(reference),
+            loaded, [printable(str(front)) for front in fronts], reference=named,
+            reference_name=printable(str(reference)),
             fill=0 if as_found else FILL,
         )  # fmt: skip
     if floor:

@@ -230,7 +230,7 @@ def test_a_file_that_looks_like_an_option_is_told_how_it_is_named(call, folder):
 def test_the_worst_of_a_plan_is_a_claim(call, plans, folder, entry, value, told):
     plan = plans["robust"]
     plan.save("robust.json")
-    assert call("robust.json --samples 1 --quiet")[0] == 0
+    assert call("robust.json --samples 1 --omega 5% --frequency 5% --quiet")[0] == 0
     document = json.loads((folder / "robust.json").read_text())
     document["worst"][entry] = value
     (folder / "robust.json").write_text(json.dumps(document))
@@ -291,3 +291,10 @@ def test_the_picture_has_a_panel_a_parameter_and_a_curve_a_plan(plans):
     marked = [line.get_xdata() for line in ax.lines if line.get_label().startswith("_")]
     ends = [[100 * end for end in one.sweeps[0].insensitivity] for one in found.values()]
     assert [list(entry) for entry in marked] == ends
+
+
+def test_a_plan_whose_name_is_no_text_is_drawn(call, folder, plans):
+    plans["ours"].save("x\udcff.json")
+    code, _, err = call("x\udcff.json --samples 1 --frequency 5% --quiet --output drawn")
+    assert (code, err) == (0, "")
+    assert {path.name for path in (folder / "drawn").iterdir()} == FILES
