@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
-from ocp.base.checks import listed, not_negative, of_kind, whole
+from ocp.base.checks import listed, not_negative, of_kind, positive, whole
 from ocp.front.points import LEVELS
 from ocp.front.robust import on_same_samples
 from ocp.robustness.uncertain import on_assumed
@@ -207,7 +207,7 @@ def compare_fronts(
     floor : float, optional
         Least energy [J] of any joint motion at rest on arrival.
     levels : sequence of float
-        Residuals [m] at which energies are compared.
+        Residuals [m] at which energies are compared, one or more.
     fill : int
         About how many points a filled front has; 0 leaves fronts as they were found.
     least : int
@@ -228,7 +228,9 @@ def compare_fronts(
     names = checked_names(names, len(fronts))
     fill, least = whole("fill", fill, 0), whole("least", least, 1)
     levels = listed("levels", levels, "a list of residuals in m, as [1e-3]")
-    levels = [not_negative("level", level, "m") for level in levels]
+    levels = [positive("level", level, "m") for level in levels]
+    if not levels:
+        raise ValueError("no levels are given; give one residual in m or more, as [1e-3]")
     if floor is not None:
         of_kind("floor", floor, Real, "a number in J: of a Floor its energy, as floor.energy")
         floor = not_negative("floor", floor, "J")
