@@ -68,6 +68,8 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     ValueError
         When it cannot be read or imported, or defines no plant that is complete.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise ValueError(f"plant file is {path!r}; give its name, such as crane.py")
     return dict(_loaded(PlantFile(str(path), _read(Path(path)))))
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ocp.base.checks import finite, positive, whole
+from ocp.base.checks import finite, of_kind, positive, whole
 from ocp.base.names import has_no, nearest
 
 Value = float | int | bool | str | None
@@ -115,10 +115,11 @@ def with_defaults(
     Raises
     ------
     ValueError
-        When a name is not known or a value is out of range.
+        When they are no table, a name is not known or a value is out of range.
     """
     entries = {setting.name: setting for setting in known}
-    given = {} if given is None else given
+    remedy = "a table of values by name, as {'crossover': 0.7}"
+    given = {} if given is None else of_kind("settings", given, Mapping, remedy)
     for name in given:
         if name not in entries:
             raise ValueError(has_no(method, "setting", str(name), entries))

@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from models import __version__
-from ocp.base.checks import finite, positive, whole
+from ocp.base.checks import finite, of_kind, positive, whole
 from ocp.base.ranges import CountFromOne, NotNegative
 from ocp.base.readonly import ReadOnlyDict
 from ocp.simulation.objective import Motion
@@ -70,6 +70,31 @@ class SolveSettings:
             object.__setattr__(self, "steps", steps)
         if self.guess is not None:
             object.__setattr__(self, "guess", tuple(finite("guess", a) for a in self.guess))
+
+
+def settings_given(settings: object) -> ReadOnlyDict:
+    """Settings by name, as an answer holds them.
+
+    Parameters
+    ----------
+    settings : object
+        What was given.
+
+    Returns
+    -------
+    ReadOnlyDict
+        The settings.
+
+    Raises
+    ------
+    ValueError
+        When they are no table, or a number among them is not finite, which no file can hold.
+    """
+    table = of_kind("settings", settings, Mapping, "a table of values by name, as {'bound': 0.2}")
+    for name, value in table.items():
+        if isinstance(value, float):
+            finite(f"setting {name}", value)
+    return ReadOnlyDict(table)
 
 
 def number_of_starts(value: object) -> int:
@@ -153,6 +178,11 @@ class Provenance(Generic[S]):
         How long it took; not compared.
     stopped : str or None
         After what Ctrl-C ended the work early, in words; None where it ran to its end.
+
+    Raises
+    ------
+    ValueError
+        When the settings of the search are no table, or a number among them is not finite.
     """
 
     method: str
@@ -163,5 +193,5 @@ class Provenance(Generic[S]):
     stopped: str | None = None
 
     def __post_init__(self) -> None:
-        for name in ("search", "versions"):
-            object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
+        object.__setattr__(self, "search", settings_given(self.search))
+        object.__setattr__(self, "versions", ReadOnlyDict(self.versions))

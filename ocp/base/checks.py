@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import reprlib
+from collections.abc import Mapping
 from numbers import Integral, Real
 from typing import Any, TypeVar
 
@@ -40,6 +41,37 @@ def of_kind(name: str, value: object, kind: type[T], remedy: str) -> T:
     if not isinstance(value, kind):
         raise ValueError(f"{name} is {reprlib.repr(value)}; give {remedy}")
     return value
+
+
+def listed(name: str, values: Any, remedy: str) -> list[Any]:
+    """Several values as a list.
+
+    Parameters
+    ----------
+    name : str
+        What they are, for the message.
+    values : object
+        What was given: anything that gives one value after another, but neither text nor a table.
+    remedy : str
+        What to give, for the message.
+
+    Returns
+    -------
+    list
+        The values.
+
+    Raises
+    ------
+    ValueError
+        When it is a single value, text or a table.
+    """
+    try:
+        if isinstance(values, str | bytes | Mapping):
+            raise TypeError
+        one_by_one = iter(values)
+    except TypeError:
+        raise ValueError(f"{name} is {reprlib.repr(values)}; give {remedy}") from None
+    return list(one_by_one)
 
 
 def real_array(name: str, values: Any, remedy: str) -> NDArray[np.float64]:

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ocp.answers.documents import Upgrades
 from ocp.answers.older import front_of_version_2
-from ocp.answers.provenance import Setting, versions
+from ocp.answers.provenance import Setting, settings_given, versions
 from ocp.answers.saved import Saved
-from ocp.base.checks import finite, not_negative, of_kind
+from ocp.base.checks import not_negative, of_kind
 from ocp.base.files import write_whole
 from ocp.base.ranges import Count, NotNegative, Positive
 from ocp.base.readonly import ReadOnlyDict
@@ -109,11 +109,8 @@ class Front(Saved):
         self._check_entries("task", "profile", "points")
         if not self.method.strip():
             raise ValueError(f"method is {self.method!r}; give the name of what found the points")
-        for name in ("settings", "versions"):
-            object.__setattr__(self, name, ReadOnlyDict(getattr(self, name)))
-        for name, value in self.settings.items():
-            if isinstance(value, float):
-                finite(f"setting {name}", value)
+        object.__setattr__(self, "settings", settings_given(self.settings))
+        object.__setattr__(self, "versions", ReadOnlyDict(self.versions))
         object.__setattr__(self, "points", tuple(self.points))
         for i, point in enumerate(self.points, start=1):
             if not isinstance(point, FrontPoint):
@@ -213,7 +210,7 @@ class Front(Saved):
             When the array is no table of finite numbers, or does not fit the profile or the bound.
         """
         began = time.perf_counter()
-        settings = dict(of_kind("settings", settings or {}, Mapping, "a table"))
+        settings = settings_given({} if settings is None else settings)
         table = table_of(coefficients)
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
         found = evaluated(task, profile, table, settings.get("bound"))
@@ -308,6 +305,12 @@ def reference_corner(task: PointToPoint) -> tuple[float, float]:
     -------
     tuple of float
         Residual [m] of the plain cycloid, 1 mm at least, and twice its energy [J].
+
+    Raises
+    ------
+    ValueError
+        When it is no task.
     """
+    of_kind("task", task, PointToPoint, "a PointToPoint")
     cycloid = rollout(task, CycloidPolynomial(0), []).motion
     return max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy

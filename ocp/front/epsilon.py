@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings, number_of_points
-from ocp.base.checks import positive
+from ocp.base.checks import listed, positive
 from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
@@ -102,7 +102,7 @@ def epsilon_front(
     """
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)
-    at = [positive("residual", residual, "m") for residual in at]
+    at = [positive("residual", one, "m") for one in listed("at", at, "a list, as [1e-3]")]
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = find_ends(sweep, between=between)
     found: list[FrontPoint | FailedPoint] = [ends.still_point]

@@ -9,6 +9,7 @@ from numbers import Real
 
 import numpy as np
 
+from ocp.base.checks import listed, of_kind
 from ocp.base.ranges import Count, NotNegative, Share
 from ocp.base.readonly import ReadOnlyDict
 
@@ -95,8 +96,16 @@ def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
     -------
     tuple of FrontPoint
         Sorted by residual; energies fall.
+
+    Raises
+    ------
+    ValueError
+        When one is no point.
     """
-    finite = [p for p in points if np.isfinite(p.residual) and np.isfinite(p.energy)]
+    given = listed("points", points, "a list of FrontPoint")
+    for i, point in enumerate(given, start=1):
+        of_kind(f"point {i}", point, FrontPoint, "a FrontPoint")
+    finite = [p for p in given if np.isfinite(p.residual) and np.isfinite(p.energy)]
     kept: list[FrontPoint] = []
     for point in sorted(finite, key=lambda p: (p.residual, p.energy)):
         if not kept or point.energy < kept[-1].energy:

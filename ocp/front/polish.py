@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings
-from ocp.base.checks import finite
+from ocp.base.checks import finite, of_kind
 from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
@@ -89,8 +89,9 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     Raises
     ------
     ValueError
-        When the front has no point.
+        When it is no front, or has no point.
     """
+    of_kind("front", front, Front, "a Front, as of epsilon_front, search or Front.load")
     front.stillest()  # refuses an empty front
     bound = front.settings.get("bound")
     settings = SolveSettings(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Sequence
 
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings, number_of_points
-from ocp.base.checks import finite
+from ocp.base.checks import finite, listed
 from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
@@ -85,9 +86,7 @@ def weighted_front(
     """
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)
-    chosen = None if weights is None else [_checked(pair) for pair in weights]
-    if chosen == []:
-        raise ValueError("no weights are given; give a pair of residual and energy, or none at all")
+    chosen = None if weights is None else _pairs(weights)
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     sums = _Sums(sweep, find_ends(sweep))
     complete = True
@@ -103,7 +102,18 @@ def weighted_front(
     return front_of(sweep, "weighted", found, points, gaps=sums.gaps, complete=complete)
 
 
-def _checked(pair: tuple[float, float]) -> tuple[float, float]:
+def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The weights that were given, each pair checked."""
+    remedy = "pairs, as [(1, 2)]"
+    pairs = [listed("pair of weights", pair, remedy) for pair in listed("weights", weights, remedy)]
+    if not pairs:
+        raise ValueError("no weights are given; give a pair of residual and energy, or none at all")
+    return [_checked(pair) for pair in pairs]
+
+
+def _checked(pair: Sequence[float]) -> tuple[float, float]:
+    if len(pair) != 2:
+        raise ValueError(f"weights are {reprlib.repr(pair)}; give pairs, as [(1, 2)]")
     of_residual, of_energy = (finite("weight", weight) for weight in pair)
     if min(of_residual, of_energy) < 0:
         raise ValueError(f"weights are {of_residual:g} and {of_energy:g}; give none below 0")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import JointMotion, Plant
+from ocp.base.checks import of_kind, whole
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import one_at_a_time
 from ocp.simulation.collocation import NODES, modal_system, step
@@ -94,8 +95,14 @@ def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[n
     ndarray, shape (samples * tips, 2 * modes), read-only
         L, with tip displacements [m] = L @ [W, W'] at times over the window. F1 of eq (11) is
         the largest absolute entry of the product.
+
+    Raises
+    ------
+    ValueError
+        When it is no task, or its window cannot be resolved by so many samples.
     """
-    samples = samples or residual_samples(task)
+    of_kind("task", task, PointToPoint, "a PointToPoint")
+    samples = residual_samples(task) if samples is None else whole("samples", samples, 2)
     return _residual_matrix(task.plant, task.target, task.residual_window, samples)
 
 

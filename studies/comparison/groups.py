@@ -3,14 +3,43 @@
 from __future__ import annotations
 
 import json
+import reprlib
 from collections.abc import Sequence
 
 from ocp import Front
 from ocp.answers.encoding import plain
-from ocp.base.checks import of_kind
+from ocp.base.checks import listed, of_kind
 from ocp.front.robust import EXCESS
 from studies.paper.tasks import task_difference
 from studies.registry.methods import method_of
+
+
+def checked_names(names: Sequence[str], fronts: int) -> list[str]:
+    """What to call each of so many fronts.
+
+    Parameters
+    ----------
+    names : sequence of str
+        What was given; numbers where that is nothing.
+    fronts : int
+        How many there are.
+
+    Returns
+    -------
+    list of str
+        A name for each.
+
+    Raises
+    ------
+    ValueError
+        When they are no list of text, more or fewer than the fronts.
+    """
+    given = listed("names", names, "a list with a name for each front")
+    for i, name in enumerate(given, start=1):
+        of_kind(f"name {i}", name, str, "text")
+    if given and len(given) != fronts:
+        raise ValueError(f"names are {reprlib.repr(given)}; give one for each of {fronts} fronts")
+    return given or [f"front {i}" for i in range(1, fronts + 1)]
 
 
 def check_fronts(
@@ -36,9 +65,7 @@ def check_fronts(
         in one line, with what differs.
     """
     if len(fronts) < least:
-        raise ValueError(
-            f"a comparison takes two fronts or more; {len(fronts)} given: name more files"
-        )
+        raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given: give more")
     for front, name in zip(fronts, names, strict=True):
         of_kind(name, front, Front, "a Front, as of epsilon_front, search or Front.load")
         if not front.points:
@@ -53,6 +80,8 @@ def check_fronts(
         if not twice and front in fronts[:i]:
             first = names[list(fronts).index(front)]
             raise ValueError(f"{name_of_twin(names[i], first)}; give every front once")
+        if not twice and names[i] in names[:i]:
+            raise ValueError(f"{names[i]!r} is the name of two fronts; give each one of its own")
 
 
 def name_of_twin(name: str, first: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from numbers import Real
 
 import moocore
 import numpy as np
@@ -12,10 +13,11 @@ from numpy.typing import NDArray
 
 from metaheuristics.ensemble import Spread
 from ocp import Front, PointToPoint
+from ocp.base.checks import listed, not_negative, of_kind, positive, whole
 from ocp.front.points import LEVELS
 from ocp.front.robust import on_same_samples
 from ocp.robustness.uncertain import on_assumed
-from studies.comparison.groups import check_fronts, grouped
+from studies.comparison.groups import check_fronts, checked_names, grouped
 from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
 from studies.registry.methods import Method, method_of
 
@@ -205,7 +207,7 @@ def compare_fronts(
     floor : float, optional
         Least energy [J] of any joint motion at rest on arrival.
     levels : sequence of float
-        Residuals [m] at which energies are compared.
+        Residuals [m] at which energies are compared, one or more.
     fill : int
         About how many points a filled front has; 0 leaves fronts as they were found.
     least : int
@@ -219,9 +221,19 @@ def compare_fronts(
     Raises
     ------
     ValueError
-        When there are fewer fronts than that, one is empty or given twice, or their tasks differ.
+        When there are fewer fronts than that, one is empty or given twice, their tasks differ, two
+        have one name, or another argument is out of range.
     """
-    names = list(names) or [f"front {i}" for i in range(1, len(fronts) + 1)]
+    fronts = listed("fronts", fronts, "a list of fronts")
+    names = checked_names(names, len(fronts))
+    fill, least = whole("fill", fill, 0), whole("least", least, 1)
+    levels = listed("levels", levels, "a list of residuals in m, as [1e-3]")
+    levels = [positive("level", level, "m") for level in levels]
+    if not levels:
+        raise ValueError("no levels are given; give one residual in m or more, as [1e-3]")
+    if floor is not None:
+        of_kind("floor", floor, Real, "a number in J: of a Floor its energy, as floor.energy")
+        floor = not_negative("floor", floor, "J")
     given = on_same_samples([*fronts, reference] if reference else fronts)
     fronts, reference = given[: len(fronts)], given[-1] if reference else None
     check_fronts(fronts, names, least=least)

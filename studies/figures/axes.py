@@ -11,6 +11,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
+from ocp.base.checks import of_kind
+
 STAIRS = "steps-post"
 """Line style of a front: between two points the stiller one is the best known motion."""
 TITLE: dict[str, Any] = {"loc": "left", "fontsize": 10}
@@ -27,8 +29,16 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def axes_or_new(ax: Axes | None) -> Axes:
-    """The axes that were given, or new ones in a figure of their own; with a light grid."""
-    ax = new_figure(6.4, 4.4).subplots() if ax is None else ax
+    """The axes that were given, or new ones in a figure of their own; with a light grid.
+
+    Raises
+    ------
+    ValueError
+        When something else was given, as a figure or several axes.
+    """
+    if ax is None:
+        ax = new_figure(6.4, 4.4).subplots()
+    of_kind("ax", ax, Axes, "one Axes, as pyplot.subplots()[1]")
     ax.grid(alpha=0.25)
     return ax
 

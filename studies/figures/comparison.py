@@ -17,6 +17,7 @@ from studies.comparison.measures import Comparison
 from studies.comparison.staircase import within
 from studies.display.words import title_of
 from studies.figures.axes import TITLE, axes_or_new, legend_of, logarithmic_residuals, new_figure
+from studies.figures.given import comparison_given
 from studies.figures.looks import Look, look
 from studies.paper.points import PaperPoint
 from studies.registry.methods import EPSILON, NSGA2, VEPSO, WEIGHTED
@@ -89,7 +90,13 @@ def comparison_figure(
         Three panels: whole fronts; the nearly still end, residual logarithmic; points above the
         best of all. Of several seeds the median attainment surface, in a band from the best to
         the worst. The legend stands beside the third.
+
+    Raises
+    ------
+    ValueError
+        When it is no comparison.
     """
+    comparison_given(comparison)
     figure = new_figure(10, 7.4)
     axes: list[Axes] = list(figure.subplots(2, 2).flat)
     for ax, draw, letter in zip(axes, PANELS.values(), "abc", strict=False):
@@ -108,6 +115,7 @@ def comparison_figure(
 
 def panel_figure(comparison: Comparison, panel: str, paper: Sequence[PaperPoint] = ()) -> Figure:
     """Draw one of `PANELS` alone, small enough for a phone, with the legend below it."""
+    comparison_given(comparison)
     figure = new_figure(4.8, 4.6)
     ax = PANELS[panel](comparison, paper, figure.subplots())
     figure.legend(
@@ -135,7 +143,13 @@ def draw_whole(
     matplotlib.axes.Axes
         The axes; of several seeds there is the median attainment surface, in a band from the best
         to the worst.
+
+    Raises
+    ------
+    ValueError
+        When it is no comparison, or `ax` no axes.
     """
+    comparison_given(comparison)
     ax, right = axes_or_new(ax), 1.04 * _right(comparison)
     _draw_fronts(ax, comparison, paper, right)
     ax.set_xlim(0, right * 1e3)
@@ -152,6 +166,7 @@ def draw_still(
     Parameters, and what is returned, are those of `draw_whole`. The end reaches to the largest of
     the comparison's levels, or further where no front reaches these.
     """
+    comparison_given(comparison)
     ax, stillest = axes_or_new(ax), float(comparison.best_front[0, 0])
     right = min(max(*comparison.levels, _NEARLY_STILL * stillest), _right(comparison))
     _draw_fronts(ax, comparison, paper, right)
@@ -169,6 +184,7 @@ def draw_gaps(
     points. Parameters, and what is returned, are those of `draw_whole`; the paper's points are not
     drawn.
     """
+    comparison_given(comparison)
     ax, shown = axes_or_new(ax), looks(comparison)
     for place, group in enumerate(comparison.groups):
         own = shown[group.label]

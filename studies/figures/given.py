@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from ocp import Front, Polish, Robustness
 from ocp.base.checks import of_kind
+from studies.comparison.measures import Comparison
 
 _A_FRONT = "a Front, as of epsilon_front, search or Front.load"
 
@@ -13,6 +14,11 @@ _A_FRONT = "a Front, as of epsilon_front, search or Front.load"
 def front_given(front: Front) -> Front:
     """A front; ValueError where it is something else."""
     return of_kind("front", front, Front, _A_FRONT)
+
+
+def comparison_given(comparison: Comparison) -> Comparison:
+    """Fronts measured against each other; ValueError where it is something else."""
+    return of_kind("comparison", comparison, Comparison, "what compare_fronts returns")
 
 
 def polish_given(polish: Polish) -> Polish:

@@ -175,3 +175,8 @@ def test_ctrl_c_while_it_is_imported_is_not_swallowed(crane_file):
     with pytest.raises(KeyboardInterrupt):
         load_plant_file(crane_file)
     assert known_plants() == before
+
+
+@pytest.mark.parametrize("path", [None, 5, b"crane.py"], ids=repr)
+def test_what_is_no_name_of_a_file_is_refused(path):
+    assert "; give its name, such as crane.py" in _refused(path)

@@ -173,3 +173,9 @@ def _written(default):
     return (
         f"{default:g}" if isinstance(default, float) else str(default).lower().replace("de/", "DE/")
     )
+
+
+@pytest.mark.parametrize("settings", [["crossover"], "crossover", 0.7], ids=repr)
+def test_settings_that_are_no_table_are_refused(settings):
+    with pytest.raises(ValueError, match=r"settings is .*; give a table .* {'crossover': 0.7}"):
+        PRESETS["nsga2"].build(10, settings)

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ocp.base.checks import finite, positive, whole
+from ocp.base.checks import finite, listed, positive, whole
 
 NUMBERS = [1, 1.5, np.float32(1.5), np.float64(1.5), np.int16(2), Fraction(3, 2)]
 NOT_NUMBERS = [True, np.bool_(True), "1.5", None, [1.5], 1j, Decimal("1.5"), np.array([1.5])]
@@ -52,3 +52,14 @@ def test_what_is_no_whole_number_from_the_least_up_is_named(value):
     with pytest.raises(ValueError, match=r"^count is .*; give a whole number from 1 up$") as error:
         whole("count", value, 1)
     assert repr(value) in str(error.value)
+
+
+@pytest.mark.parametrize("values", [[1, 2], (1, 2), np.array([1, 2]), iter([1, 2]), range(1, 3)])
+def test_values_one_after_another_become_a_list(values):
+    assert listed("lengths", values, "a list") == [1, 2]
+
+
+@pytest.mark.parametrize("values", [1.5, None, "12", b"12", {1: 2}, np.array(1.5)], ids=repr)
+def test_what_is_no_list_is_named(values):
+    with pytest.raises(ValueError, match=r"^lengths is .*; give a list, as \[1\]$"):
+        listed("lengths", values, "a list, as [1]")

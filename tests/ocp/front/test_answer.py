@@ -13,6 +13,7 @@ from ocp import (
     FrontPoint,
     Generation,
     non_dominated,
+    reference_corner,
 )
 from ocp.answers.provenance import versions
 
@@ -180,3 +181,9 @@ def test_a_setting_that_no_file_can_hold_is_refused():
 def test_settings_that_are_no_table_are_refused():
     with pytest.raises(ValueError, match=r"settings is \[1\]; give a table"):
         dataclasses.replace(front(), settings=[1])
+
+
+@pytest.mark.parametrize("given", [5, None, "arm"], ids=repr)
+def test_the_corner_is_of_a_task(given):
+    with pytest.raises(ValueError, match=f"task is {given!r}; give a PointToPoint"):
+        reference_corner(given)

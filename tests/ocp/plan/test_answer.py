@@ -121,6 +121,21 @@ def test_coefficients_that_are_not_as_many_finite_numbers_as_may_be_are_refused(
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"f": math.nan}, "setting f is nan; give a finite number"),
+        ({"f": -math.inf}, "setting f is -inf; give a finite number"),
+        ([1, 2], r"settings is \[1, 2\]; give a table of values by name, as {'bound': 0.2}"),
+        ("bound", "settings is 'bound'; give a table of values by name"),
+    ],
+)
+def test_settings_that_no_file_can_hold_are_refused(tasks, settings, words):
+    with pytest.raises(ValueError, match=words) as error:
+        evaluate_coefficients(tasks["arm"], [0.1], settings=settings)
+    assert "\n" not in str(error.value)
+
+
 # -- a value --
 
 

@@ -95,6 +95,19 @@ def test_a_longer_window_never_shows_less():
     assert peaks[0] < peaks[-1] / 2  # a quarter period is 0.21 s: the first windows end before it
 
 
+def test_what_is_no_task_is_refused():
+    with pytest.raises(ValueError, match=r"task is .*; give a PointToPoint") as refused:
+        residual_matrix(SingleLinkManipulator())
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("samples", [0, 1, -5, 2.5])
+def test_samples_that_span_no_window_are_refused(samples):
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0)
+    with pytest.raises(ValueError, match=f"samples is {samples}; give a whole number from 2 up"):
+        residual_matrix(task, samples)
+
+
 def test_a_window_of_too_many_swings_is_named():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0, residual_window=1e6)
     with pytest.raises(ValueError, match=r"residual window 1e\+06 s .*give a shorter one"):

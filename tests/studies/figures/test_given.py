@@ -1,6 +1,9 @@
 """What is no front, no plan and no list of them is refused in a line, with the value."""
 
+from functools import partial
+
 import pytest
+from matplotlib.figure import Figure
 
 from ocp import evaluate_robustness
 from studies import figures
@@ -24,6 +27,7 @@ from studies import figures
         (figures.motion_figure, 5, "motions is 5; give a Plan"),
         (figures.motion_figure, [], "give one motion or more"),
         (figures.compare_fronts, [5, 6], "front 1 is 5; give a Front"),
+        (figures.comparison_figure, 5, "comparison is 5; give what compare_fronts returns"),
     ],
 )
 def test_what_is_something_else_is_refused_in_a_line(draw, given, message):
@@ -45,3 +49,15 @@ def test_a_sweep_that_a_plan_does_not_have_is_named(plan):
     found = evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, samples=1)
     with pytest.raises(ValueError, match="plan 'rest' has no sweep of 'frequenzy'; did you mean"):
         figures.draw_robustness({"rest": found}, "frequenzy")
+
+
+@pytest.mark.parametrize("kind", ["figure", "several", "number"])
+def test_what_is_no_axes_is_refused_in_a_line(plan, good, kind):
+    ax = {"figure": Figure(), "several": Figure().subplots(2, 2), "number": 5}[kind]
+    for draw in (
+        partial(figures.draw_fronts, [good]),
+        partial(figures.draw_quantity, plan, "speed"),
+    ):
+        with pytest.raises(ValueError, match=r"^ax is .*; give one Axes, as") as refused:
+            draw(ax=ax)
+        assert "\n" not in str(refused.value)
