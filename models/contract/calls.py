@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
+from types import TracebackType
 from typing import Any, TypeGuard
 
 import casadi as ca
@@ -183,21 +184,23 @@ def _brief(value: object) -> str:
     return f"{type(value).__name__} {reprlib.repr(value)}" if value is not None else "None"
 
 
-def _line_of(error: BaseException) -> str:
+def _frame_of(error: BaseException) -> TracebackType | None:
     """Where in the user's method an error came from."""
-    trace = error.__traceback__
-    inside = trace.tb_next if trace else None
+    return error.__traceback__.tb_next if error.__traceback__ else None
+
+
+def _line_of(error: BaseException) -> str:
+    """The same in words."""
+    inside = _frame_of(error)
     if inside is None:
         return ""
     return f" at line {inside.tb_lineno} of {Path(inside.tb_frame.f_code.co_filename).name}"
 
 
 def _source_of(error: BaseException) -> str:
-    """The line of the user's method that an error came from."""
-    inside = error.__traceback__.tb_next if error.__traceback__ else None
-    if inside is None:
-        return ""
-    return linecache.getline(inside.tb_frame.f_code.co_filename, inside.tb_lineno)
+    """That line itself."""
+    inside = _frame_of(error)
+    return linecache.getline(inside.tb_frame.f_code.co_filename, inside.tb_lineno) if inside else ""
 
 
 def _words(error: BaseException) -> str:

@@ -25,7 +25,7 @@ from ocp.task.point_to_point import PointToPoint
 from ocp.task.quantities import ask_for_jerk
 
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}
-"""Minimum degree orders these sparse systems, without dense columns, a quarter faster."""
+"""The systems are sparse and have no dense columns: minimum degree makes them a quarter faster."""
 _WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
 """From a coarser grid's solution; with a larger barrier the solver would move away from it."""
 _SCALE_STEPS = 40

@@ -30,8 +30,6 @@ else the next peak passes the limit by as little again."""
 OVERRUN = 1e-3
 """Share of a limit by which a verified peak may pass it when tightening found nothing better."""
 
-_REMEDY = "bound the coefficients or use fewer terms"
-
 
 @dataclass(frozen=True)
 class Care:
@@ -123,18 +121,16 @@ def verified(
     else:
         tried.append((best, simulated.motion, problem.program.steps))
     best, motion, steps = _cheapest_kept(tried, kept, still)
+    remedy = "bound the coefficients or use fewer terms"
     refuse_passed(
-        motion, kept, f"the solver's steps are too coarse for this motion; {_REMEDY}", still
+        motion, kept, f"the solver's steps are too coarse for this motion; {remedy}", still
     )
     return best, motion, steps
 
 
 def _resimulated(problem: Problem, found: Solution) -> Resimulation:
     task, profile = problem.program.task, problem.program.profile
-    try:
-        return resimulated(task, PiecewiseMotion.of_profile(task, profile, found.coefficients))
-    except SolverFailedError as error:
-        raise SolverFailedError(f"{error}; {_REMEDY}") from error
+    return resimulated(task, PiecewiseMotion.of_profile(task, profile, found.coefficients))
 
 
 def tightened(

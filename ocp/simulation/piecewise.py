@@ -114,4 +114,7 @@ def _suspect(plant: Plant, coefficients: Sequence[float]) -> str:
             "; is a number in the plant far out of scale while the joint moves? (the largest "
             f"coefficient is only {largest:g})"
         )
-    return f"; are the coefficients far out of scale? (largest is {largest:g})"
+    return (
+        f"; are the coefficients far out of scale? (largest is {largest:g}); give smaller ones, a "
+        "bound or fewer terms"
+    )

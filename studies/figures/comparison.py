@@ -96,7 +96,6 @@ def comparison_figure(
     ValueError
         When it is no comparison.
     """
-    comparison_given(comparison)
     figure = new_figure(10, 7.4)
     axes: list[Axes] = list(figure.subplots(2, 2).flat)
     for ax, draw, letter in zip(axes, PANELS.values(), "abc", strict=False):
@@ -115,7 +114,6 @@ def comparison_figure(
 
 def panel_figure(comparison: Comparison, panel: str, paper: Sequence[PaperPoint] = ()) -> Figure:
     """Draw one of `PANELS` alone, small enough for a phone, with the legend below it."""
-    comparison_given(comparison)
     figure = new_figure(4.8, 4.6)
     ax = PANELS[panel](comparison, paper, figure.subplots())
     figure.legend(
