@@ -14,7 +14,7 @@ from ocp.front.sweep import Sweep
 from ocp.plan.verification import OF_A_PLAN, Care, verified
 from ocp.program.solution import Solution
 from ocp.program.transcription import RESIDUAL
-from ocp.simulation.objective import Motion
+from ocp.simulation.resimulation import Resimulation
 
 RESIDUAL_LIMIT = "residual_limit"
 _TIME_AFTER_CTRL_C = 0.6
@@ -28,10 +28,10 @@ def care_of(sweep: Sweep) -> Care:
     return Care(agreement=1e-4, enough_steps=2 * sweep.steps, most_steps=2 * sweep.steps)
 
 
-def front_point(sweep: Sweep, found: Solution, motion: Motion) -> FrontPoint:
+def front_point(sweep: Sweep, found: Solution, simulated: Resimulation) -> FrontPoint:
     """A solution's coefficients with the figures of the independent integrator."""
     coefficients = sweep.profile.checked(found.coefficients)
-    return FrontPoint(coefficients, motion.residual, motion.energy)
+    return FrontPoint(coefficients, simulated.residual, simulated.energy)
 
 
 def checked(
@@ -65,11 +65,11 @@ def checked(
     try:
         limit = np.inf if free else found.residual
         care = OF_A_PLAN if free else care_of(sweep)
-        point, motion, _ = verified(sweep.problem(limit), found, care=care, kept=kept)
+        point, simulated, _ = verified(sweep.problem(limit), found, care=care, kept=kept)
     except SolverFailedError as error:
         return FailedPoint(asked, str(error))
     sweep.iterations += point.iterations - found.iterations  # more steps, or tighter limits
-    return front_point(sweep, point, motion)
+    return front_point(sweep, point, simulated)
 
 
 def all_checked(

@@ -131,9 +131,9 @@ def _at_rest(sweep: Sweep) -> tuple[Solution, FrontPoint] | None:
     try:
         found = least_energy(sweep.problem(0.0))
         care = replace(care_of(sweep), enough_steps=sweep.steps, most_steps=MOST_SOLVER_STEPS)
-        found, motion, sweep.steps = verified(sweep.problem(0.0), found, care=care)
-        end, motion, _ = verified(sweep.problem(0.0), found)
+        found, _, sweep.steps = verified(sweep.problem(0.0), found, care=care)
+        end, simulated, _ = verified(sweep.problem(0.0), found)
     except SolverFailedError:
         return None
     sweep.iterations += end.iterations
-    return found, front_point(sweep, end, motion)
+    return found, front_point(sweep, end, simulated)

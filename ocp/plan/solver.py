@@ -26,7 +26,7 @@ from ocp.program.solution import Solution, same_minimum
 from ocp.program.task_program import TaskProgram
 from ocp.program.transcription import RESIDUAL
 from ocp.robustness.uncertain import UncertainPlant
-from ocp.simulation.objective import Motion
+from ocp.simulation.resimulation import Resimulation
 from ocp.simulation.rollout import default_steps
 from ocp.task.point_to_point import PointToPoint
 
@@ -35,6 +35,8 @@ PLAN_STEPS, FINER_STEPS, STEPS_A_TERM = 48, 80, 8
 within the first two; with limits the second, since limits hold only at the nodes."""
 _HIDDEN = 5e-3
 """A sampled minimum can lie above the resolved one beside it by this share of the energy."""
+_AGREE = 1e-5
+"""Starts whose energies differ by no more than this share agree: the tolerance of a cold run."""
 
 
 @one_at_a_time
@@ -65,7 +67,8 @@ def plan_move(
     bound : float, optional
         Largest absolute coefficient; none by default.
     starts : int
-        How many starts: the guess or the plain cycloid first, then random ones.
+        How many starts at most: the guess or the plain cycloid first, then random ones until half
+        of them have ended at the least energy found.
     seed : int
         Seed of the random starts.
     steps : int, optional
@@ -136,24 +139,26 @@ def plan_at_samples(task: PointToPoint, profile: JointProfile, settings: SolveSe
     problem = Problem(program, limits, settings.bound, guesses)
     solved, stopped = list[Solution](), None
     try:
-        best, motion, steps_used = verified(problem, least_energy(problem, solved))
+        best, simulated, steps_used = verified(problem, least_energy(problem, solved))
     except KeyboardInterrupt:
-        best, motion, steps_used = _best_until_now(problem, solved)
+        best, simulated, steps_used = _best_until_now(problem, solved)
         stopped = f"{len(solved)} of {len(guesses)} starts"
     return Plan(
         task=task,
         profile=profile,
         coefficients=profile.checked(best.coefficients),
-        motion=motion,
+        motion=simulated.motion,
         status=best.status,
-        verification=Verification.between(steps_used, best.energy, best.residual, motion),
+        verification=Verification.between(steps_used, best.energy, best.residual, simulated.motion),
         provenance=Provenance(
             "ipopt", settings, seconds=time.perf_counter() - began, stopped=stopped
         ),
     )
 
 
-def _best_until_now(problem: Problem, solved: Sequence[Solution]) -> tuple[Solution, Motion, int]:
+def _best_until_now(
+    problem: Problem, solved: Sequence[Solution]
+) -> tuple[Solution, Resimulation, int]:
     """What `verified` gives for the best of the starts until Ctrl-C, in a short time."""
     if not solved:
         raise KeyboardInterrupt
@@ -233,6 +238,8 @@ def least_energy(problem: Problem, kept: list[Solution] | None = None) -> Soluti
         solutions.append(problem.solve(guess, finish=False))
         if kept is not None and solutions[-1].status.solved:
             kept.append(solutions[-1])
+        if _agree(solutions, len(problem.guesses)):
+            break
     solutions, least = rescued(
         solutions,
         problem.limits,
@@ -251,6 +258,13 @@ def least_energy(problem: Problem, kept: list[Solution] | None = None) -> Soluti
             finished.append(problem.finished(replace(found, iterations=0)))
     best = min(finished, key=_energy)
     return replace(best, iterations=before + sum(found.iterations for found in finished))
+
+
+def _agree(solutions: Sequence[Solution], starts: int) -> bool:
+    """Whether half of the starts, and more than one, ended at the least energy found."""
+    energies = np.array([found.energy for found in solutions if found.status.solved])
+    least = energies.min(initial=np.inf) * (1 + _AGREE)
+    return bool(np.count_nonzero(energies <= least) >= max(2, starts / 2))
 
 
 def _energy(found: Solution) -> float:

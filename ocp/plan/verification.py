@@ -11,7 +11,7 @@ from ocp.base.errors import SolverFailedError
 from ocp.program.problem import Problem
 from ocp.program.solution import Solution
 from ocp.program.transcription import RESIDUAL
-from ocp.simulation.objective import Motion
+from ocp.simulation.objective import WithPeaks
 from ocp.simulation.piecewise import PiecewiseMotion
 from ocp.simulation.resimulation import Resimulation, resimulated
 
@@ -63,7 +63,7 @@ def verified(
     *,
     care: Care = OF_A_PLAN,
     kept: Mapping[str, float] | None = None,
-) -> tuple[Solution, Motion, int]:
+) -> tuple[Solution, Resimulation, int]:
     """Verify; correct the arrival, double the steps while energies disagree, tighten passed limits.
 
     The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
@@ -83,8 +83,8 @@ def verified(
 
     Returns
     -------
-    Solution, Motion, int
-        The solution, its figures by CVODES, and the number of steps it was found with.
+    Solution, Resimulation, int
+        The solution, its simulation by CVODES, and the number of steps it was found with.
 
     Raises
     ------
@@ -96,16 +96,16 @@ def verified(
     kept, used = limits if kept is None else kept, dict(limits)
     still = max(STILL, STILL_SHARE * program.of_cycloid)
     tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
-    tried: list[tuple[Solution, Motion, int]] = []
+    tried: list[tuple[Solution, Resimulation, int]] = []
     for _ in range(_ROUNDS):
-        motion, steps = simulated.motion, problem.program.steps
-        tried.append((best, motion, steps))
-        used = tightened(used, motion, kept)
-        rough = abs(best.energy - motion.energy) > care.agreement * motion.energy
+        steps = problem.program.steps
+        tried.append((best, simulated, steps))
+        used = tightened(used, simulated, kept)
+        rough = abs(best.energy - simulated.energy) > care.agreement * simulated.energy
         unsettled = not best.settled and steps < care.enough_steps
-        missed = abs(best.residual - motion.residual) > tolerated
+        missed = abs(best.residual - simulated.residual) > tolerated
         again = None
-        if not rough and (missed or motion.passed(kept)):
+        if not rough and (missed or simulated.passed(kept)):
             again = problem.within(used).corrected(best, simulated.arrival)
         elif not (rough or unsettled):
             break
@@ -119,13 +119,13 @@ def verified(
         best = again
         simulated = _resimulated(problem, best)
     else:
-        tried.append((best, simulated.motion, problem.program.steps))
-    best, motion, steps = _cheapest_kept(tried, kept, still)
+        tried.append((best, simulated, problem.program.steps))
+    best, simulated, steps = _cheapest_kept(tried, kept, still)
     remedy = "bound the coefficients or use fewer terms"
     refuse_passed(
-        motion, kept, f"the solver's steps are too coarse for this motion; {remedy}", still
+        simulated, kept, f"the solver's steps are too coarse for this motion; {remedy}", still
     )
-    return best, motion, steps
+    return best, simulated, steps
 
 
 def _resimulated(problem: Problem, found: Solution) -> Resimulation:
@@ -134,7 +134,7 @@ def _resimulated(problem: Problem, found: Solution) -> Resimulation:
 
 
 def tightened(
-    limits: Mapping[str, float], motion: Motion, kept: Mapping[str, float]
+    limits: Mapping[str, float], motion: WithPeaks, kept: Mapping[str, float]
 ) -> dict[str, float]:
     """The limits to give the solver, each less by as much as the verified motion passes it.
 
@@ -142,7 +142,7 @@ def tightened(
     ----------
     limits : mapping of str to float
         What the solver was given.
-    motion : Motion
+    motion : WithPeaks
         The verified figures of what it found.
     kept : mapping of str to float
         What these must keep.
@@ -160,13 +160,13 @@ def tightened(
 
 
 def refuse_passed(
-    motion: Motion, limits: Mapping[str, float], remedy: str, still: float = 0.0
+    motion: WithPeaks, limits: Mapping[str, float], remedy: str, still: float = 0.0
 ) -> None:
     """Refuse a verified motion that passes a limit although limits were tightened.
 
     Parameters
     ----------
-    motion : Motion
+    motion : WithPeaks
         The verified figures.
     limits : mapping of str to float
         What they must keep.
@@ -189,8 +189,8 @@ def refuse_passed(
 
 
 def _cheapest_kept(
-    tried: list[tuple[Solution, Motion, int]], kept: Mapping[str, float], still: float
-) -> tuple[Solution, Motion, int]:
+    tried: list[tuple[Solution, Resimulation, int]], kept: Mapping[str, float], still: float
+) -> tuple[Solution, Resimulation, int]:
     """The cheapest of the verified motions that keep every limit; else the last."""
     keeping = [
         one

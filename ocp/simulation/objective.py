@@ -155,8 +155,21 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     )
 
 
+class WithPeaks:
+    """Something with a residual and peaks, which limits are held against."""
+
+    def peak(self, name: str) -> float:
+        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
+        raise NotImplementedError
+
+    def passed(self, limits: Mapping[str, float], room: float = 0.0) -> dict[str, float]:
+        """What passes its limit by more than a share `room`: its peak over the limit, by name."""
+        of_limit = {name: self.peak(name) / limit for name, limit in limits.items() if limit > 0}
+        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + room}
+
+
 @dataclass(frozen=True)
-class Motion:
+class Motion(WithPeaks):
     """What a motion costs and asks of the joint, whichever integrator it comes from.
 
     Attributes
@@ -189,14 +202,9 @@ class Motion:
     peak_jerk: float | None = None
 
     def peak(self, name: str) -> float:
-        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
+        """As of `WithPeaks`."""
         value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
         return math.inf if value is None else float(value)
-
-    def passed(self, limits: Mapping[str, float], room: float = 0.0) -> dict[str, float]:
-        """What passes its limit by more than a share `room`: its peak over the limit, by name."""
-        of_limit = {name: self.peak(name) / limit for name, limit in limits.items() if limit > 0}
-        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + room}
 
     @classmethod
     def from_samples(

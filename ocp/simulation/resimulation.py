@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 import reprlib
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
@@ -37,7 +37,7 @@ from ocp.simulation.cvodes import (
     rest_of,
 )
 from ocp.simulation.extremes import extremes
-from ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
+from ocp.simulation.objective import Motion, WithPeaks, beyond_quadratic, resolved_energy
 from ocp.simulation.piecewise import Law, PiecewiseMotion
 from ocp.simulation.residual import fastest_mode, residual_samples
 from ocp.task.point_to_point import PointToPoint
@@ -129,7 +129,7 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
 
 
 @dataclass(frozen=True, eq=False)
-class Resimulation:
+class Resimulation(WithPeaks):
     """What CVODES makes of a joint motion.
 
     Attributes
@@ -138,8 +138,8 @@ class Resimulation:
         The move.
     joint : PiecewiseMotion
         How the joint moves.
-    motion : Motion
-        Residual, energy and diagnostics; peaks are those between the samples.
+    residual, energy, net_work : float
+        As of `Motion`.
     arrival : ndarray, shape (2 * modes,)
         W (m) and then W' (m/s) on arrival.
     outputs : ndarray, shape (rows of `outputs_of`, pieces * samples)
@@ -148,9 +148,38 @@ class Resimulation:
 
     task: PointToPoint
     joint: PiecewiseMotion
-    motion: Motion
+    residual: float
+    energy: float
+    net_work: float
     arrival: NDArray[np.float64]
     outputs: NDArray[np.float64]
+
+    @cached_property
+    def motion(self) -> Motion:
+        """Residual, energy and diagnostics; peaks are those between the samples.
+
+        They take a fifth of the simulation's time, and a front without limits needs none of them.
+        """
+        largest = extremes(_fractions(self._steps), self.outputs)
+        extreme = Trajectory.from_outputs(self.task.plant, np.zeros(2), largest)
+        return Motion.from_samples(
+            self.task,
+            extreme.motion if self.joint.has_jerk else extreme.motion._replace(jerk=None),
+            extreme.tips,
+            extreme.torque,
+            residual=self.residual,
+            energy=self.energy,
+            net_work=self.net_work,
+        )
+
+    def peak(self, name: str) -> float:
+        """As of `WithPeaks`."""
+        return self.residual if name == "residual" else self.motion.peak(name)
+
+    @property
+    def _steps(self) -> int:
+        """Steps of the quadrature on every piece."""
+        return self.outputs.shape[1] // len(self.joint.given[-1]) // NODES
 
     @property
     def trajectory(self) -> Trajectory:
@@ -160,9 +189,8 @@ class Resimulation:
         torque or acceleration.
         """
         lengths = self.joint.given[-1]
-        steps = self.outputs.shape[1] // len(lengths) // NODES
         begins = np.append(0.0, np.cumsum(lengths[:-1]))
-        times = (begins[:, None] + np.outer(lengths, _fractions(steps))).ravel()
+        times = (begins[:, None] + np.outer(lengths, _fractions(self._steps))).ravel()
         times = np.minimum(times, self.task.duration)  # beyond it by rounding
         moving = vars(Trajectory.from_outputs(self.task.plant, times, self.outputs))
         resting = vars(rest_of(self.task, self.arrival))
@@ -202,18 +230,9 @@ def resimulated(task: PointToPoint, joint: PiecewiseMotion) -> Resimulation:
     with cvodes_for(joint.remedy):
         figures = _figures(task.plant, joint.law, joint.given.shape, steps)
         outputs, arrival, energy, net_work = (value.T.copy() for value in figures(joint.given.T))
-    largest = extremes(_fractions(steps), outputs)
-    extreme = Trajectory.from_outputs(task.plant, np.zeros(2), largest)
-    motion = Motion.from_samples(
-        task,
-        extreme.motion if joint.has_jerk else extreme.motion._replace(jerk=None),
-        extreme.tips,
-        extreme.torque,
-        residual=residual_of(task, arrival[:, 0]),
-        energy=energy.item(),
-        net_work=net_work.item(),
-    )
-    return Resimulation(task, joint, motion, arrival[:, 0], outputs)
+    arrived = arrival[:, 0]
+    residual = residual_of(task, arrived)
+    return Resimulation(task, joint, residual, energy.item(), net_work.item(), arrived, outputs)
 
 
 @lru_cache(maxsize=16)
