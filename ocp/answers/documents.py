@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import reprlib
 from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator, Mapping
@@ -74,14 +75,24 @@ def read_document(
         document = msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
     except FileFormatError:
         raise
-    except (ValueError, RecursionError):
+    except (ValueError, RecursionError) as error:
         raise FileFormatError(
-            f"{path} is not a {name}: it is not whole, valid JSON in UTF-8; "
+            f"{path} is not a {name}: it is not whole, valid JSON in UTF-8{_where(error)}; "
             f"write the {name} again, or save it so"
         ) from None
     content = content_of(path, document, name, version, upgrades)
     with reading(path, name):
         return typed(content, kind)
+
+
+def _where(error: Exception) -> str:
+    """What a text that is no JSON stumbles over, where its decoder knows it."""
+    if "truncated" in str(error):
+        return ", for it ends too early"
+    if "out of range" in str(error):
+        return ", for one of its numbers is out of range"
+    at = re.search(r"\(byte (\d+)\)", str(error))
+    return f" at byte {at[1]}" if at else ""
 
 
 def read_bytes(path: str | Path) -> bytes:

@@ -173,7 +173,7 @@ def evaluate_coefficients(
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    began = time.perf_counter()
+    began, settings = time.perf_counter(), {} if settings is None else settings
     if profile is None:
         profile = CycloidPolynomial.of_size(numbers_of(coefficients).size)
     refuse_other_kinds(task, profile)
@@ -189,7 +189,7 @@ def evaluate_coefficients(
         verification=Verification.between(
             fixed.steps, fixed.motion.energy, fixed.motion.residual, motion
         ),
-        provenance=Provenance(method, None, settings or {}, seconds=time.perf_counter() - began),
+        provenance=Provenance(method, None, settings, seconds=time.perf_counter() - began),
         worst=worst_of(task, profile, checked),
     )
 

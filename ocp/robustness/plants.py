@@ -96,9 +96,16 @@ def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     Raises
     ------
     ValueError
-        When there is no such parameter.
+        When there is no such parameter, or a number makes the frequency 0 or the damping negative.
     """
     refuse_unknown(plant, errors)
+    for name, least in ((FREQUENCY, np.nextafter(-1.0, 0.0)), (DAMPING, -1.0)):
+        error = errors.get(name, 0.0)
+        if isinstance(error, Real) and not np.isfinite(error):
+            raise ValueError(f"an error of the {name} is not finite: {error}; give a number")
+        if isinstance(error, Real) and error < least:
+            becomes = "0 or negative" if name == FREQUENCY else "negative"
+            raise ValueError(f"an error of {error} makes the {name} {becomes}; give more than -1")
     values = {
         name: getattr(plant, name) * (1 + error)
         for name, error in errors.items()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -91,6 +92,8 @@ def _is_file(text: str) -> Path:
 
 def _is_output(text: str) -> Path:
     if text == str(STDOUT):
+        if sys.stdout.closed:
+            raise ValueError("standard output is closed; give a file")
         return STDOUT
     return check_writable(_named(text))
 

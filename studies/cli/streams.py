@@ -21,15 +21,19 @@ class Stream:
     ----------
     stream : text stream
         Where to write.
+    closed : bool
+        Whether the shell had closed it, so that what is written goes nowhere.
 
     Attributes
     ----------
     failure : OSError or None
         Why nothing more can be written.
+    closed : bool
+        As given.
     """
 
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
+    def __init__(self, stream: TextIO, closed: bool = False) -> None:
+        self._stream, self.closed = stream, closed
         self.failure: OSError | None = None
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # the name of a file may be any bytes
@@ -75,11 +79,11 @@ class Stream:
 @contextmanager
 def patient_streams() -> Iterator[Stream]:
     """Let the block write to both streams even where they fail; yields the output's."""
-    _open_what_is_closed()
+    closed = _open_what_is_closed()
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
     before = sys.stdout, sys.stderr
-    out, err = Stream(sys.stdout), Stream(sys.stderr)
+    out, err = Stream(sys.stdout, 1 in closed), Stream(sys.stderr, 2 in closed)
     sys.stdout, sys.stderr = out, err  # pyright: ignore[reportAttributeAccessIssue]
     try:
         yield out
@@ -89,13 +93,18 @@ def patient_streams() -> Iterator[Stream]:
         sys.stdout, sys.stderr = before
 
 
-def _open_what_is_closed() -> None:
-    """Open a stream that the shell closed; else a file that is opened later takes its number."""
+def _open_what_is_closed() -> list[int]:
+    """Open the streams that the shell closed; else a file that is opened later takes their number.
+
+    Returns the numbers of those.
+    """
+    closed = list[int]()
     for number in (0, 1, 2):
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+            closed.append(os.open(os.devnull, os.O_RDWR))  # takes the lowest number that is free
     for name, number in (("stdout", 1), ("stderr", 2)):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(number, "w", closefd=False))
+    return closed

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
+from ocp.base.names import unknown
 from studies.comparison.measures import Comparison
 from studies.comparison.staircase import within
 from studies.display.words import title_of
@@ -113,7 +114,15 @@ def comparison_figure(
 
 
 def panel_figure(comparison: Comparison, panel: str, paper: Sequence[PaperPoint] = ()) -> Figure:
-    """Draw one of `PANELS` alone, small enough for a phone, with the legend below it."""
+    """Draw one of `PANELS` alone, small enough for a phone, with the legend below it.
+
+    Raises
+    ------
+    ValueError
+        When there is no such panel, or it is no comparison.
+    """
+    if panel not in PANELS:
+        raise ValueError(unknown("panel", panel, PANELS))
     figure = new_figure(4.8, 4.6)
     ax = PANELS[panel](comparison, paper, figure.subplots())
     figure.legend(

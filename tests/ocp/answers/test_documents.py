@@ -74,7 +74,8 @@ def test_a_file_error_is_quietarms_own_and_a_value_error():
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.99])
 def test_a_truncated_file_is_not_whole(whole, refused, share):
-    assert "not whole, valid JSON" in refused(whole[: int(share * len(whole))])
+    message = refused(whole[: int(share * len(whole))])
+    assert re.search(r"valid JSON in UTF-8(, for it ends too early| at byte \d+); write", message)
 
 
 @pytest.mark.parametrize(
@@ -101,7 +102,13 @@ def test_the_mark_that_some_editors_put_first_does_no_harm(whole, tmp_path):
 def test_what_json_does_not_count_as_a_number_is_refused(whole, refused, keys, number):
     content = _changed(whole, *keys, value="HERE").replace('"HERE"', number)
     assert number in content
-    assert "not whole, valid JSON" in refused(content)
+    at = content.index(number) + number.startswith("-")
+    assert f"not whole, valid JSON in UTF-8 at byte {at}; write the plan again" in refused(content)
+
+
+def test_a_number_out_of_range_is_said_to_be_one(whole, refused):
+    content = _changed(whole, "task", "duration", value="HERE").replace('"HERE"', "1e999")
+    assert "valid JSON in UTF-8, for one of its numbers is out of range; write" in refused(content)
 
 
 def test_a_missing_file_is_named(tmp_path):

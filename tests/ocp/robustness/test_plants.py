@@ -140,6 +140,12 @@ def test_an_error_of_no_parameter_is_refused():
         with_errors(SingleLinkManipulator(), {"omga": 0.1})
 
 
+@pytest.mark.parametrize("error", [-1.0, -1.5, float("nan"), float("inf")])
+def test_an_error_that_leaves_no_frequency_is_refused(error):
+    with pytest.raises(ValueError, match=r"makes the frequency 0 or negative|is not finite"):
+        with_errors(SingleLinkManipulator(), {"frequency": error})
+
+
 def test_no_damping_at_all_is_a_plant():
     assert checked_ranges(ArmOnFlexibleLink(), {"damping": 1.0}) == {"damping": 1.0}
 

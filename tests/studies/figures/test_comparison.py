@@ -168,6 +168,11 @@ def heights_within(axis):
     return table[inside & (low <= table[:, 1]) & (table[:, 1] <= high), 1]
 
 
+def test_a_panel_that_there_is_not_is_refused(comparison):
+    with pytest.raises(ValueError, match=r"unknown panel 'x' \(known: whole"):
+        panel_figure(comparison, "x")
+
+
 def test_the_still_end_is_shown_where_a_search_is_cheap_because_it_rings(good, front_of):
     """A tight limit: the search begins at 6 mm, with less than half the still motion's energy."""
     whole, still, _ = comparison_figure(compare([good, front_of([(6, 0.3), (9, 0.2)])])).axes[:3]

@@ -121,6 +121,12 @@ def test_one_output_that_cannot_be_written_takes_no_other_with_it(call, folder, 
 # - is standard output
 
 
+def test_a_dash_needs_a_standard_output_that_is_open(folder):
+    ran = shell(f"quietarm {EVALUATE} --output - >&-")
+    words = "quietarm: --output: standard output is closed; give a file\n"
+    assert (ran.returncode, ran.stderr) == (2, words)
+
+
 def test_a_dash_is_standard_output_and_words_go_beside_it(folder):
     ran = shell(f"quietarm {EVALUATE} --output - --csv move.csv")
     assert ran.returncode == 0
