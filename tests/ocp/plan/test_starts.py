@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from ocp import CycloidPolynomial, plan_move
+from ocp import CycloidGaussians, CycloidPolynomial, plan_move
 from ocp.program.problem import Problem
 
-TWO = CycloidPolynomial(2)
+ENOUGH = CycloidPolynomial(6)
+"""Four coefficients beyond the two that rest takes for one mode."""
 
 
 @pytest.fixture
@@ -42,5 +43,19 @@ def test_starts_end_when_half_of_them_agree_at_the_least_energy(
     tasks, energies, starts, at, solved
 ):
     left = energies(list(at))
-    plan_move(tasks["single link"], TWO, starts=starts)
+    plan_move(tasks["single link"], ENOUGH, starts=starts)
     assert len(at) - len(left) == solved
+
+
+@pytest.mark.parametrize(
+    ("of", "profile"),
+    [
+        ("single link", CycloidPolynomial(5)),  # a few still motions may lie apart
+        ("two links", CycloidPolynomial(6)),  # rest of two modes takes four
+        ("single link", CycloidGaussians(2)),  # not linear in the coefficients
+    ],
+)
+def test_where_agreement_says_little_all_are_solved(tasks, energies, of, profile):
+    left = energies([2.0] * 4)
+    plan_move(tasks[of], profile, starts=4)
+    assert left == []
