@@ -16,6 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from models.contract.calls import text_of
 from models.plant import Plant
 
 MOST_BYTES = 1_000_000
@@ -171,13 +172,13 @@ def _in_a_line(path: str, error: BaseException) -> str:
         if "null bytes" in said or "utf-8" in said:
             said = "it is no text in UTF-8; save it so"
     elif isinstance(error, ImportError):
-        beside = "relative import" in str(error)
-        what = "it imports what lies beside it" if beside else error
+        said = text_of(error)
+        what = "it imports what lies beside it" if "relative import" in said else said
         said = f"{what}; a plant is one file: put what it needs into it, or install that"
     elif isinstance(error, ValueError):  # `Plant` refused a class
-        said = str(error)
+        said = text_of(error)
     else:
-        said = f"{f'{type(error).__name__}: {error}'.rstrip(': ')}; mend it"
+        said = f"{f'{type(error).__name__}: {text_of(error)}'.rstrip(': ')}; mend it"
     return f"plant file {path}{place}: {' '.join(said.split())}"
 
 

@@ -1,8 +1,8 @@
 """The contract of a plant, checked before anything is computed with it.
 
 `calls` calls each method as the program does and checks what it returns; `values` computes that
-over a turn and more of joint angles, moving and at rest. May import the plant and the joint's
-motion.
+over a turn and more of joint angles, moving and at rest; `along` over a move. May import the plant
+and the joint's motion.
 """
 
 from __future__ import annotations
@@ -71,5 +71,6 @@ def _check_equations(plant: Plant) -> None:
     equations.check_finite()
     equations.check_rest()
     equations.check_tips()
+    equations.check_moved()
     equations.check_stable()
     equations.check_numbers()

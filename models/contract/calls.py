@@ -138,6 +138,8 @@ class Calls:
         except BaseException as error:  # SystemExit and a user's own, too
             remedy = "" if method == "structure" else _remedy(error)
             raise self.wrong(method, f"fails{_line_of(error)} ({_words(error)})", remedy) from None
+        if inspect.iscoroutine(found):
+            found.close()  # else Python warns of it later
         names = _WRITE[method][0].split(", ")[1:]
         for name, given, left in zip(names, arguments, own, strict=True):
             if isinstance(given, list) and not _same(given, left):
@@ -166,9 +168,9 @@ def _remedy(error: BaseException) -> str:
     """What to do about an equation that fails; empty where it is not known."""
     if isinstance(error, RecursionError):
         return "it calls itself without end: compute it"
-    if "NoneType" in str(error) and "jerk" in _source_of(error):
+    if "NoneType" in text_of(error) and "jerk" in _source_of(error):
         return "write it with joint.angle, joint.speed and joint.acceleration: joint.jerk is None"
-    if "complex" in str(error):
+    if "complex" in text_of(error):
         return "write it with real numbers"
     if isinstance(error, RuntimeError | TypeError | FutureWarning):  # of casadi, over its symbols
         return (
@@ -203,11 +205,19 @@ def _source_of(error: BaseException) -> str:
     return linecache.getline(inside.tb_frame.f_code.co_filename, inside.tb_lineno) if inside else ""
 
 
+def text_of(error: BaseException) -> str:
+    """What an error says."""
+    try:
+        return str(error)
+    except Exception:  # an error of the user's own may have no words
+        return ""
+
+
 def _words(error: BaseException) -> str:
     """An error's name and first line, without the place in casadi that it comes from."""
     if isinstance(error, FutureWarning):
         return "a function of numpy is given a symbol"
-    lines = str(error).strip().splitlines() or [""]
+    lines = text_of(error).strip().splitlines() or [""]
     if "to_double" in lines[0] or "to_int" in lines[0]:
         return "a symbol is no number"
     text = re.sub(r"^\S*\.[ch]pp:\d+: ", "", lines[0]).rstrip(".")

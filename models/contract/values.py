@@ -100,7 +100,7 @@ class Equations:
     def _check_finite(self, values: Array, what: str, methods: list[str]) -> None:
         bad = ~np.isfinite(values)
         if self._defined.any():
-            bad[~np.repeat(self._defined, _KINDS)] = False
+            bad[~self._rows_defined] = False
         if not bad.any():
             return
         row, column = np.argwhere(bad)[-1]  # the simplest motion: at rest, if it fails there
@@ -137,6 +137,22 @@ class Equations:
             raise ValueError(
                 f"plant {self._plant.name!r}: tip displacement {still[0] + 1} is 0 whatever W is; "
                 "return one that W moves from tip_displacements, and check the parameters"
+            )
+
+    def check_moved(self) -> None:
+        """The joint moves some mode, and takes some torque: else there is nothing to shape."""
+        if not np.any(self._values[self._rows_defined, self._modes]):
+            raise self._calls.wrong(
+                "torque", "is 0 however the joint moves", "write the joint's equation"
+            )
+        undeflected = self._points.copy()
+        undeflected[:, 3:] = 0.0
+        forced = self._evaluated(ca.vertcat(*self._of_one.accelerations), undeflected)
+        if not np.any(forced[self._rows_defined]):
+            raise ValueError(
+                f"plant {self._plant.name!r}: the joint moves none of its modes: from rest "
+                "modal_accelerations stay 0 however it moves; write its acceleration in, and give "
+                "the parameters that couple them other values than 0"
             )
 
     def check_stable(self) -> None:
@@ -203,11 +219,17 @@ class Equations:
         finite = np.isfinite(self._values).all(axis=1).reshape(_ANGLES, _KINDS)
         return np.any(finite, axis=1, keepdims=True)[:, 0]
 
-    def _evaluated(self, expression: Expression) -> Array:
+    @property
+    def _rows_defined(self) -> NDArray[np.bool_]:
+        """Which points are at such angles."""
+        return np.repeat(self._defined, _KINDS)
+
+    def _evaluated(self, expression: Expression, points: Array | None = None) -> Array:
         """The entries of an expression of `_one`, column by column, at every point."""
+        points = self._points if points is None else points
         flat = ca.densify(ca.vec(expression))
         function = ca.Function("one", [ca.vertcat(*self._one)], [flat])
-        return function.map(len(self._points))(self._points.T).full().T
+        return function.map(len(points))(points.T).full().T
 
 
 def _points(modes: int) -> Array:

@@ -15,7 +15,7 @@ from ocp.base.threads import one_at_a_time
 from ocp.floor.answer import Floor, FloorSettings, Level
 from ocp.floor.grid import finer, first_grid
 from ocp.floor.program import FloorProgram, FreeSolution
-from ocp.plan.feasibility import rescued, unmet
+from ocp.plan.feasibility import rescued, true_peaks, unmet
 from ocp.plan.solver import plan_move
 from ocp.plan.verification import refuse_passed, tightened
 from ocp.profiles.joint_profile import JointPath
@@ -194,7 +194,11 @@ def _solved(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSoluti
     )
     solved = [found for found in again if found.status.solved]
     if not solved:
-        raise unmet("motion at all", limits, again, least, "a longer duration")
+        peaks = true_peaks(least, lambda found: _resimulated(program, found))
+        raise unmet(
+            "motion at all", limits, again, peaks, "a longer duration",
+            otherwise="try another seed, more starts or a longer duration.",
+        )  # fmt: skip
     return solved
 
 

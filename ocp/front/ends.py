@@ -12,8 +12,8 @@ from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import SAME, Sweep
 from ocp.plan.feasibility import least_peaks
 from ocp.plan.solver import least_energy
-from ocp.plan.verification import MOST_SOLVER_STEPS, STILL, verified
-from ocp.program.solution import ENERGY, Solution
+from ocp.plan.verification import MOST_SOLVER_STEPS, verified
+from ocp.program.solution import ENERGY, STILL, Solution
 from ocp.program.transcription import RESIDUAL
 from ocp.robustness.uncertain import UncertainPlant, on_assumed
 

@@ -10,8 +10,9 @@ import numpy as np
 from ocp.base.errors import InfeasibleTaskError, SolverFailedError
 from ocp.base.status import SolveStatus
 from ocp.program.problem import Problem
-from ocp.program.solution import Solution
+from ocp.program.solution import STILL, Solution
 from ocp.program.transcription import RESIDUAL
+from ocp.simulation.resimulation import Resimulation
 from ocp.task.quantities import QUANTITIES
 
 UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
@@ -97,8 +98,27 @@ def rescued(
     if any(run.status.solved for run in runs):
         return list(runs), {}
     least = least_peaks(limits, starts, solve)
-    within = [found for name, found in least.items() if found.peaks[name] <= limits[name]]
+    within = [found for name, found in least.items() if _keeps(found.peaks[name], name, limits)]
     return [*runs, *map(again, within)], least
+
+
+def _keeps(peak: float, name: str, limits: Mapping[str, float]) -> bool:
+    """Whether a peak is within its limit; a motion that is as good as still is at rest."""
+    return peak <= max(limits[name], STILL if name == RESIDUAL else 0.0)
+
+
+def true_peaks(
+    least: Mapping[str, Found], resimulated: Callable[[Found], Resimulation]
+) -> dict[str, float]:
+    """The least peaks as they are between the nodes as well, by what simulates a run's motion."""
+
+    def peak_of(name: str, found: Found) -> float:
+        try:
+            return max(found.peaks[name], resimulated(found).peak(name))
+        except SolverFailedError:
+            return found.peaks[name]
+
+    return {name: peak_of(name, found) for name, found in least.items()}
 
 
 def explain(
@@ -110,7 +130,7 @@ def explain(
         f"motion of {size} term{'s' if size > 1 else ''}",
         problem.limits,
         solutions,
-        least,
+        true_peaks(least, problem.resimulated),
         "more terms or a longer duration",
         "" if bound is None else f", coefficients within +-{bound:g}",
     )
@@ -120,9 +140,10 @@ def unmet(
     motion: str,
     limits: Mapping[str, float],
     runs: Sequence[Attempt],
-    least: Mapping[str, Attempt],
+    least: Mapping[str, float],
     remedy: str,
     box: str = "",
+    otherwise: str = "",
 ) -> SolverFailedError:
     """The error for limits that no start met, in words, to be raised by the caller.
 
@@ -134,12 +155,14 @@ def unmet(
         Residual [m] and peaks [SI units] that were asked for.
     runs : sequence of Attempt
         The runs that failed.
-    least : mapping of str to Attempt
-        What `least_peaks` found.
+    least : mapping of str to float
+        Least residual [m] and peaks [SI units] with the other limits kept, by `true_peaks`.
     remedy : str
         What else may do.
     box : str
         What else was asked.
+    otherwise : str
+        What may help where the solver fails, if that is not what its status says.
 
     Returns
     -------
@@ -148,14 +171,17 @@ def unmet(
     """
     statuses = [run.status for run in runs]
     if SolveStatus.INFEASIBLE not in statuses:
-        return SolverFailedError(f"none of {len(statuses)} starts was solved: {statuses[0].text}")
+        ended = statuses[0].text
+        if otherwise:
+            ended = f"{ended.partition(';')[0]}; {otherwise}"
+        return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
     asked = ", ".join(
         f"{name} <= {limit:g} {UNITS[name]}" for name, limit in limits.items() if limit < np.inf
     )
     remedies = [
-        f"{name} limit {found.peaks[name] * _ROOM:.4g} {UNITS[name]}"
-        for name, found in least.items()
-        if found.peaks[name] > limits[name]
+        f"{name} limit {peak * _ROOM:.4g} {UNITS[name]}"
+        for name, peak in least.items()
+        if not _keeps(peak, name, limits)
     ]
     feasible = (
         f"feasible with the rest kept: {' or '.join(remedies)}"

@@ -6,8 +6,9 @@ from ocp.answers.provenance import SolveSettings
 from ocp.base.errors import InfeasibleTaskError
 from ocp.plan.answer import Plan, evaluate_coefficients
 from ocp.plan.feasibility import UNITS
-from ocp.plan.verification import OVERRUN, STILL
+from ocp.plan.verification import OVERRUN
 from ocp.profiles.joint_profile import JointProfile
+from ocp.program.solution import STILL
 from ocp.task.point_to_point import PointToPoint
 
 

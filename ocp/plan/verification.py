@@ -9,17 +9,13 @@ import numpy as np
 
 from ocp.base.errors import SolverFailedError
 from ocp.program.problem import Problem
-from ocp.program.solution import Solution
+from ocp.program.solution import STILL, STILL_SHARE, Solution
 from ocp.program.transcription import RESIDUAL
 from ocp.simulation.objective import WithPeaks
-from ocp.simulation.piecewise import PiecewiseMotion
-from ocp.simulation.resimulation import Resimulation, resimulated
+from ocp.simulation.resimulation import Resimulation
 
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
-STILL, STILL_SHARE = 1e-8, 1e-7
-"""A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
-the plain cycloid's residual, whichever is larger."""
 _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
 """A residual at rest is corrected until it is below this share of that."""
@@ -92,7 +88,7 @@ def verified(
         When a limit stays passed.
     """
     program, limits = problem.program, problem.limits
-    simulated = _resimulated(problem, best)
+    simulated = problem.resimulated(best)
     kept, used = limits if kept is None else kept, dict(limits)
     still = max(STILL, STILL_SHARE * program.of_cycloid)
     tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
@@ -117,7 +113,7 @@ def verified(
             if not again.status.solved:
                 break
         best = again
-        simulated = _resimulated(problem, best)
+        simulated = problem.resimulated(best)
     else:
         tried.append((best, simulated, problem.program.steps))
     best, simulated, steps = _cheapest_kept(tried, kept, still)
@@ -126,11 +122,6 @@ def verified(
         simulated, kept, f"the solver's steps are too coarse for this motion; {remedy}", still
     )
     return best, simulated, steps
-
-
-def _resimulated(problem: Problem, found: Solution) -> Resimulation:
-    task, profile = problem.program.task, problem.program.profile
-    return resimulated(task, PiecewiseMotion.of_profile(task, profile, found.coefficients))
 
 
 def tightened(

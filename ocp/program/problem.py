@@ -13,6 +13,8 @@ from ocp.base.interrupts import keep_interrupts
 from ocp.program.run import Run
 from ocp.program.solution import LEAST_ENERGY, Solution
 from ocp.program.task_program import TaskProgram
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.resimulation import Resimulation, resimulated
 
 _LEAST_COLD_STEPS, _COLD_STEPS_A_TERM = 24, 6
 """Least steps of cold runs, in all and for each term: with fewer, some end at other minima."""
@@ -106,6 +108,11 @@ class Problem:
     def least(self, guess: NDArray[np.float64], limits: Mapping[str, float], name: str) -> Solution:
         """Make one peak as small as it can be within other limits."""
         return self.within(limits).solve(guess, {name: 1.0})
+
+    def resimulated(self, found: Solution) -> Resimulation:
+        """A solution's motion by CVODES; SolverFailedError where that cannot follow it."""
+        task, profile = self.program.task, self.program.profile
+        return resimulated(task, PiecewiseMotion.of_profile(task, profile, found.coefficients))
 
     @keep_interrupts()
     def finished(self, found: Solution) -> Solution:

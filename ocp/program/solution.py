@@ -14,6 +14,9 @@ from ocp.program.transcription import RESIDUAL, Form
 ENERGY = "energy"
 LEAST_ENERGY = {ENERGY: 1.0}
 _SAME = 1e-4
+STILL, STILL_SHARE = 1e-8, 1e-7
+"""A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
+the plain cycloid's residual, whichever is larger."""
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
@@ -101,11 +102,14 @@ def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     refuse_unknown(plant, errors)
     for name, least in ((FREQUENCY, np.nextafter(-1.0, 0.0)), (DAMPING, -1.0)):
         error = errors.get(name, 0.0)
-        if isinstance(error, Real) and not np.isfinite(error):
+        if not isinstance(error, Real):
+            continue
+        if not math.isfinite(error):
             raise ValueError(f"an error of the {name} is not finite: {error}; give a number")
-        if isinstance(error, Real) and error < least:
+        if error < least:
             becomes = "0 or negative" if name == FREQUENCY else "negative"
-            raise ValueError(f"an error of {error} makes the {name} {becomes}; give more than -1")
+            most = "more than -1" if name == FREQUENCY else "-1 or more"
+            raise ValueError(f"an error of {error} makes the {name} {becomes}; give {most}")
     values = {
         name: getattr(plant, name) * (1 + error)
         for name, error in errors.items()

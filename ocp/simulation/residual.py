@@ -72,9 +72,10 @@ def residual_samples(task: PointToPoint) -> int:
     fastest = _fastest(task.plant, task.target)
     samples = task.residual_window * fastest / RADIANS_A_SAMPLE
     if samples > MOST_SAMPLES:
+        most = MOST_SAMPLES * RADIANS_A_SAMPLE / fastest
         raise ValueError(
             f"residual window {task.residual_window:g} s is {samples * RADIANS_A_SAMPLE:.3g} "
-            "radians of the plant's fastest mode; give a shorter one"
+            f"radians of the plant's fastest mode; give at most {most:.3g} s"
         )
     return max(2, math.ceil(samples) + 1)  # both ends of the window at least
 
@@ -102,7 +103,10 @@ def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[n
         When it is no task, or its window cannot be resolved by so many samples.
     """
     of_kind("task", task, PointToPoint, "a PointToPoint")
-    samples = residual_samples(task) if samples is None else whole("samples", samples, 2)
+    if samples is not None:
+        memory = "a matrix of more takes too much memory"
+        samples = whole("samples", samples, 2, MOST_SAMPLES, memory)
+    samples = samples or residual_samples(task)
     return _residual_matrix(task.plant, task.target, task.residual_window, samples)
 
 

@@ -191,9 +191,9 @@ def _march(
     """
     modes, size = batch.modes, 2 * batch.modes
     constant, columns = batch.transition()
-    offsets = [ca.horzsplit(row, 1) for row in constant]
+    offsets = [_by_step(row, steps) for row in constant]
     by_row = [
-        {c: ca.horzsplit(column[row], 1) for c, column in enumerate(columns)
+        {c: _by_step(column[row], steps) for c, column in enumerate(columns)
          if not is_zero(column[row])}
         for row in range(size)
     ]  # fmt: skip
@@ -208,6 +208,12 @@ def _march(
         ]
     rows = [ca.horzcat(*entry) for entry in before]
     return rows[:modes], rows[modes:], ca.horzcat(*state)
+
+
+def _by_step(entry: Expression, steps: int) -> list[Expression]:
+    """A column for each step; what does not depend on the step is a single one."""
+    columns = ca.horzsplit(ca.DM.zeros(1, 1) + entry, 1)
+    return columns if len(columns) == steps else columns * steps
 
 
 def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from models import Plant
+from models.contract.along import check_along
 from ocp.base.checks import finite, positive
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import one_at_a_time
@@ -74,6 +75,9 @@ class PointToPoint:
                     f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
                 )
             self._keep(name, angle)
+        with keep_interrupts():
+            for part in self.plant.parts:
+                check_along(part, self.start, self.target)
         for name in ("duration", "residual_window"):
             self._keep(name, positive(name.replace("_", " "), getattr(self, name), "s"))
         for name, unit in LIMITS.items():

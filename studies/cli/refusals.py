@@ -13,6 +13,7 @@ _OF_CLICK = (
      "{0!r} is more than {command} takes; leave it out"),
     (r"Option '(.*)' requires an argument\.", "{0} has no value; give one behind it"),
     (r"Option '(.*)' does not take a value\.", "{0} takes no value; give it alone"),
+    (r"No such command '(.*)'\.", "unknown command {0!r}; {command} --help lists all"),
     (r"Missing command\.", "no command is given; {command} --help lists them"),
 )  # fmt: skip
 """click's sentences that no class of error stands for, and ours."""

@@ -83,14 +83,34 @@ def patient_streams() -> Iterator[Stream]:
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
     before = sys.stdout, sys.stderr
-    out, err = Stream(sys.stdout, 1 in closed), Stream(sys.stderr, 2 in closed)
-    sys.stdout, sys.stderr = out, err  # pyright: ignore[reportAttributeAccessIssue]
+    with _of_its_own(sys.stdout) as stdout:
+        out, err = Stream(stdout, 1 in closed), Stream(sys.stderr, 2 in closed)
+        sys.stdout, sys.stderr = out, err  # pyright: ignore[reportAttributeAccessIssue]
+        try:
+            yield out
+        finally:
+            out.flush()
+            err.flush()
+            sys.stdout, sys.stderr = before
+
+
+@contextmanager
+def _of_its_own(stdout: TextIO) -> Iterator[TextIO]:
+    """The process's output under a number of its own, and number 1 as another one of its errors.
+
+    What a plant's file, a library or a command that they start write to number 1 is no answer.
+    """
+    if stdout is not sys.__stdout__:
+        yield stdout
+        return
+    stdout.flush()
+    own = os.dup(1)
+    os.dup2(2, 1)
     try:
-        yield out
+        yield os.fdopen(own, "w", encoding=stdout.encoding, errors=stdout.errors, closefd=False)
     finally:
-        out.flush()
-        err.flush()
-        sys.stdout, sys.stderr = before
+        os.dup2(own, 1)
+        os.close(own)
 
 
 def _open_what_is_closed() -> list[int]:

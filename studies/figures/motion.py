@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ocp import Floor, Plan, Trajectory, evaluate_coefficients
+from ocp.answers.motion_answer import MotionAnswer
 from ocp.base.checks import of_kind
 from ocp.robustness.uncertain import assumed_plant
 from ocp.task.quantities import QUANTITIES
@@ -49,12 +50,20 @@ class Line:
         Any of matplotlib's; by default one of `COLOURS`, with dashes to match.
     style : str or tuple
         Its dashes, where there is a colour.
+
+    Raises
+    ------
+    ValueError
+        When there is no plan or floor.
     """
 
     plan: Plan | Floor
     label: str
     colour: str = ""
     style: Dash = "-"
+
+    def __post_init__(self) -> None:
+        of_kind("plan", self.plan, MotionAnswer, "a Plan or a Floor")
 
 
 Motions = Sequence[Line] | Plan | Floor
@@ -129,6 +138,8 @@ def motion_figure(
     """
     lines = _of_one_duration(motions)
     quantities = _panels_of(lines) if quantities is None else quantities
+    if not quantities:
+        raise ValueError("no quantity is given to draw; name some, as ['torque']")
     count = len(quantities)
     columns = min(count, 2) if count <= 4 else 3
     rows = -(-count // columns)

@@ -157,7 +157,7 @@ def _by_columns(names: Sequence[str] | None, table: Array) -> Found:
             which, unit = claim
             claims[:, which] = table[:, column] * unit
         else:
-            ignored.append(printable(name[:30]))
+            ignored.append(printable(name[:30]) or "a column without a name")
     order = sorted(numbered)
     if not order:
         raise FileFormatError(

@@ -22,7 +22,7 @@ from ocp.answers.provenance import SolveSettings
 from ocp.front.epsilon import _Stretch
 from ocp.front.sweep import Sweep
 from ocp.plan.solver import first_steps
-from ocp.plan.verification import STILL
+from ocp.program.solution import STILL
 from ocp.program.transcription import NonlinearProgram
 
 POINTS = 12
