@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -187,5 +188,5 @@ _ALL = (
     ),
 )  # fmt: skip
 
-PROBLEMS: Mapping[str, NamedProblem] = {problem.name: problem for problem in _ALL}
+PROBLEMS: Mapping[str, NamedProblem] = MappingProxyType({problem.name: problem for problem in _ALL})
 """By name: plant, angle and duration; six terms and no limits where nothing else is said."""

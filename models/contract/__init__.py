@@ -71,6 +71,6 @@ def _check_equations(plant: Plant) -> None:
     equations.check_finite()
     equations.check_rest()
     equations.check_tips()
-    equations.check_moved()
     equations.check_stable()
+    equations.check_moved()
     equations.check_numbers()

@@ -145,6 +145,7 @@ def _named(what: str, entry: Any, known: Mapping[str, type[Any]]) -> Any:
         raise ValueError(
             f"its {what} {reprlib.repr(name)} is not known here (known: "
             f"{', '.join(sorted(known))}); import the file that defines it first"
+            + (", or name it by --plant-file" if what == "plant" else "")
         )
     arguments = {key: value for key, value in entry.items() if key != "name"}
     fields = {field.name: field for field in dataclasses.fields(known[name])}

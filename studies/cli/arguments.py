@@ -30,6 +30,10 @@ def split_options(rest: dict[str, Any]) -> tuple[PointToPoint, dict[str, Any]]:
     names = {"--output": "output", "--csv": "csv_file", "--figure": "figure"}
     refuse_same_file((option, outputs[name]) for option, name in names.items())
     task = task_of(rest)
+    context = click.get_current_context()
+    typed = context.get_parameter_source("sample_rate") is not ParameterSource.DEFAULT
+    if typed and outputs["csv_file"] is None:
+        raise ValueError("--sample-rate is for --csv, which is not given; give it, or leave it out")
     if outputs["csv_file"] is not None:  # refused now rather than after the solve
         ticks_of_move(task.duration, outputs["sample_rate"])
     return task, outputs

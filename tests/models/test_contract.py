@@ -13,6 +13,7 @@ import pytest
 from sound_plant import Sound
 
 from models import Plant, SingleLinkManipulator, known_plants, parameter
+from models.contract.along import check_along
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
@@ -365,3 +366,91 @@ def test_a_class_may_be_written_again():
     type("Mine", (Sound,), {"name": "mine-again"})
     second = type("Mine", (Sound,), {"name": "mine-again"})
     assert known_plants()["mine-again"] is second
+
+
+# -- something to shape --
+
+
+def test_a_plant_that_takes_no_torque_is_refused():
+    told = _told(torque=lambda p, j, W, dW, ddW: 0)
+    assert "torque is 0 however the joint moves; write the joint's equation, and return" in told
+
+
+def test_a_parameter_that_leaves_no_torque_is_refused():
+    weightless = SingleLinkManipulator(alpha1=0.0, alpha2=0.0, c=0.0)
+    with pytest.raises(ValueError, match="'single-link': torque is 0 however the joint moves"):
+        weightless.validate()
+
+
+@pytest.mark.parametrize(
+    "acceleration",
+    [
+        lambda p, j, W, dW: [-W[0]],
+        lambda p, j, W, dW: [-W[0] * (1 + j.speed * j.speed)],  # from rest W stays 0
+    ],
+)
+def test_modes_that_the_joint_does_not_move_are_refused(acceleration):
+    told = _told(modal_accelerations=acceleration)
+    assert "the joint moves none of its modes: from rest modal_accelerations stay 0" in told
+
+
+def test_one_mode_that_it_moves_is_enough():
+    type("Two", (Sound,), {
+        "name": "two-of-which-one", "modes": 2,
+        "modal_accelerations": lambda p, j, W, dW: [-W[0] - j.acceleration, -9 * W[1]],
+        "tip_displacements": lambda p, W: [W[0] + W[1]],
+    })().validate()  # fmt: skip
+
+
+# -- along a move --
+
+
+@pytest.mark.parametrize(
+    ("method", "changed"),
+    [
+        ("modal_accelerations", lambda p, j, W, dW: [-W[0] - j.acceleration / ca.sin(j.angle)]),
+        ("torque", lambda p, j, W, dW, ddW: j.acceleration + ca.log(0.2 - j.angle)),
+    ],
+)
+def test_equations_need_values_all_along_a_move(method, changed):
+    plant = type("Partly", (Sound,), {"name": "partly", method: changed})()
+    plant.validate()  # somewhere it has values
+    check_along(plant, -0.5, -0.1)
+    with pytest.raises(ValueError, match=rf"'partly': {method} is \S+ with the joint at ") as told:
+        check_along(plant, -0.5, 0.5)
+    assert "on the way from -0.5 to 0.5 rad; move where its equations hold, or check" in str(
+        told.value
+    )
+
+
+def test_a_right_angle_between_the_samples_is_looked_at():
+    plant = type("Tangent", (Sound,), {
+        "name": "tangent",
+        "torque": lambda p, j, W, dW, ddW: j.acceleration / ca.if_else(
+            ca.fabs(j.angle - math.pi) < 1e-9, 0.0, 1.0
+        ),
+    })()  # fmt: skip
+    check_along(plant, 0.0, 3.0)
+    with pytest.raises(ValueError, match=r"with the joint at 3\.142 rad"):
+        check_along(plant, 0.0, 3.21)
+
+
+# -- errors that have no words, and what is not awaited --
+
+
+def test_an_error_without_words_is_named():
+    class MuteError(Exception):
+        def __str__(self):
+            raise TypeError("in str")
+
+    def fails(p, j, W, dW):
+        raise MuteError
+
+    assert "modal_accelerations fails at line" in _told(modal_accelerations=fails)
+
+
+def test_a_coroutine_is_refused_and_python_does_not_warn_of_it():
+    async def torque(p, j, W, dW, ddW):
+        return j.acceleration
+
+    assert "torque returns coroutine" in _told(torque=torque)

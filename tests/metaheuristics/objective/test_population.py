@@ -2,12 +2,14 @@
 
 import dataclasses
 import math
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
 
 from metaheuristics import PopulationObjective
+from models import SingleLinkManipulator
 from ocp import (
     CycloidPolynomial,
     PointToPoint,
@@ -45,6 +47,27 @@ def test_residual_is_that_of_the_rollout_to_the_last_digits_at_the_same_times(ta
     objective, X = PopulationObjective(task, PROFILE), candidates(20, bound)
     residuals = [rollout(task, PROFILE, x, objective.steps).motion.residual for x in X]
     assert objective(X).residual == pytest.approx(residuals, rel=1e-11, abs=0)
+
+
+def test_a_mode_that_the_joint_does_not_move_changes_nothing():
+    @dataclasses.dataclass(frozen=True)
+    class Two(SingleLinkManipulator):
+        name: ClassVar[str] = "with-a-mode-apart"
+        modes: ClassVar[int] = 2
+
+        def modal_accelerations(self, joint, W, dW):
+            return [*super().modal_accelerations(joint, W[:1], dW[:1]), -100 * W[1]]
+
+        def tip_displacements(self, W):
+            return [super().tip_displacements(W[:1])[0] + W[1]]
+
+    X = candidates(5, 0.2)
+    one, two = (
+        PopulationObjective(PointToPoint(plant, 1.0, 0.8), PROFILE)(X)
+        for plant in (SingleLinkManipulator(), Two())
+    )
+    assert two.energy == pytest.approx(one.energy, rel=1e-12, abs=0)
+    assert two.residual == pytest.approx(one.residual, rel=1e-4, abs=0)  # at other times
 
 
 def test_other_steps_are_honoured(tasks):

@@ -55,11 +55,6 @@ def test_the_power_may_touch_zero(a):
     assert motion.energy == pytest.approx(motion.net_work, rel=1e-10)
 
 
-def test_a_motion_without_power_costs_nothing():
-    weightless = SingleLinkManipulator(alpha1=0.0, alpha2=0.0, c=0.0)
-    assert resimulate(PointToPoint(weightless, 1.0, 0.8), PLAIN, []).energy == 0.0
-
-
 @dataclass(frozen=True)
 class _InPowers(JointProfile):
     """theta from the start to the target along a polynomial of t/T, without coefficients."""

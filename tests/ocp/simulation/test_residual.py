@@ -101,6 +101,12 @@ def test_what_is_no_task_is_refused():
     assert "\n" not in str(refused.value)
 
 
+def test_more_samples_than_memory_are_refused():
+    task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
+    with pytest.raises(ValueError, match="samples is 1000000000; give at most 200000: a matrix of"):
+        residual_matrix(task, 10**9)
+
+
 @pytest.mark.parametrize("samples", [0, 1, -5, 2.5])
 def test_samples_that_span_no_window_are_refused(samples):
     task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0)

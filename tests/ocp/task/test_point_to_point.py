@@ -148,3 +148,11 @@ def test_ctrl_c_in_the_check_of_the_plant_is_not_lost(monkeypatch):
     monkeypatch.setattr(SingleLinkManipulator, "validate", lost)
     with pytest.raises(KeyboardInterrupt):
         PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
+
+
+def test_a_move_through_angles_without_values_is_refused():
+    # 1 + alpha1 cos(theta) divides, and is 0 at 0 rad
+    plant = ArmOnFlexibleLink(alpha1=-1.0)
+    assert PointToPoint(plant, 1.5, 0.8, start=0.5).plant == plant
+    with pytest.raises(ValueError, match=r"modal_accelerations is \S+ with the joint at 0 rad"):
+        PointToPoint(plant, 1.5, 0.8)

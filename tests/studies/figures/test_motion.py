@@ -330,3 +330,13 @@ def test_nothing_is_half_written_when_it_fails(figure, tmp_path, monkeypatch, th
     assert [entry.name for entry in tmp_path.iterdir()] == (["move.png"] if there else [])
     if there:
         assert path.read_text() == "old"
+
+
+def test_no_quantity_is_no_picture(plan):
+    with pytest.raises(ValueError, match="no quantity is given to draw; name some"):
+        motion_figure(plan, quantities=[])
+
+
+def test_a_line_needs_a_motion():
+    with pytest.raises(ValueError, match="plan is None; give a Plan or a Floor"):
+        Line(None, "a")

@@ -121,6 +121,22 @@ def test_one_output_that_cannot_be_written_takes_no_other_with_it(call, folder, 
 # - is standard output
 
 
+def test_what_a_plant_file_writes_by_other_means_is_no_answer(folder):
+    (folder / "loud.py").write_text(
+        "import os\n"
+        "from models import SingleLinkManipulator\n"
+        "class Loud(SingleLinkManipulator):\n"
+        "    name = 'loud'\n"
+        "os.write(1, b'by its number\\n')\n"
+        "os.system('echo by a command')\n"
+    )
+    move = "--target 30deg --duration 0.8 --coefficients=0"
+    ran = shell(f"quietarm evaluate --plant-file loud.py {move} --output -")
+    assert ran.returncode == 0
+    assert json.loads(ran.stdout)["coefficients"] == [0]
+    assert ran.stderr.startswith("by its number\nby a command\n")
+
+
 def test_a_dash_needs_a_standard_output_that_is_open(folder):
     ran = shell(f"quietarm {EVALUATE} --output - >&-")
     words = "quietarm: --output: standard output is closed; give a file\n"

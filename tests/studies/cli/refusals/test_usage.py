@@ -10,6 +10,7 @@ from studies.cli.application import COMMANDS
     ("line", "told"),
     [
         ("pln", "unknown command 'pln'; did you mean 'plan'? (known: plan, evaluate, "),
+        ("-", "unknown command '-'; quietarm --help lists all"),
         ("''", "unknown command '' (known: plan, "),
         ("--bogus", "quietarm has no option '--bogus'; quietarm --help lists all"),
         (f"plan {MOVE} more", "'more' is more than quietarm plan takes; leave it out"),

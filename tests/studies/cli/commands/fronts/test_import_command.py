@@ -103,6 +103,8 @@ FILES = {
     "commas.csv": (table(["a_1", "a_2"], X.tolist(), ";").replace(".", ","), "neither"),
     "others.csv": (table(["run", "a_1", "a_2"], np.column_stack(
         [np.arange(len(X)), X]).tolist()), "ignored: run"),
+    "pandas.csv": (table(["", "a_1", "a_2"], np.column_stack(
+        [np.arange(len(X)), X]).tolist()), "ignored: a column without a name"),
     "mm.csv": (table(["a_1", "a_2", "residual_mm"], np.column_stack(
         [X, CLAIMS[:, 0] * 1e3]).tolist()), "residual is right"),
     "matrix.npy": (numpy_file(X), "neither"),
