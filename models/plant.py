@@ -69,8 +69,8 @@ class Plant(ABC):
     and gives three equations: `modal_accelerations`, `torque` and `tip_displacements`. For a given
     joint motion the modal accelerations must be affine in the modal amplitudes and their rates, and
     the tip displacements linear in the amplitudes; with the joint at rest the structure must stay
-    at rest, and no mode may grow; moving the joint must take torque and move some mode. `validate`
-    checks all of it. The equations may have no value at some angles; a move must not pass these.
+    at rest, and no mode may grow; moving the joint must take torque. `validate` checks all of
+    it. The equations may have no value at some angles; a move must not pass these.
 
     Raises
     ------
@@ -208,7 +208,7 @@ class Plant(ABC):
             When the class lacks its modes or the dataclass above it, a method takes other arguments
             or returns something else than it should, does not take symbols or mixes them, is not
             finite at rest, or the modes are not affine, not at rest with the joint, or unstable;
-            when moving the joint takes no torque or moves no mode.
+            when moving the joint takes no torque.
         """
         from models.contract import check_contract  # it builds on this module
 

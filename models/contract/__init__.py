@@ -72,5 +72,5 @@ def _check_equations(plant: Plant) -> None:
     equations.check_rest()
     equations.check_tips()
     equations.check_stable()
-    equations.check_moved()
+    equations.check_torque()
     equations.check_numbers()

@@ -120,7 +120,7 @@ def _of_uncertain(sweep: Sweep) -> Ends:
         cheapest = least_energy(free)
     sweep.iterations += cheapest.iterations
     still = cheapest
-    for weight in _LESS_AND_LESS:
+    for weight in _LESS_AND_LESS if cheapest.residual > STILL else ():
         weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / assumed.still.energy}
         found = sweep.solve(still.coefficients, minimise=weights)
         still = found if found.status.solved else still

@@ -56,12 +56,17 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
     Raises
     ------
     ValueError
-        When it is 0 and the plant uncertain.
+        When it is 0 and the plant uncertain, or none is given and the joint moves no mode.
     """
     if not isinstance(task.plant, UncertainPlant):
         return 0.0 if residual_limit is None else residual_limit
     if residual_limit is None:
-        return tolerated_residual(task)
+        residual_limit = tolerated_residual(task)
+        if residual_limit == 0:
+            raise ValueError(
+                "the plain cycloid leaves no residual on this plant, so that 5 % of it is no "
+                "limit; give a residual limit above 0"
+            )
     if residual_limit == 0:
         raise ValueError(
             "residual limit is 0, but no motion arrives at rest whatever the errors of its plant; "

@@ -43,7 +43,8 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     limit = 100 * TOLERATED
     for number, (label, plan) in enumerate(plans.items()):
         sweep = _sweep_of(label, plan, name)
-        how, per_cent = look(number), 100 / plan.cycloid
+        how = look(number)
+        per_cent = 100 / plan.cycloid if plan.cycloid > 0 else 0.0  # a joint that moves no mode
         ax.plot(
             100 * sweep.errors, per_cent * sweep.figures.residual, color=how.colour,
             linestyle=how.dash, linewidth=1.6, label=label,

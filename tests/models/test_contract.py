@@ -368,7 +368,7 @@ def test_a_class_may_be_written_again():
     assert known_plants()["mine-again"] is second
 
 
-# -- something to shape --
+# -- torque --
 
 
 def test_a_plant_that_takes_no_torque_is_refused():
@@ -380,26 +380,6 @@ def test_a_parameter_that_leaves_no_torque_is_refused():
     weightless = SingleLinkManipulator(alpha1=0.0, alpha2=0.0, c=0.0)
     with pytest.raises(ValueError, match="'single-link': torque is 0 however the joint moves"):
         weightless.validate()
-
-
-@pytest.mark.parametrize(
-    "acceleration",
-    [
-        lambda p, j, W, dW: [-W[0]],
-        lambda p, j, W, dW: [-W[0] * (1 + j.speed * j.speed)],  # from rest W stays 0
-    ],
-)
-def test_modes_that_the_joint_does_not_move_are_refused(acceleration):
-    told = _told(modal_accelerations=acceleration)
-    assert "the joint moves none of its modes: from rest modal_accelerations stay 0" in told
-
-
-def test_one_mode_that_it_moves_is_enough():
-    type("Two", (Sound,), {
-        "name": "two-of-which-one", "modes": 2,
-        "modal_accelerations": lambda p, j, W, dW: [-W[0] - j.acceleration, -9 * W[1]],
-        "tip_displacements": lambda p, W: [W[0] + W[1]],
-    })().validate()  # fmt: skip
 
 
 # -- along a move --
