@@ -34,6 +34,9 @@ class JointProfile(ABC):
     default_bound: ClassVar[float | None] = None
     """Bound of a search where the user gives none; None where one must be given."""
 
+    sharp: ClassVar[bool] = False
+    """Whether a motion may turn within a hundredth of the move without a break."""
+
     _known: ClassVar[dict[str, type[JointProfile]]] = {}
 
     def __init_subclass__(cls) -> None:

@@ -57,6 +57,7 @@ class CycloidOfUnits(Cycloid):
     """
 
     default_bound: ClassVar[float | None] = 0.5
+    sharp: ClassVar[bool] = True
     sharpness: ClassVar[str]
     """What y is called in a message."""
 

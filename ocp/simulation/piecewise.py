@@ -62,6 +62,8 @@ class PiecewiseMotion:
         What the law is given on each; the last row is how long they take [s].
     has_jerk : bool
         Whether the acceleration is continuous.
+    smooth : bool
+        Whether it is one piece, without a break in any derivative or a sharp turn.
     remedy : str
         The end of the message where CVODES cannot follow it.
     """
@@ -69,6 +71,7 @@ class PiecewiseMotion:
     law: Law
     given: NDArray[np.float64]
     has_jerk: bool
+    smooth: bool
     remedy: str
 
     @classmethod
@@ -81,6 +84,7 @@ class PiecewiseMotion:
             _AlongProfile(profile),
             np.array([[*checked, *task.move]]).T,
             True,
+            not (profile.sharp or profile.breaks(task.duration)),
             _suspect(task.plant, checked),
         )
 
@@ -92,6 +96,7 @@ class PiecewiseMotion:
             _freely,
             free.intervals(task.start),
             free.smooth,
+            False,
             f", whose largest acceleration is {largest:g} rad/s^2; set an acceleration limit",
         )
 
