@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 import signal
 import sys
+import threading
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,7 +17,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from dask import config
-from distributed import Client, LocalCluster
+from distributed import Client, LocalCluster, rpc
 from distributed.comm.addressing import get_address_host_port
 
 from metaheuristics.sharing.workers import Workers
@@ -129,6 +131,32 @@ def _end(cluster: LocalCluster) -> None:
             os.kill(nanny.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
 
 
+def _ask(address: str) -> None:
+    """Ask a scheduler who it is; OSError where none answers in time.
+
+    A client waits for ever where something else listens and says nothing. The thread is left alone
+    then: it ends with the process.
+    """
+    heard: list[Any] = []
+
+    async def identity() -> Any:
+        async with rpc(address) as scheduler:
+            return await scheduler.identity()
+
+    def ask() -> None:
+        try:
+            heard.append(asyncio.run(asyncio.wait_for(identity(), _CONNECT_SECONDS)))
+        except Exception as error:
+            heard.append(error)
+
+    asking = threading.Thread(target=ask, daemon=True)
+    asking.start()
+    asking.join(_CONNECT_SECONDS)
+    answer = heard[0] if heard else TimeoutError("it says nothing")
+    if isinstance(answer, Exception):
+        raise OSError(str(answer) or "it says nothing")
+
+
 @contextmanager
 def _existing(address: str) -> Iterator[Cluster]:
     try:  # before there is a client: one without a scheduler takes long to end, and fails
@@ -136,6 +164,7 @@ def _existing(address: str) -> Iterator[Cluster]:
     except ValueError:
         raise ValueError(f"scheduler is {address!r}; give it as tcp://host:8786") from None
     try:
+        _ask(address)
         client = Client(address, timeout=_CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
         raise ValueError(

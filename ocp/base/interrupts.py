@@ -13,6 +13,12 @@ _deferring = False
 _listeners: list[list[int]] = []
 _signals = [signal.SIGINT]
 """What stops the work."""
+_ALARMS = [
+    getattr(signal, name)
+    for name in ("SIGALRM", "SIGVTALRM", "SIGPROF", "SIGUSR1", "SIGUSR2")
+    if hasattr(signal, name)
+]
+"""Signals by which a program limits its own time, or is told something."""
 
 
 @contextmanager
@@ -42,17 +48,50 @@ def keep_interrupts() -> Iterator[None]:
     """Raise KeyboardInterrupt after the block when Ctrl-C came during it.
 
     casadi's solver stops at Ctrl-C, but returns as if the solve had merely failed; where Ctrl-C
-    comes while casadi takes an array, a value is missing afterwards and any error may follow.
+    comes while casadi takes an array, a value is missing afterwards and any error may follow. What
+    the user's own handler of an alarm raises, as for a limit of time, is lost in the same way, and
+    raised after the block as well.
     """
-    with _noting(at_once=True) as came:
+    with _noting(at_once=True) as came, _noting_alarms() as raised:
         try:
             yield
         except Exception as error:
             if came:
                 raise KeyboardInterrupt from error
+            if raised and error is not raised[0]:
+                raise raised[0] from error
             raise
     if came:
         raise KeyboardInterrupt
+    if raised:
+        raise raised[0]
+
+
+@contextmanager
+def _noting_alarms() -> Iterator[list[BaseException]]:
+    """Note what the user's handlers of `_ALARMS` raise during the block."""
+    raised: list[BaseException] = []
+    handlers: dict[int, Any] = {number: signal.getsignal(number) for number in _ALARMS}
+    before = {number: handler for number, handler in handlers.items() if callable(handler)}
+    if not before or threading.current_thread() is not threading.main_thread():
+        yield raised
+        return
+
+    def note(number: int, frame: FrameType | None) -> None:
+        try:
+            before[number](number, frame)
+        except BaseException as error:
+            raised.append(error)
+            raise
+
+    for number in before:
+        signal.signal(number, note)
+    try:
+        yield raised
+    finally:
+        for number, handler in before.items():
+            if signal.getsignal(number) is note:  # the handler may have set another
+                signal.signal(number, handler)
 
 
 @contextmanager
