@@ -24,7 +24,7 @@ from metaheuristics.sharing.pieces import (
 from metaheuristics.sharing.running import run_pieces
 from metaheuristics.sharing.workers import Workers
 from ocp import Front, PointToPoint, QuietarmError
-from ocp.base.checks import whole
+from ocp.base.checks import report_given, whole
 
 SEARCH_RESIDUAL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
@@ -172,6 +172,7 @@ def search_many(
         When it was interrupted before anything was found.
     """
     seeds, where = seeds_of(seed, runs), Workers(workers, scheduler)
+    report_given(report)
     if not isinstance(method, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ValueError(
             f"method is {type(method).__name__}; give one of {', '.join(PRESETS)}, or call "

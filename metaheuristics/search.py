@@ -12,6 +12,7 @@ from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, preset_of
 from metaheuristics.runs.progress import Report
 from metaheuristics.runs.settings import SearchSettings, SearchSpec
 from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
+from ocp.base.checks import report_given
 from ocp.base.files import check_writable
 from ocp.base.interrupts import note_interrupts
 from ocp.profiles.kinds import refuse_other_kinds
@@ -101,6 +102,7 @@ def search(
 
     profile = CycloidPolynomial() if profile is None else profile
     refuse_other_kinds(task, profile)
+    report_given(report)
     bound = profile.default_bound if bound is None else bound
     method, chosen, asked = _chosen(algorithm, task, bound, population, generations, settings)
     loop = Loop(

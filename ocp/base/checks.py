@@ -43,6 +43,13 @@ def of_kind(name: str, value: object, kind: type[T], remedy: str) -> T:
     return value
 
 
+def report_given(report: T) -> T:
+    """What is called with the progress; ValueError where it cannot be called."""
+    if not callable(report):
+        raise ValueError(f"report is {reprlib.repr(report)}; give a function, or leave it out")
+    return report
+
+
 def listed(name: str, values: Any, remedy: str) -> list[Any]:
     """Several values as a list.
 

@@ -210,6 +210,7 @@ class Front(Saved):
             When the array is no table of finite numbers, or does not fit the profile or the bound.
         """
         began = time.perf_counter()
+        refuse_other_kinds(task)
         settings = settings_given({} if settings is None else settings)
         table = table_of(coefficients)
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings, number_of_points
-from ocp.base.checks import listed, positive
+from ocp.base.checks import listed, positive, report_given
 from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
@@ -101,7 +101,7 @@ def epsilon_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points = number_of_points(points)
+    points, report = number_of_points(points), report_given(report)
     at = [positive("residual", one, "m") for one in listed("at", at, "a list, as [1e-3]")]
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     ends = find_ends(sweep, between=between)

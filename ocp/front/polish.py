@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings
-from ocp.base.checks import finite, of_kind
+from ocp.base.checks import finite, of_kind, report_given
 from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
@@ -93,6 +93,7 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     """
     of_kind("front", front, Front, "a Front, as of epsilon_front, search or Front.load")
     front.stillest()  # refuses an empty front
+    report_given(report)
     bound = front.settings.get("bound")
     settings = SolveSettings(
         bound=None if bound is None else finite("bound", bound),

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings, number_of_points
-from ocp.base.checks import finite, listed
+from ocp.base.checks import finite, listed, report_given
 from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
@@ -85,7 +85,7 @@ def weighted_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points = number_of_points(points)
+    points, report = number_of_points(points), report_given(report)
     chosen = None if weights is None else _pairs(weights)
     sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
     sums = _Sums(sweep, find_ends(sweep))

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from ocp.base.threads import one_at_a_time
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.profiles.shaped_cycloid import ShapedCycloid
 from ocp.robustness.uncertain import on_assumed
@@ -45,6 +46,7 @@ def shaped_cycloid(
         When the task's duration is too short for the shaper, an argument is not known, or the
         plant does not vibrate.
     """
+    refuse_other_kinds(task)
     if at not in ("target", "average"):
         raise ValueError(f"at is {at!r}; give 'target' or 'average'")
     task = on_assumed(task)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp.base.checks import not_negative, whole
+from ocp.base.checks import not_negative, report_given, whole
 from ocp.base.readonly import ReadOnlyDict
 from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointProfile
@@ -188,6 +188,7 @@ def evaluate_robustness(
     ranges = checked_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)
+    report = None if report is None else report_given(report)
     population = ErrorPopulation(task, profile, coefficients, ranges)
     largest = np.array(list(ranges.values()))
     shares = np.arange(-_SIDE, _SIDE + 1) / _SIDE

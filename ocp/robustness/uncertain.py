@@ -9,7 +9,7 @@ from itertools import product
 from typing import Any
 
 from models import Body, Expression, JointMotion, Plant
-from ocp.base.checks import finite, of_kind
+from ocp.base.checks import finite, listed, of_kind
 from ocp.base.readonly import ReadOnlyDict
 from ocp.robustness.plants import checked_ranges, with_errors
 from ocp.task.point_to_point import PointToPoint
@@ -125,6 +125,7 @@ def _parts(
 
 
 def _sample(errors: Sequence[float], ranges: Mapping[str, float]) -> tuple[float, ...]:
+    errors = listed("sample", errors, "a list of errors, one for each range, as (0.05,)")
     if len(errors) != len(ranges):
         raise ValueError(f"sample {tuple(errors)} has {len(errors)} errors; give {len(ranges)}")
     for error, (name, most) in zip(errors, ranges.items(), strict=True):

@@ -23,6 +23,7 @@ from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.simulation.buffered import BufferedFunction
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from ocp.simulation.cvodes import (
@@ -83,6 +84,7 @@ def sample_trajectory(
     SolverFailedError
         When CVODES cannot follow the motion.
     """
+    refuse_other_kinds(task, profile)
     grid = np.atleast_1d(np.asarray(times, dtype=float))
     ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
     if not (ordered and np.all(np.isfinite(grid))):
@@ -127,6 +129,7 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     SolverFailedError
         When CVODES cannot follow the motion.
     """
+    refuse_other_kinds(task, profile)
     return resimulated(task, PiecewiseMotion.of_profile(task, profile, coefficients)).motion
 
 

@@ -16,6 +16,7 @@ from ocp.base.checks import whole
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.kinds import refuse_other_kinds
 from ocp.simulation.collocation import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
@@ -307,6 +308,7 @@ def rollout(
     ValueError
         When the coefficients or the duration do not fit the profile.
     """
+    refuse_other_kinds(task, profile)
     steps = default_steps(task) if steps is None else whole("steps", steps, 1)
     function = _compiled(task.plant, profile, steps)
     values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.move))

@@ -98,6 +98,13 @@ def _is_output(text: str) -> Path:
     return check_writable(_named(text))
 
 
+def _is_page(text: str) -> Path:
+    path = _is_output(text)
+    if path is not STDOUT and path.suffix.lower() not in (".html", ".htm"):
+        raise ValueError(f"{text} is for a page of HTML; end its name in .html")
+    return path
+
+
 def _is_picture(text: str) -> Path:
     return check_figure(_named(text))
 
@@ -140,6 +147,7 @@ INPUT = Parsed("file", _is_input)
 PLANT_FILE = Parsed("file", _is_plant_file)
 OUTPUT = Parsed("file", _is_output)
 STATE = Parsed("file", _is_file)
+PAGE = Parsed("page", _is_page)
 PICTURE = Parsed("picture", _is_picture)
 FOLDER = Parsed("folder", _is_folder)
 

@@ -21,8 +21,8 @@ from studies.comparison.groups import check_fronts, checked_names, grouped
 from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
 from studies.registry.methods import Method, method_of
 
-FILL = 1000
-"""About how many points a filled front has."""
+FILL, MOST_FILL = 1000, 100_000
+"""About how many points a filled front has, and at most."""
 _MARGIN = 1.1
 
 Array = NDArray[np.float64]
@@ -226,7 +226,7 @@ def compare_fronts(
     """
     fronts = listed("fronts", fronts, "a list of fronts")
     names = checked_names(names, len(fronts))
-    fill, least = whole("fill", fill, 0), whole("least", least, 1)
+    fill, least = whole("fill", fill, 0, MOST_FILL, "each is a motion"), whole("least", least, 1)
     levels = listed("levels", levels, "a list of residuals in m, as [1e-3]")
     levels = [positive("level", level, "m") for level in levels]
     if not levels:

@@ -13,7 +13,7 @@ from metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hyp
 from ocp import Front
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
-from studies.figures.given import fronts_given
+from studies.figures.given import fronts_given, seeds_given
 from studies.figures.looks import BLUE, look
 from studies.registry.methods import method_of
 
@@ -91,9 +91,9 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        When there is no front, or one is something else.
+        When there is no front, one is something else, or they are of several tasks.
     """
-    fronts = fronts_given(fronts)
+    fronts = seeds_given(fronts)
     ax = axes_or_new(ax)
     histories = [front.history for front in fronts if front.history]
     residual, energy = fronts[0].reference
@@ -136,7 +136,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes; a seed that never reaches that residual is a cross.
     """
-    fronts = fronts_given(fronts)
+    fronts = seeds_given(fronts)
     ax = axes_or_new(ax)
     spread = energies_at(fronts)
     for place, front in enumerate(fronts):

@@ -6,8 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from ocp import Front, Polish, Robustness
 from ocp.base.checks import of_kind
+from ocp.robustness.uncertain import on_assumed
 from studies.comparison.measures import Comparison
 
+_OTHER_TASK = "give what was found for one move of one plant"
 _A_FRONT = "a Front, as of epsilon_front, search or Front.load"
 
 
@@ -21,9 +23,13 @@ def comparison_given(comparison: Comparison) -> Comparison:
     return of_kind("comparison", comparison, Comparison, "what compare_fronts returns")
 
 
-def polish_given(polish: Polish) -> Polish:
-    """What polishing gained; ValueError where it is something else."""
-    return of_kind("polish", polish, Polish, "what ocp.polish_front returns")
+def polished_given(before: Front, polish: Polish) -> tuple[Front, Polish]:
+    """A front and what polishing it gained; ValueError where they are none, or of other tasks."""
+    front_given(before)
+    of_kind("polish", polish, Polish, "what ocp.polish_front returns")
+    if on_assumed(before.task) != on_assumed(polish.front.task):
+        raise ValueError(f"polish is of another task than the front: {_OTHER_TASK}")
+    return before, polish
 
 
 def fronts_given(fronts: Sequence[Front]) -> list[Front]:
@@ -32,6 +38,15 @@ def fronts_given(fronts: Sequence[Front]) -> list[Front]:
     if not listed:
         raise ValueError("there is no front to draw; give a list of one front or more")
     return [of_kind(f"front {i}", front, Front, _A_FRONT) for i, front in enumerate(listed, 1)]
+
+
+def seeds_given(fronts: Sequence[Front]) -> list[Front]:
+    """Fronts of one task; ValueError where they are none, or of several."""
+    listed = fronts_given(fronts)
+    for i, front in enumerate(listed, 1):
+        if front.task != listed[0].task:
+            raise ValueError(f"front {i} is of another task than front 1: {_OTHER_TASK}")
+    return listed
 
 
 def robustness_given(plans: Mapping[str, Robustness]) -> Mapping[str, Robustness]:

@@ -11,7 +11,7 @@ from ocp import Front, Polish
 from ocp.front.checking import RESIDUAL_LIMIT
 from studies.display.words import millimetres, title_of
 from studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
-from studies.figures.given import front_given, polish_given
+from studies.figures.given import front_given, polished_given
 from studies.figures.looks import BLUE, ORANGE, RED
 from studies.registry.methods import method_of
 
@@ -69,7 +69,7 @@ def draw_polish(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, energy against residual, with a legend.
     """
-    before, polish = front_given(before), polish_given(polish)
+    before, polish = polished_given(before, polish)
     ax = axes_or_new(ax)
     for label, front, colour, mark in (
         ("before", before, ORANGE, "^"), ("after", polish.front, BLUE, "o"),
@@ -98,7 +98,7 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, energy saved [%] against residual, on the same scale as `draw_polish`.
     """
-    before, polish = front_given(before), polish_given(polish)
+    before, polish = polished_given(before, polish)
     ax = axes_or_new(ax)
     gains = [(1e3 * gain.residual, 100 * gain.share) for gain in polish.gains if gain.tried]
     ax.plot(*np.reshape(gains, (-1, 2)).T, "o", color=BLUE, markersize=3)
@@ -118,7 +118,7 @@ def sweep_figure(front: Front) -> Figure:
 
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """The picture of `quietarm polish`: `draw_polish` and `draw_savings` side by side."""
-    before, polish = front_given(before), polish_given(polish)
+    before, polish = polished_given(before, polish)
     name = method_of(polish.front.method).label
     figure, axes = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_polish(before, polish, axes[0])

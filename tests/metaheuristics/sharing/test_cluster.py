@@ -171,6 +171,15 @@ def test_where_no_scheduler_answers_it_is_said(monkeypatch):
     assert "\n" not in str(caught.value)
 
 
+def test_what_listens_and_is_no_scheduler_is_told(monkeypatch):
+    monkeypatch.setattr(cluster, "_CONNECT_SECONDS", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        message = rf"no scheduler answers at {address} \(it says nothing\); start one"
+        with pytest.raises(ValueError, match=message):
+            search_many(TASK, "vepso", 2, scheduler=address, **SMALL)
+
+
 @pytest.mark.parametrize("address", ["localhost", "tcp://localhost", "127.0.0.1:8786", ""])
 def test_what_is_no_address_is_said_before_there_is_a_client(monkeypatch, address):
     monkeypatch.setattr(cluster, "Client", None)  # one that cannot begin takes 20 s to end

@@ -142,3 +142,39 @@ def test_ctrl_c_ends_a_solve():
         run.stdout.close()
     assert out == "stopped\n"
     assert run.returncode == 0
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="no alarms here")
+@pytest.mark.parametrize("swallowed", [False, True])
+def test_what_an_alarm_raises_is_not_lost(swallowed):
+    def too_slow(number, frame):
+        raise TimeoutError("too slow")
+
+    @keep_interrupts()
+    @keep_interrupts()
+    def solve():
+        try:
+            signal.raise_signal(signal.SIGALRM)
+        except TimeoutError:  # as casadi's solver does
+            if not swallowed:
+                raise
+
+    before = signal.signal(signal.SIGALRM, too_slow)
+    try:
+        with pytest.raises(TimeoutError, match="too slow"):
+            solve()
+        assert signal.getsignal(signal.SIGALRM) is too_slow
+    finally:
+        signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="no alarms here")
+def test_an_alarm_that_raises_nothing_ends_nothing():
+    heard = []
+    before = signal.signal(signal.SIGALRM, lambda number, frame: heard.append(number))
+    try:
+        with keep_interrupts():
+            signal.raise_signal(signal.SIGALRM)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert heard == [signal.SIGALRM]

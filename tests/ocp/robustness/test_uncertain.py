@@ -190,3 +190,8 @@ def test_it_is_drawn_as_the_assumed_plant(task):
 def test_an_uncertain_plant_is_not_made_uncertain_again(task):
     with pytest.raises(ValueError, match="uncertain already; give the assumed one"):
         UncertainPlant(task.plant, {"frequency": 0.1})
+
+
+def test_samples_are_lists():
+    with pytest.raises(ValueError, match=r"sample is 0.05; give a list of errors, one for each"):
+        UncertainPlant(SingleLinkManipulator(), {"frequency": 0.1}, samples=(0.05,))

@@ -1,11 +1,12 @@
 """What is no front, no plan and no list of them is refused in a line, with the value."""
 
+from dataclasses import replace
 from functools import partial
 
 import pytest
 from matplotlib.figure import Figure
 
-from ocp import evaluate_robustness
+from ocp import Polish, evaluate_robustness
 from studies import figures
 
 
@@ -61,3 +62,17 @@ def test_what_is_no_axes_is_refused_in_a_line(plan, good, kind):
         with pytest.raises(ValueError, match=r"^ax is .*; give one Axes, as") as refused:
             draw(ax=ax)
         assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("draw", [figures.draw_polish, figures.draw_savings])
+def test_a_polish_of_another_task_is_refused(draw, good):
+    other = replace(good, task=replace(good.task, target=1.0))
+    with pytest.raises(ValueError, match="polish is of another task than the front: give what"):
+        draw(other, Polish(good, ()))
+
+
+@pytest.mark.parametrize("draw", [figures.draw_seed_energies, figures.draw_hypervolume])
+def test_seeds_are_of_one_task(draw, good):
+    other = replace(good, task=replace(good.task, target=1.0))
+    with pytest.raises(ValueError, match="front 2 is of another task than front 1: give what was"):
+        draw([good, other])

@@ -16,7 +16,7 @@ from studies.cli.options import (
     FOLDER,
     INPUT,
     NUMBER,
-    OUTPUT,
+    PAGE,
     WHOLE,
     Named,
     method_settings_option,
@@ -60,7 +60,7 @@ def _not_required(command: click.Command) -> click.Command:
 @click.option("--generations", type=WHOLE, help="Generations.")
 @method_settings_option("as in --setting nsga2.crossover=0.7")
 @click.option(
-    "--output", type=OUTPUT, default="study.html", show_default=True, help="Write the report here."
+    "--output", type=PAGE, default="study.html", show_default=True, help="Write the report here."
 )
 @click.option(
     "--front", "given", type=INPUT, multiple=True,

@@ -148,3 +148,9 @@ def test_coefficients_beyond_all_reason_fail_in_one_line(refused):
     message = refused(f"evaluate {MOVE} --coefficients=1e300 {EVERY_FILE}", status=1)
     assert "CVODES could not follow this motion" in message
     assert "largest is 1e+300" in message
+
+
+@pytest.mark.parametrize("name", ["study.pdf", "study", "study.png"])
+def test_a_study_is_a_page_of_html(refused, name):
+    message = refused(f"study {MOVE} --output {name}")
+    assert message == f"quietarm: --output: {name} is for a page of HTML; end its name in .html\n"
