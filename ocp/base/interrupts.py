@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
@@ -71,11 +71,7 @@ def keep_interrupts() -> Iterator[None]:
 def _noting_alarms() -> Iterator[list[BaseException]]:
     """Note what the user's handlers of `_ALARMS` raise during the block."""
     raised: list[BaseException] = []
-    handlers: dict[int, Any] = {number: signal.getsignal(number) for number in _ALARMS}
-    before = {number: handler for number, handler in handlers.items() if callable(handler)}
-    if not before or threading.current_thread() is not threading.main_thread():
-        yield raised
-        return
+    before = _handlers(_ALARMS)
 
     def note(number: int, frame: FrameType | None) -> None:
         try:
@@ -84,14 +80,8 @@ def _noting_alarms() -> Iterator[list[BaseException]]:
             raised.append(error)
             raise
 
-    for number in before:
-        signal.signal(number, note)
-    try:
+    with _handled_by(note, before):
         yield raised
-    finally:
-        for number, handler in before.items():
-            if signal.getsignal(number) is note:  # the handler may have set another
-                signal.signal(number, handler)
 
 
 @contextmanager
@@ -136,12 +126,7 @@ def hear_interrupts() -> Iterator[list[int]]:
 def _noting(at_once: bool) -> Iterator[list[int]]:
     """Note the interrupts that come during the block; `at_once` they act as before, too."""
     came: list[int] = []
-    handlers: dict[int, Any] = {number: signal.getsignal(number) for number in _signals}
-    before = {number: handler for number, handler in handlers.items() if callable(handler)}
-    in_main = threading.current_thread() is threading.main_thread()
-    if not in_main or not before or (at_once and _deferring):
-        yield came
-        return
+    before = {} if at_once and _deferring else _handlers(_signals)
 
     def note(number: int, frame: FrameType | None) -> None:
         came.append(number)
@@ -151,10 +136,29 @@ def _noting(at_once: bool) -> Iterator[list[int]]:
             for heard in _listeners:
                 heard.append(number)
 
+    with _handled_by(note, before):
+        yield came
+
+
+_Handler = Callable[[int, FrameType | None], object]
+
+
+def _handlers(numbers: Iterable[int]) -> dict[int, _Handler]:
+    """What handles these signals now, where a function does; only the main thread may change it."""
+    if threading.current_thread() is not threading.main_thread():
+        return {}
+    handlers: dict[int, Any] = {number: signal.getsignal(number) for number in numbers}
+    return {number: handler for number, handler in handlers.items() if callable(handler)}
+
+
+@contextmanager
+def _handled_by(note: _Handler, before: Mapping[int, _Handler]) -> Iterator[None]:
+    """Let a function handle these signals during the block, and what did before after it."""
     for number in before:
         signal.signal(number, note)
     try:
-        yield came
+        yield
     finally:
         for number, handler in before.items():
-            signal.signal(number, handler)
+            if signal.getsignal(number) is note:  # a handler may have set another
+                signal.signal(number, handler)

@@ -251,3 +251,9 @@ def test_a_variant_without_a_name_of_its_own_does_not_take_its_parents():
 def test_the_list_of_known_plants_is_a_copy():
     known_plants().clear()
     assert "single-link" in known_plants()
+
+
+def test_a_parameter_that_leaves_no_torque_is_refused():
+    weightless = SingleLinkManipulator(alpha1=0.0, alpha2=0.0, c=0.0)
+    with pytest.raises(ValueError, match="'single-link': torque is 0 however the joint moves"):
+        weightless.validate()
