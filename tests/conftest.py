@@ -8,6 +8,8 @@ from hypothesis import Phase, settings
 
 # The tests of two processes stand in the way of each other's threads; numpy reads it when loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Numba compiles pymoo's AGE-MOEA anew in every process, which takes longer than its small searches.
+os.environ.setdefault("NUMBA_OPT", "0")
 
 from models import DualLinkManipulator, Plant
 

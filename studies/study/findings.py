@@ -217,7 +217,8 @@ def _searches(study: Study, method: Method) -> str:
     worst = study.cases[int(np.nanargmax(gaps))]
     where = f", most for {title_of(worst.case.task)}" if len(finite) > 1 else ""
     found = [gap(case.comparison, method, name="gaps") for case in study.cases]
-    alone = percents([share for share in found if isfinite(share)])
+    reached = [share for share in found if isfinite(share)]
+    alone = percents(reached) if reached else "never so still"
     return (
         f"{method.label} takes {percents(finite)} more energy than the best at {level}"
         f"{where}; {alone} with the points of its front alone, no motions between them (median of "

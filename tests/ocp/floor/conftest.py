@@ -8,16 +8,16 @@ from ocp import energy_floor
 from ocp.floor import search
 
 
-@pytest.fixture(scope="session")
-def floor_of():
-    """`energy_floor` that solves nothing twice."""
-    return cache(lambda task, **settings: energy_floor(task, **settings))
-
-
 @pytest.fixture
 def coarse(monkeypatch):
     """Coarser grids, where it is not asked how low a floor is."""
     monkeypatch.setattr(search, "FIRST_INTERVALS", 24)
+
+
+@pytest.fixture
+def coarsest(monkeypatch):
+    """The coarsest, where it is not asked what a floor is either."""
+    monkeypatch.setattr(search, "FIRST_INTERVALS", 12)
 
 
 @pytest.fixture(scope="session")

@@ -19,17 +19,17 @@ LIMITED = {
 }
 
 
-@pytest.fixture(params=LIMITED)
+@pytest.fixture(scope="module", params=LIMITED)
 def quantities(request):
     return LIMITED[request.param]
 
 
-@pytest.fixture(params=["smooth", "free acceleration"])
+@pytest.fixture(scope="module", params=["smooth", "free acceleration"])
 def smooth(request):
     return request.param == "smooth"
 
 
-@pytest.fixture(params=["single link", "arm", "two links"])
+@pytest.fixture(scope="module", params=["single link", "arm", "two links"])
 def program(request, plants, quantities, smooth):
     quiet = {"print_level": 0, "sb": "yes"}
     return FreeProgram(plants[request.param], smooth, STEPS, quantities, quiet)

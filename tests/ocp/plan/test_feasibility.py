@@ -35,7 +35,7 @@ CASES = {
     "acceleration": ("arm", 4, {"acceleration_limit": 2.0}, {"starts": 1}),
     "deflection": ("single link", 4, {"deflection_limit": 0.001}, {"starts": 1}),
     "narrow box": ("arm", 2, {}, {"bound": 0.01}),
-    "torque and speed": ("arm", 4, {"torque_limit": 0.05, "speed_limit": 20.0}, {"starts": 2}),
+    "torque and speed": ("arm", 4, {"torque_limit": 0.05, "speed_limit": 20.0}, {"starts": 1}),
 }
 ALLOWED = 1e-3
 """Share of a limit by which ocp.plan.solver lets a verified peak pass it, if there is no room."""
@@ -108,15 +108,17 @@ def test_the_limit_in_the_way_is_the_one_offered(refused, case, quantity, above)
 
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks, name):
-    # Coefficients from -2 to 2 in turn, then around the best; the error leaves a room of 0.1 %.
+    # Coefficients from -2 to 2 in turn, then twice around the best; the error leaves a room of
+    # 0.1 %.
     task, profile = tasks[name], CycloidPolynomial(1)
 
     def least(coefficients):
         return min((rollout(task, profile, [a]).motion.residual, a) for a in coefficients)
 
     ((_, text),) = QUOTED.findall(refused(f"one term, {name}").split("with the rest kept")[1])
-    _, best = least(np.linspace(-2.0, 2.0, 401))
-    scan, _ = least(best + np.linspace(-0.01, 0.01, 201))
+    _, best = least(np.linspace(-2.0, 2.0, 81))
+    for step in (0.05, 0.0025):
+        scan, best = least(best + np.linspace(-step, step, 41))
     assert scan * 0.9999 <= float(text) <= scan * 1.002
 
 
@@ -189,5 +191,6 @@ def test_a_peak_that_is_low_enough_already_is_no_remedy(tasks):
 def test_an_overdamped_plant_is_brought_to_rest_from_its_stillest_motion():
     # The plain cycloid and random starts lead nowhere; 1e-8 m counts as at rest (docs/accuracy.md).
     plant = SingleLinkManipulator(zeta=5.0)
-    plan = plan_move(PointToPoint(plant, math.pi / 6, 0.8), starts=1)
+    task = PointToPoint(plant, math.pi / 6, 0.8)
+    plan = plan_move(task, CycloidPolynomial(3), starts=1)
     assert plan.residual < 1e-8

@@ -6,7 +6,7 @@ from studies.paper.case import Case
 from studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
 from studies.study.pieces import StudySettings
 
-QUICK = StudySettings(terms=2, points=6, runs=2, population=24, generations=8)
+QUICK = StudySettings(terms=2, points=3, runs=2, population=12, generations=8)
 CASES = (Case(SINGLE_LINK_SIXTH.task), Case(ARM_HALF.task))
 METHODS = ["epsilon", "weighted", "nsga2", "nsga2", "nsga2, polished", "vepso", "vepso",
            "vepso, polished"]  # fmt: skip

@@ -4,12 +4,21 @@ import pytest
 from small_study import CASES, FLOOR, QUICK
 
 import studies.study.pieces as study_pieces
+from studies.display.html_page import element
+from studies.study import page
 from studies.study.work import run_study
 
 
 @pytest.fixture(autouse=True)
 def _floor_at_once(monkeypatch):
     monkeypatch.setattr(study_pieces, "energy_floor", lambda task: FLOOR)
+
+
+@pytest.fixture
+def no_pictures(monkeypatch):
+    """Those of the page that `test_page.py` reads are enough: they take long to draw."""
+    nothing = element("figure", "")
+    monkeypatch.setattr(page, "picture", lambda figure, alternative, caption: nothing)
 
 
 @pytest.fixture(scope="session")

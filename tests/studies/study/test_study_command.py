@@ -33,7 +33,7 @@ def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
 
     monkeypatch.setattr(study_module, "run_study", at_once)
     code, out, err = call(
-        f"{MOVE} --bound 0.3 --terms 2 --points 6 --runs 2 --population 24 --generations 8 "
+        f"{MOVE} --bound 0.3 --terms 2 --points 3 --runs 2 --population 12 --generations 8 "
         "--fronts fronts --quiet"
     )
     assert (code, err) == (0, "")
@@ -56,6 +56,7 @@ def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small,
     assert _file_name("-90 to 45 deg") == "minus-90-to-45-deg"
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkeypatch):
     asked = {}
 

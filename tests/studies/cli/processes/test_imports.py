@@ -10,6 +10,7 @@ HEAVY = {"matplotlib", "moocore", "pymoo", "scipy"}
 # At the end, whatever that is: the modules that are loaded.
 NOTED = """
 import sys
+sys.argv[0] = "quietarm"
 from studies.cli import main
 try:
     main()
