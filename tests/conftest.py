@@ -1,9 +1,14 @@
 """What the tests of every package share."""
 
+import os
+
 import pytest
 from hypothesis import Phase, settings
 
 from models import DualLinkManipulator, Plant
+
+# Numba compiles pymoo's AGE-MOEA anew in every process, which takes longer than its small searches.
+os.environ.setdefault("NUMBA_OPT", "0")
 
 # Derandomised, so that a run on another day gives the same answer; `--hypothesis-profile=search`
 # looks further. No deadline: the first example of a kind compiles.

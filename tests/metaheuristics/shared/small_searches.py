@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from metaheuristics import PAPER_BOX, PopulationObjective, search
+from metaheuristics import PopulationObjective, search
 from metaheuristics.objective.population import CANDIDATE_STEPS
 from models import ArmOnFlexibleLink, SingleLinkManipulator
 from ocp import PointToPoint
@@ -33,12 +33,6 @@ def run(method, task=None, **settings):
 def found(method, task=None, **settings):
     """The same, done once for all tests that ask for it."""
     return run(method, task, **settings)
-
-
-@cache
-def papers_search(method, task):
-    """A search with the paper's settings in the paper's box, done once as well."""
-    return search(task, method, bound=PAPER_BOX[task.plant.name])
 
 
 def exactly(front):

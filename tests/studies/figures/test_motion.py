@@ -25,9 +25,17 @@ HEADS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 TAILS = {".png": b"IEND\xaeB`\x82", ".pdf": b"%%EOF\n", ".svg": b"</svg>\n"}
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def figure(plan):
     return motion_figure(plan, "A title")
+
+
+@pytest.fixture
+def picture():
+    """The smallest one, for where it is not looked at."""
+    drawn = Figure((1, 1))
+    drawn.text(0, 0, "drawn")
+    return drawn
 
 
 def motions(axis):
@@ -253,17 +261,17 @@ def test_motions_of_different_durations_are_refused(plan, task):
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_pictures_are_saved_whole(figure, tmp_path, suffix):
+def test_pictures_are_saved_whole(picture, tmp_path, suffix):
     path = tmp_path / f"move{suffix}"
-    save_figure(figure, path)
+    save_figure(picture, path)
     content = path.read_bytes()
     assert content.startswith(HEADS[suffix])
     assert content.endswith(TAILS[suffix])
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_the_ending_may_be_in_capitals(figure, tmp_path):
-    save_figure(figure, tmp_path / "MOVE.PNG")
+def test_the_ending_may_be_in_capitals(picture, tmp_path):
+    save_figure(picture, tmp_path / "MOVE.PNG")
     assert (tmp_path / "MOVE.PNG").read_bytes().startswith(HEADS[".png"])
 
 
@@ -273,25 +281,25 @@ def test_svg_text_is_well_formed(figure, tmp_path):
     assert root.tag == "{http://www.w3.org/2000/svg}svg"
 
 
-def test_a_picture_takes_the_place_of_an_older_one(figure, tmp_path):
+def test_a_picture_takes_the_place_of_an_older_one(picture, tmp_path):
     path = tmp_path / "move.png"
     path.write_text("old")
-    save_figure(figure, str(path))
+    save_figure(picture, str(path))
     assert path.read_bytes().startswith(HEADS[".png"])
 
 
 @pytest.mark.parametrize("name", ["move.txt", "move.jpg", "move", "move.png.bak", "png"])
-def test_other_endings_are_refused_and_the_endings_named(figure, tmp_path, name):
+def test_other_endings_are_refused_and_the_endings_named(picture, tmp_path, name):
     with pytest.raises(ValueError, match=r"is no picture; .* \.png, \.pdf, \.svg") as refused:
-        save_figure(figure, tmp_path / name)
+        save_figure(picture, tmp_path / name)
     assert str(tmp_path / name) in str(refused.value)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_folder_that_is_not_there_is_refused(figure, tmp_path):
+def test_a_folder_that_is_not_there_is_refused(picture, tmp_path):
     path = tmp_path / "nowhere" / "move.png"
     with pytest.raises(ValueError, match="does not exist") as refused:
-        save_figure(figure, path)
+        save_figure(picture, path)
     assert str(path.parent) in str(refused.value)
     assert list(tmp_path.iterdir()) == []
 
@@ -309,7 +317,7 @@ def test_check_gives_the_path_back_and_writes_nothing(tmp_path):
 
 @pytest.mark.parametrize("there", [True, False])
 @pytest.mark.parametrize("where", ["drawing", "writing"])
-def test_nothing_is_half_written_when_it_fails(figure, tmp_path, monkeypatch, there, where):
+def test_nothing_is_half_written_when_it_fails(picture, tmp_path, monkeypatch, there, where):
     path = tmp_path / "move.png"
     if there:
         path.write_text("old")
@@ -322,11 +330,11 @@ def test_nothing_is_half_written_when_it_fails(figure, tmp_path, monkeypatch, th
         fail()
 
     if where == "drawing":
-        monkeypatch.setattr(figure, "savefig", half)
+        monkeypatch.setattr(picture, "savefig", half)
     else:
         monkeypatch.setattr(os, "replace", fail)
     with pytest.raises((OSError, ValueError), match=r"(?i)no space left on device"):
-        save_figure(figure, path)
+        save_figure(picture, path)
     assert [entry.name for entry in tmp_path.iterdir()] == (["move.png"] if there else [])
     if there:
         assert path.read_text() == "old"

@@ -9,17 +9,17 @@ from pymoo.problems import get_problem
 from metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
 from metaheuristics.algorithms.vepso import VEPSO
 
-# The paper takes 100 particles in a swarm and 200 iterations; 80 are run where they are enough.
+# The paper takes 100 particles in a swarm and 200 iterations; fewer are run where they are enough.
 # IGD is the mean distance of the true front to the archive, HV the archive's hypervolume over the
 # true front's at (1.1, 1.1). Measured is the worst of seeds 0 to 19 after 200 iterations, of seeds
-# 0 to 7 after 80. 40,000 uniformly random candidates get an IGD of 0.06 to 0.09 for 3 variables,
-# 0.2 to 0.6 for 5 and 1.3 to 2.9 for 30.
+# 0 to 7 after 80, of seeds 0 to 3 else. 40,000 uniformly random candidates get an IGD of 0.06 to
+# 0.09 for 3 variables, 0.2 to 0.6 for 5 and 1.3 to 2.9 for 30.
 #
 # These problems have their optima on the bounds, which favours "clip"; "reflect" shows what is left
 # without that help. The thin middle is VEPSO's own: nothing pulls a swarm along the front.
 
 
-def fronts(name, n_var, algorithm, iterations=200):
+def fronts(name, n_var, algorithm, iterations):
     problem = get_problem(name, n_var=n_var)
     result = minimize(problem, algorithm, ("n_gen", iterations), seed=1)
     assert result.algorithm.evaluator.n_eval == 200 * iterations
@@ -34,8 +34,8 @@ def quality(F, true):
 @pytest.mark.parametrize(
     ("name", "iterations"),
     [
-        ("zdt2", 80),  # measured: 4e-4, 1.000
-        ("zdt3", 200),  # measured: 4e-4, 1.000
+        ("zdt2", 60),  # measured: 9e-4, 0.999
+        ("zdt3", 120),  # measured: 10e-4, 1.000
     ],
 )
 def test_default_finds_the_whole_front_of_five_variables(name, iterations):
@@ -45,14 +45,14 @@ def test_default_finds_the_whole_front_of_five_variables(name, iterations):
 
 
 @pytest.mark.parametrize(
-    ("name", "largest_igd", "smallest_hv"),
+    ("name", "iterations", "largest_igd", "smallest_hv"),
     [
-        ("zdt1", 0.01, 0.98),  # measured: 0.0027, 0.995
-        ("zdt3", 0.3, 0.6),  # measured: 0.144, 0.758 (median 0.031)
+        ("zdt1", 200, 0.01, 0.98),  # measured: 0.0027, 0.995
+        ("zdt3", 100, 0.3, 0.6),  # measured: 0.14, 0.768
     ],
 )
-def test_default_finds_the_front_of_thirty_variables(name, largest_igd, smallest_hv):
-    igd, hv = quality(*fronts(name, 30, VEPSO()))
+def test_default_finds_the_front_of_thirty_variables(name, iterations, largest_igd, smallest_hv):
+    igd, hv = quality(*fronts(name, 30, VEPSO(), iterations))
     assert igd < largest_igd
     assert hv > smallest_hv
 
@@ -61,7 +61,7 @@ def test_default_finds_the_corner_of_zdt2_with_thirty_variables():
     # Known weakness: for 17 seeds of 20 both swarms end at the corner (0, 1), from where the
     # concave front is uphill for the second objective; the IGD is then 0.61. What is found is on
     # the front: its mean distance to it was at most 0.036.
-    F, true = fronts("zdt2", 30, VEPSO())
+    F, true = fronts("zdt2", 30, VEPSO(), 100)
     assert moocore.igd(true, ref=F) < 0.1
     assert np.abs(F - [0.0, 1.0]).max(axis=1).min() < 1e-3
 
@@ -69,9 +69,9 @@ def test_default_finds_the_corner_of_zdt2_with_thirty_variables():
 @pytest.mark.parametrize(
     ("name", "iterations", "rule", "boundary", "largest_igd", "smallest_hv"),
     [
-        ("zdt3", 80, PAPER_GROUP, "clip", 2e-3, 0.995),  # measured: 0.0011, 1.000
-        ("zdt2", 200, CONSTRICTION, "reflect", 0.05, 0.85),  # measured: 0.024, 0.932
-        ("zdt1", 80, INERTIA_2002, "clip", 0.01, 0.98),  # measured: 0.0027, 0.996
+        ("zdt3", 60, PAPER_GROUP, "clip", 2e-3, 0.995),  # measured: 0.0015, 0.999
+        ("zdt2", 100, CONSTRICTION, "reflect", 0.05, 0.85),  # measured: 0.036, 0.871
+        ("zdt1", 40, INERTIA_2002, "clip", 0.01, 0.98),  # measured: 0.0013, 0.998
         ("zdt2", 80, INERTIA_2002, "reflect", 0.25, 0.4),  # measured: 0.14, 0.60
     ],
 )
@@ -84,7 +84,7 @@ def test_variants_find_the_front_of_three_variables(
 
 
 def test_bounded_archive_covers_the_front():
-    F, true = fronts("zdt1", 5, VEPSO(archive_size=50), 80)
+    F, true = fronts("zdt1", 5, VEPSO(archive_size=50), 40)
     igd, hv = quality(F, true)
     assert len(F) == 50
     assert igd < 0.015  # measured: 0.0079
@@ -92,8 +92,8 @@ def test_bounded_archive_covers_the_front():
 
 
 def test_three_objectives_cover_the_sphere():
-    F = minimize(get_problem("dtlz2", n_var=8), VEPSO(50), ("n_gen", 200), seed=1).F
-    assert len(F) > 500  # measured: 1339
-    assert np.abs(np.linalg.norm(F, axis=1) - 1).mean() < 0.015  # measured: 0.0049
+    F = minimize(get_problem("dtlz2", n_var=8), VEPSO(50), ("n_gen", 100), seed=1).F
+    assert len(F) > 500  # measured: 872
+    assert np.abs(np.linalg.norm(F, axis=1) - 1).mean() < 0.015  # measured: 0.0088
     assert moocore.hypervolume(F, ref=[1.1] * 3) > 0.73  # measured: 0.769; three corners: 0.331
     assert (F.min(axis=0) < 0.01).all()  # measured: 4e-33
