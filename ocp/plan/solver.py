@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ocp.answers.provenance import Provenance, SolveSettings, Verification
 from ocp.base.errors import SolverFailedError
 from ocp.base.interrupts import note_interrupts
+from ocp.base.status import SolveStatus
 from ocp.base.threads import one_at_a_time
 from ocp.plan.answer import Plan
 from ocp.plan.feasibility import explain, rescued
@@ -37,6 +38,8 @@ _HIDDEN = 5e-3
 """A sampled minimum can lie above the resolved one beside it by this share of the energy."""
 _AGREE = 1e-5
 """Starts whose energies differ by no more than this share agree: the tolerance of a cold run."""
+_ALIKE = 0.01
+"""Motions that break a limit are the same where their peaks differ by no more than this share."""
 _FREEDOM = 4
 """With so many coefficients beyond those that rest takes, still motions hang together, and starts
 that agree are right, in all of 227 random moves. With fewer, still motions lie apart: in 6 of 521
@@ -268,14 +271,18 @@ def least_energy(problem: Problem, kept: list[Solution] | None = None) -> Soluti
 def _agree(problem: Problem, solutions: Sequence[Solution]) -> bool:
     """Whether half of the starts, and more than one, ended at the least energy found.
 
-    Where the joint's path is no linear function of the coefficients, agreement says too little.
+    Where none was solved: whether as many ended at the same motion, which breaks a limit. Where the
+    joint's path is no linear function of the coefficients, agreement says too little.
     """
     motion, enough = problem.program.motion, max(2, len(problem.guesses) / 2)
     if not motion.basis_size or motion.size < motion.states + _FREEDOM:
         return False
     energies = np.array([found.energy for found in solutions if found.status.solved])
-    least = energies.min(initial=np.inf) * (1 + _AGREE)
-    return bool(np.count_nonzero(energies <= least) >= enough)
+    if energies.size:
+        return bool(np.count_nonzero(energies <= energies.min() * (1 + _AGREE)) >= enough)
+    broken = [found for found in solutions if found.status is SolveStatus.INFEASIBLE]
+    peaks = [list(found.peaks.values()) for found in broken]
+    return sum(np.allclose(one, peaks[-1], rtol=_ALIKE) for one in peaks) >= enough
 
 
 def _energy(found: Solution) -> float:

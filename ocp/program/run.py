@@ -126,8 +126,9 @@ class Run:
         stop = self.stop(self.form, start, _FIRST_REACH)
         iterations = stop.iterations
         moved = np.abs(stop.point.unknowns - start.unknowns)[: self.program.motion.size].max()
-        solved = SolveStatus.from_ipopt(stop.return_status).solved
-        if not solved or moved > 0.99 * _FIRST_REACH:
+        status = SolveStatus.from_ipopt(stop.return_status)
+        ended = status.solved or status is SolveStatus.INFEASIBLE
+        if not ended or moved > 0.99 * _FIRST_REACH:
             stop = self.stop(self.form, start)
             iterations += stop.iterations
         return replace(self.solution(self.form, stop), iterations=iterations)

@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from ocp import CycloidGaussians, CycloidPolynomial, plan_move
+from ocp import CycloidGaussians, CycloidPolynomial, SolverFailedError, SolveStatus, plan_move
+from ocp.plan import solver
 from ocp.program.problem import Problem
+from ocp.program.transcription import RESIDUAL
 
 ENOUGH = CycloidPolynomial(6)
 """Four coefficients beyond the two that rest takes for one mode."""
@@ -59,3 +61,31 @@ def test_where_agreement_says_little_all_are_solved(tasks, energies, of, profile
     left = energies([2.0] * 4)
     plan_move(tasks[of], profile, starts=4)
     assert left == []
+
+
+@pytest.mark.parametrize(
+    ("residuals", "solved"),
+    [
+        ([2e-3, 2.01e-3, 1e-3, 1e-3], 2),  # the same motion, within 1 %
+        ([2e-3, 2.1e-3, 2e-3, 1e-3], 3),
+        ([1e-3, 2e-3, 3e-3, 4e-3], 4),
+    ],
+)
+def test_starts_end_when_half_of_them_break_a_limit_at_the_same_motion(
+    tasks, monkeypatch, residuals, solved
+):
+    known, left, ended = Problem.solve, list(residuals), []
+
+    def solve(*given, **settings):
+        peaks = {RESIDUAL: left.pop(0)}
+        return replace(known(*given, **settings), status=SolveStatus.INFEASIBLE, peaks=peaks)
+
+    def note(solutions, *rest):
+        ended.extend(solutions)
+        raise SolverFailedError("enough is known")
+
+    monkeypatch.setattr(Problem, "solve", solve)
+    monkeypatch.setattr(solver, "rescued", note)
+    with pytest.raises(SolverFailedError, match="enough"):
+        plan_move(tasks["single link"], ENOUGH, starts=4)
+    assert len(ended) == solved
