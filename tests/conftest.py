@@ -1,14 +1,17 @@
 """What the tests of every package share."""
 
+import gc
 import os
 
 import pytest
 from hypothesis import Phase, settings
 
-from models import DualLinkManipulator, Plant
-
+# The tests of two processes stand in the way of each other's threads; numpy reads it when loaded.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Numba compiles pymoo's AGE-MOEA anew in every process, which takes longer than its small searches.
 os.environ.setdefault("NUMBA_OPT", "0")
+
+from models import DualLinkManipulator, Plant
 
 # Derandomised, so that a run on another day gives the same answer; `--hypothesis-profile=search`
 # looks further. No deadline: the first example of a kind compiles.
@@ -28,6 +31,17 @@ TOGETHER = {
     "tests/studies/cli/commands/studies/test_reproduce_command.py": "the paper recomputed",
 }
 """Tests of several files that share what takes long, by the beginning of their names."""
+
+
+def pytest_collection():
+    """Collect no garbage while tests are: what is made then stays until the end."""
+    gc.disable()
+
+
+def pytest_collection_finish():
+    """Look no more at what collecting has made, whenever garbage is looked for."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(optionalhook=True)  # where xdist is not installed, nobody calls it
@@ -56,6 +70,20 @@ def two_links():
 def _plants_of_this_test_are_forgotten(monkeypatch):
     """Plants that a test defines are known by name during that test only."""
     monkeypatch.setattr(Plant, "_known", dict(Plant._known))
+
+
+@pytest.fixture
+def quick_pictures(monkeypatch):
+    """Draw pictures coarsely, and do not lay them out: tests/studies/figures looks at them."""
+    from matplotlib.figure import Figure  # most tests draw nothing
+
+    whole = Figure.savefig
+
+    def draw(figure, *given, **settings):
+        figure.set_layout_engine(None)
+        whole(figure, *given, **{**settings, "dpi": 40})
+
+    monkeypatch.setattr(Figure, "savefig", draw)
 
 
 CRANE = """

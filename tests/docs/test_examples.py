@@ -162,7 +162,7 @@ def started():
 
 
 @pytest.fixture
-def called(capfd, monkeypatch):
+def called(capfd, monkeypatch, quick_pictures):
     """Run a command in this process, with rough floors; status, standard output and error."""
     rough = partial(energy_floor, starts=1, tolerance=0.05)
     monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", rough)

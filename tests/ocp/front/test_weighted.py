@@ -1,6 +1,7 @@
 """The front by weighted sums: its points are on the front, its gaps where the front bends away."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -25,10 +26,16 @@ CASES = {
 POINTS = 10
 
 
-@pytest.fixture(scope="module", params=CASES)
+@cache
+def _front_of(name):
+    """The front of a case, found once."""
+    task, bound = CASES[name]
+    return weighted_front(task, bound=bound, points=POINTS, starts=1)
+
+
+@pytest.fixture(params=CASES)
 def case(request):
-    task, bound = CASES[request.param]
-    return task, bound, weighted_front(task, bound=bound, points=POINTS)
+    return *CASES[request.param], _front_of(request.param)
 
 
 def _scaled(front, others):
@@ -60,10 +67,10 @@ def test_no_point_is_above_the_chord_of_its_neighbours(case):
 def test_gaps_are_where_the_front_is_above_its_chord():
     # In a gap, the points by residual limit lie above the straight line between its ends.
     task, bound = CASES["single link"]
-    weighted = weighted_front(task, bound=bound, points=POINTS)
+    weighted = _front_of("single link")
     (begin, end), *others = weighted.gaps
     assert not others
-    whole = epsilon_front(task, bound=bound, points=20)
+    whole = epsilon_front(task, bound=bound, points=20, starts=1)
     inside = (whole.residuals > begin + 1e-3) & (whole.residuals < end - 1e-3)
     assert inside.sum() > 5
     chord = np.interp(whole.residuals, weighted.residuals, weighted.energies)
@@ -71,8 +78,7 @@ def test_gaps_are_where_the_front_is_above_its_chord():
 
 
 def test_a_front_without_gaps_has_none():
-    task, bound = CASES["arm"]
-    front = weighted_front(task, bound=bound, points=POINTS)
+    front = _front_of("arm")
     assert front.gaps == ()
     r, e = _scaled(front, front).T
     assert np.hypot(np.diff(r), np.diff(e)).max() < 4 / POINTS
@@ -80,7 +86,7 @@ def test_a_front_without_gaps_has_none():
 
 def test_given_weights_are_used():
     task, bound = CASES["arm"]
-    front = weighted_front(task, bound=bound, weights=[(1, 1), (1, 3), (0, 1), (2, 0)])
+    front = weighted_front(task, bound=bound, weights=[(1, 1), (1, 3), (0, 1), (2, 0)], starts=1)
     r, e = _scaled(front, front).T
     assert len(front.points) == 4  # the ends, and one for each pair without a 0
     middle = slice(1, -1)
@@ -126,7 +132,7 @@ def test_a_solve_that_fails_is_kept_with_its_reason(monkeypatch):
         return found
 
     monkeypatch.setattr(Sweep, "solve", failing)
-    front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=6)
+    front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=6, starts=1)
     assert front.failures
     assert all(f.reason == SolveStatus.ITERATION_LIMIT.text for f in front.failures)
     assert {*front.failures[0].asked} == {"residual_weight", "energy_weight"}
@@ -137,7 +143,8 @@ def test_ctrl_c_keeps_what_was_found():
         raise KeyboardInterrupt
 
     task, bound = CASES["arm"]
-    front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=6, report=interrupt)
+    profile = CycloidPolynomial(3)
+    front = weighted_front(task, profile, bound=bound, points=6, starts=1, report=interrupt)
     assert not front.complete
     assert len(front.points) == 3
 
@@ -145,7 +152,7 @@ def test_ctrl_c_keeps_what_was_found():
 def test_a_limit_that_the_solvers_steps_pass_is_kept_by_solving_again():
     """The solve that follows is of least energy, another form than that of the weighted sum."""
     task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8, torque_limit=0.15)
-    front = weighted_front(task, CycloidPolynomial(4), bound=0.2, points=5)
+    front = weighted_front(task, CycloidPolynomial(4), bound=0.2, points=3, starts=1)
     assert len(front.points) >= 3
     for point in front.points:  # CVODES again; docs/accuracy.md
         motion = evaluate_coefficients(task, point.coefficients).motion

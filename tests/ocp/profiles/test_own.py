@@ -205,7 +205,7 @@ def test_two_layers_are_planned_as_one(tasks):
 @pytest.mark.parametrize("residual_limit", [0.0, 1e-3])
 def test_a_plan_of_neurons_is_a_minimum(tasks, residual_limit):
     task, profile = tasks["single link"], _Neurons(2)
-    plan = plan_move(task, profile, residual_limit=residual_limit, bound=1.0, starts=3)
+    plan = plan_move(task, profile, residual_limit=residual_limit, bound=1.0, starts=1)
     assert plan.residual <= max(residual_limit * (1 + 1e-6), 1e-8)
     # docs/physics.md: the plain cycloid's 0.09115 J, with 3.382e-2 m of residual max |W|.
     assert plan.energy < 0.09115
@@ -235,7 +235,7 @@ def test_a_plan_of_neurons_is_a_minimum(tasks, residual_limit):
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_a_users_profile_is_planned_with_and_kept(tasks, tmp_path, name, profile):
     # A bound, since neurons that cancel each other may otherwise grow for ever.
-    plan = plan_move(tasks[name], profile, starts=2, bound=1.0)
+    plan = plan_move(tasks[name], profile, starts=1, bound=1.0)
     assert plan.residual < 1e-8
     assert plan.motion == resimulate(plan.task, plan.profile, plan.coefficients)
     plan.save(tmp_path / "plan.json")
@@ -244,15 +244,15 @@ def test_a_users_profile_is_planned_with_and_kept(tasks, tmp_path, name, profile
 
 def test_waves_rest_with_less_energy_than_the_plain_cycloid(tasks):
     # docs/physics.md: 0.09115 J, and the cycloid rings besides.
-    assert plan_move(tasks["single link"], _Waves(5), starts=2).energy < 0.09115
+    assert plan_move(tasks["single link"], _Waves(5), starts=1).energy < 0.09115
 
 
 def test_limits_hold_for_a_profile_whose_coefficients_enter_nonlinearly(tasks):
     task = tasks["arm"]
-    free = plan_move(task, _Neurons(2), starts=2, bound=1.0)
+    free = plan_move(task, _Neurons(2), starts=1, bound=1.0)
     limit = 0.95 * free.motion.peak_torque
     limited = PointToPoint(task.plant, task.target, task.duration, torque_limit=limit)
-    plan = plan_move(limited, _Neurons(2), starts=2, bound=1.0)
+    plan = plan_move(limited, _Neurons(2), starts=1, bound=1.0)
     assert plan.motion.peak_torque <= limit * (1 + 1e-6)
     assert plan.residual < 1e-8
     assert plan.energy > free.energy

@@ -54,6 +54,7 @@ def test_plain_cycloid_peaks():
 # -- eqs (1), (6), (7) typed afresh --
 
 
+@settings(max_examples=40)
 @given(a=coefficients, start=angles, target=angles, duration=durations, fraction=st.floats(0, 1))
 def test_angle_is_eq_1_of_eq_6(a, start, target, duration, fraction):
     T = -1 + 2 * fraction  # eq (7)
@@ -66,6 +67,7 @@ def test_angle_is_eq_1_of_eq_6(a, start, target, duration, fraction):
 # -- boundary conditions: eq (5) --
 
 
+@settings(max_examples=40)
 @given(a=coefficients, start=angles, target=angles, duration=durations)
 def test_joint_rests_at_start_and_target(a, start, target, duration):
     path, ends = _path(a, start, target, duration), [0.0, duration]
@@ -77,6 +79,7 @@ def test_joint_rests_at_start_and_target(a, start, target, duration):
         assert path(ends, order) == pytest.approx([0.0, 0.0], abs=close)
 
 
+@settings(max_examples=40)
 @given(a=coefficients, order=st.integers(1, 3), outside=st.floats(1e-6, 100.0))
 def test_joint_rests_before_and_after_the_move(a, order, outside):
     path = _path(a, -0.3, 1.1, 0.8)
@@ -88,7 +91,7 @@ def test_joint_rests_before_and_after_the_move(a, order, outside):
 # -- derivatives --
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(a=coefficients, start=angles, target=angles, duration=durations, fraction=st.floats(0, 1))
 def test_derivatives_are_those_of_the_angle(a, start, target, duration, fraction):
     # casadi's own derivatives of theta, of order 1 to 3, from the angle alone.
@@ -119,7 +122,7 @@ def test_derivatives_are_the_limits_of_differences(order):
 # -- symmetries --
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(a=coefficients, factor=st.floats(0.1, 10.0), fraction=st.floats(0, 1))
 def test_a_slower_move_is_the_same_in_stretched_time(a, factor, fraction):
     fast, slow = _path(a, -1.0, 2.0, 1.0), _path(a, -1.0, 2.0, factor)
@@ -128,6 +131,7 @@ def test_a_slower_move_is_the_same_in_stretched_time(a, factor, fraction):
         assert stretched == pytest.approx(float(fast(fraction, order)), rel=1e-9, abs=1e-9)
 
 
+@settings(max_examples=40)
 @given(a=coefficients, fraction=st.floats(0, 1), order=st.integers(0, 3))
 def test_the_move_is_proportional_to_its_span(a, fraction, order):
     one, three = _path(a, 0.0, 1.0), _path(a, 0.7, -2.3)
@@ -135,6 +139,7 @@ def test_the_move_is_proportional_to_its_span(a, fraction, order):
     assert three(fraction, order) == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
+@settings(max_examples=40)
 @given(a=coefficients, fraction=st.floats(0, 1), order=st.integers(0, 3))
 def test_alternating_signs_run_the_move_backwards(a, fraction, order):
     # T -> -T in eq (6): U -> 1 - U when a_n -> (-1)^n a_n, n = 1, 2, ...
@@ -144,6 +149,7 @@ def test_alternating_signs_run_the_move_backwards(a, fraction, order):
     assert backwards(fraction, order) == pytest.approx(expected, rel=1e-9, abs=1e-7)
 
 
+@settings(max_examples=40)
 @given(a=coefficients, fraction=st.floats(0, 1), order=st.integers(0, 3))
 def test_a_term_of_coefficient_zero_changes_nothing(a, fraction, order):
     assert _path([*a, 0.0])(fraction, order) == _path(a)(fraction, order)

@@ -8,7 +8,6 @@ import pytest
 from ocp import SolveStatus
 from ocp.program.solution import same_minimum
 from ocp.program.transcription import RESIDUAL
-from ocp.task.point_to_point import LIMITS
 
 STEPS, TERMS = 60, 6
 START = np.zeros(TERMS)
@@ -62,7 +61,7 @@ def test_refining_finds_what_a_cold_solve_finds_with_the_finer_steps(problem, ta
 
 def test_refining_a_limited_motion_finds_what_a_cold_solve_finds(problem, task):
     # Limits hold at other nodes then: it starts from the coefficients.
-    task = replace(task, **dict.fromkeys(LIMITS, 1.0))
+    task = replace(task, torque_limit=1.0)
     free = problem(task, AT_REST, steps=40).solve(START)
     limits = {**AT_REST, "torque": 0.97 * free.peaks["torque"]}
     coarse = problem(task, limits, steps=40)
@@ -83,7 +82,7 @@ def test_a_solution_of_another_form_gives_its_coefficients(problem, tasks):
 
 
 def test_the_same_solve_gives_the_same_solution(problem, tasks):
-    task = tasks["two links"]
+    task = tasks["arm"]
     first, again = (problem(task, {RESIDUAL: 2e-3}, 0.5).solve(START) for _ in range(2))
     assert first.coefficients.tolist() == again.coefficients.tolist()
     assert first.energy == again.energy

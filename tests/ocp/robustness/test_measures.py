@@ -37,21 +37,26 @@ def alone(plan, errors):
     return resimulate(task, plan.profile, plan.coefficients)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def plans(tasks, solved):
     return {name: solved(task, bound=0.5) for name, task in tasks.items()}
+
+
+@pytest.fixture(scope="module", params=RANGES)
+def evaluated(request, plans):
+    """A plan, its ranges, and its robustness with samples in two blocks, the last not full."""
+    plan, ranges = plans[request.param], RANGES[request.param]
+    return plan, ranges, of_plan(plan, ranges, samples=150, seed=4)
 
 
 # -- against single evaluations --
 
 
-@pytest.mark.parametrize("name", RANGES)
-def test_samples_are_what_cvodes_finds_one_by_one(plans, name):
-    plan = plans[name]
-    found = of_plan(plan, RANGES[name], samples=150, seed=4)
+def test_samples_are_what_cvodes_finds_one_by_one(evaluated):
+    plan, ranges, found = evaluated
     scale = found.samples.residual.max()
-    for i in (0, 99, 100, 149):  # of two blocks, the last not full
-        single = alone(plan, dict(zip(RANGES[name], found.errors[i].tolist(), strict=True)))
+    for i in (0, 99, 100, 149):
+        single = alone(plan, dict(zip(ranges, found.errors[i].tolist(), strict=True)))
         # The residual misses 5e-5 of a peak by its samples in time (`RADIANS_A_SAMPLE`); the peak
         # torque is that at the nodes.
         assert found.samples.residual[i] == pytest.approx(
@@ -61,14 +66,12 @@ def test_samples_are_what_cvodes_finds_one_by_one(plans, name):
         assert found.samples.peak_torque[i] == pytest.approx(single.peak_torque, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", RANGES)
-def test_sweeps_change_one_thing_alone(plans, name):
-    plan = plans[name]
-    found = of_plan(plan, RANGES[name], samples=1)
-    assert [sweep.name for sweep in found.sweeps] == list(RANGES[name])
+def test_sweeps_change_one_thing_alone(evaluated):
+    plan, ranges, found = evaluated
+    assert [sweep.name for sweep in found.sweeps] == list(ranges)
     for sweep in found.sweeps:
         assert sweep.errors[[0, 100, -1]] == pytest.approx(
-            [-RANGES[name][sweep.name], 0, RANGES[name][sweep.name]]
+            [-ranges[sweep.name], 0, ranges[sweep.name]]
         )
         single = alone(plan, {sweep.name: float(sweep.errors[-1])})
         assert sweep.figures.residual[-1] == pytest.approx(single.residual, rel=6e-5, abs=1e-7)

@@ -12,7 +12,7 @@ from studies.display.search_progress import SearchDisplay
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
+def folder(tmp_path, monkeypatch, quick_pictures):
     """A folder of the test's own, and standing in it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")

@@ -30,7 +30,7 @@ def done(call, tmp_path, monkeypatch):
 
 
 def test_plan(done, tmp_path):
-    out = done(f"plan {MOVE} --output plan.json --csv move.csv --figure move.svg")
+    out = done(f"plan {MOVE} --starts 1 --output plan.json --csv move.csv --figure move.svg")
     assert "at the worst of 2 tips" in out
     found = Plan.load(tmp_path / "plan.json")
     assert found.task == TASK
@@ -51,7 +51,7 @@ def test_evaluate(done):
 
 @pytest.mark.parametrize("method", ["epsilon", "weighted"])
 def test_front_by_gradient(done, tmp_path, method):
-    done(f"front {MOVE} --method {method} --terms 5 --points 3 --output f.json --figure f.png")
+    done(f"front {MOVE} --method {method} --terms 5 --points 3 --starts 1 --output f.json")
     front = Front.load(tmp_path / "f.json")
     assert front.task == TASK
     assert front.stillest().residual < 1e-8
@@ -81,7 +81,7 @@ def test_study(done, tmp_path, monkeypatch):
     monkeypatch.setattr(studies.study.pieces, "energy_floor", quick)
     done(
         f"study {MOVE} --acceleration-limit 60 --bound 0.5 --terms 5 --points 3 --runs 1 {SMALL} "
-        "--output s.html --fronts fronts --quiet"
+        "--method nsga2 --output s.html --fronts fronts --quiet"
     )
     assert "dual-link" in (tmp_path / "s.html").read_text()
     fronts = [Front.load(path) for path in (tmp_path / "fronts").iterdir()]

@@ -14,9 +14,12 @@ COARSELY = [
     sys.executable,
     "-c",
     "from ocp.floor import search; search.FIRST_INTERVALS = 24\n"
+    "from studies.display import search_progress; search_progress.PLAIN_SECONDS = 0.1\n"
     "from studies.cli import main; main()",
 ]
-"""The command with coarser floors, as a process: how low these are is asked in tests/ocp/floor."""
+"""The command as a process, which says where a search is without delay, and finds coarser
+floors: how low these are is asked in tests/ocp/floor.
+"""
 
 
 def run(line, **settings):

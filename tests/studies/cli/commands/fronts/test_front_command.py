@@ -106,7 +106,7 @@ def test_a_checkpoint_of_another_search_is_refused(call, refused, other, differe
 
 
 def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
-    code, out, err = call(f"{SMALL} --seed 4 --runs 3 --workers 2 --output f.json --figure f.png")
+    code, out, err = call(f"{SMALL} --seed 4 --runs 3 --output f.json --figure f.png")
     fronts = [Front.load(f"f-seed{seed}.json") for seed in (4, 5, 6)]
     assert code == 0
     assert fronts == [directly(seed) for seed in (4, 5, 6)]
@@ -150,27 +150,6 @@ def test_ctrl_c_keeps_the_seeds_that_are_done(call, interrupted_at):
     assert not Front.load("f-seed1.json").complete
     assert out.splitlines()[-2:] == ["wrote f-seed0.json", "wrote f-seed1.json"]
     assert "median" not in out  # of one seed
-
-
-def test_ctrl_c_ends_all_processes_and_keeps_their_fronts(folder, at_a_terminal, ctrl_c):
-    process = at_a_terminal(f"{SMALL} --generations 1000000 --runs 3 --workers 2 --output f.json")
-    heard = set()
-    while not heard >= {"seed 0", "seed 1"}:
-        line = process.stderr.readline()
-        assert line, "the searches ended before the interrupt"
-        heard.add(line.partition(",")[0])
-    out, err = ctrl_c(process)
-    assert process.returncode == 1
-    assert "Traceback" not in err
-    assert err.splitlines()[-1] == (
-        "quietarm: interrupted: 0 of 3 seeds are done, 2 in part; these are kept"
-    )
-    assert out.splitlines()[-2:] == ["wrote f-seed0.json", "wrote f-seed1.json"]
-    for name in ("f-seed0.json", "f-seed1.json"):
-        front = Front.load(name)
-        assert front.points
-        assert len(front.history) < 1_000_000
-        assert front.evaluations == 2 * 8 * len(front.history)
 
 
 def test_what_is_found_beside_a_process_that_died_is_written(call, monkeypatch, front_of):

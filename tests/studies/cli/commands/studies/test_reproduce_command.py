@@ -56,7 +56,15 @@ def test_reproduce_quiet_shows_no_progress(call, reproduced):
     assert call("reproduce --quiet")[2] == ""
 
 
-def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(call, reproduced, folder):
+def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(
+    call, reproduced, folder, monkeypatch
+):
+    # what is in the files: tests/studies/reproduction
+    every = reproduction_files
+    monkeypatch.setattr(
+        "studies.reproduction.report.reproduction_files",
+        lambda *given: [(path, Path.touch) for path, _ in every(*given)],
+    )
     (folder / "results").mkdir()
     (folder / "results" / "notes.txt").write_text("mine")
     code, out, _ = call("reproduce --output results")
