@@ -194,7 +194,8 @@ def _refuse_control_characters(document: Any, place: str = "") -> None:
             _refuse_control_characters(entry, f"{place}.{name}" if place else name)
     elif isinstance(document, list):
         for i, entry in enumerate(document):
-            _refuse_control_characters(entry, f"{place}[{i}]")
+            if isinstance(entry, str | dict | list):  # most are numbers
+                _refuse_control_characters(entry, f"{place}[{i}]")
 
 
 def _in_words(text: str, document: Any, name: str) -> KeyError | ValueError:

@@ -11,7 +11,7 @@ cannot be seen, other ends of lines, and bytes that are no characters, which no 
 
 def has_control_characters(text: str) -> bool:
     """Whether a text holds any character that a terminal obeys instead of showing it."""
-    return any(category(character) in _OBEYED for character in text)
+    return not text.isprintable() and any(category(c) in _OBEYED for c in text)
 
 
 def printable(text: str) -> str:

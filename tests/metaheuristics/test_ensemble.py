@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 
-import dying
 import numpy as np
 import pytest
 from hypothesis import given
@@ -18,7 +17,6 @@ import metaheuristics.ensemble as ensemble
 from metaheuristics import search
 from metaheuristics.ensemble import (
     SEARCH_RESIDUAL,
-    LostSeedsError,
     Spread,
     energies_at,
     energy_at,
@@ -119,10 +117,9 @@ def test_the_fronts_are_those_of_single_searches_whatever_the_workers():
         assert heard == {(4, 3), (5, 3), (6, 3)}
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_a_wrong_setting_is_refused_as_by_one_search(workers):
+def test_a_wrong_setting_is_refused_as_by_one_search():
     with pytest.raises(ValueError, match="generations is 0"):
-        search_many(TASK, "vepso", 3, workers=workers, **{**SMALL, "generations": 0})
+        search_many(TASK, "vepso", 3, **{**SMALL, "generations": 0})
 
 
 def interrupt_at(seeds, generation=1):
@@ -174,19 +171,6 @@ def test_ctrl_c_ends_processes_and_keeps_what_they_found():
         assert found.evaluations == 40 * len(found.history)  # whole generations
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
-def test_a_seed_whose_worker_dies_is_searched_by_another(tmp_path, monkeypatch):
-    order = tmp_path / "order"
-    order.touch()
-    monkeypatch.setenv(dying.ORDER, str(order))
-    settings = {**SMALL, "generations": 20, "profile": dying.Dying(6)}
-    fronts = search_many(TASK, "nsga2", 3, workers=2, **settings)
-    assert not order.exists()  # one did die, in the middle of its search
-    settings["profile"] = CycloidPolynomial(6)  # the same motions
-    for seed, front in enumerate(fronts):
-        assert front.points == search(TASK, "nsga2", seed=seed, **settings).points
-
-
 def test_a_front_goes_to_another_process_and_back_whole():
     # what the processes rely on: every field, also one that is not compared, and read-only entries
     found = search(TASK, "vepso", **SMALL)
@@ -197,16 +181,6 @@ def test_a_front_goes_to_another_process_and_back_whole():
     assert same == found
     assert same.seconds == found.seconds
     assert dataclasses.asdict(same) == dataclasses.asdict(found)
-
-
-def test_a_worker_without_memory_costs_its_own_seed_only():
-    with pytest.raises(LostSeedsError) as caught:
-        search_many(TASK, "nsga2", 2, workers=2, **{**SMALL, "profile": dying.Hungry(2)})
-    assert str(caught.value) == (
-        "lost seed 0 (out of memory), seed 1 (out of memory); 0 of 2 seeds are done; where memory "
-        "ran short, give fewer workers or a smaller population"
-    )
-    assert caught.value.fronts == []
 
 
 def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):

@@ -74,9 +74,9 @@ def test_no_cold_start_is_better_than_the_exact_front(name):
 
 @pytest.mark.parametrize("name", TWO_TERMS)
 def test_no_motion_of_a_fine_grid_is_better_and_the_best_come_near(name):
-    # all motions of two coefficients: 121 by 121 of them
+    # all motions of two coefficients: 91 by 91 of them
     problem = problem_of(name)
-    (front,), line = problem.fronts(), np.linspace(-problem.bound, problem.bound, 121)
+    (front,), line = problem.fronts(), np.linspace(-problem.bound, problem.bound, 91)
     objectives, _ = problem.function()(np.stack(np.meshgrid(line, line), -1).reshape(-1, 2))
     for point in front.points:
         within = objectives[:, 0] <= point.residual
@@ -101,12 +101,12 @@ def test_no_weighted_sum_is_better(name):
 
 def test_the_fronts_are_found_again(monkeypatch):
     # fewer points between, the same at the ends and at the levels
-    monkeypatch.setattr(finding, "POINTS", 4)
+    monkeypatch.setattr(finding, "POINTS", 2)
     problem, begun = problem_of(TWO_TERMS[1]), []
     found = problem.find_again(begun.append)
     assert begun == [problem.name] == list(found)
     (front,), (again,) = problem.fronts(), found.values()
-    assert len(again.points) == 4 + len(finding.LEVELS)
+    assert len(again.points) == 2 + len(finding.LEVELS)
     residuals = [*finding.LEVELS, front.residuals[0] + 1e-9, front.residuals[-1]]
     wanted = least_energies(front, np.array(residuals) * (1 + 1e-6))
     assert least_energies(again, np.array(residuals) * (1 + 1e-6)) == pytest.approx(
@@ -179,7 +179,7 @@ def test_the_robust_residual_is_the_largest_of_three_plants():
     problem = problem_of(ROBUST)
     (front,) = problem.fronts()
     wrong = [with_errors(problem.task.plant.assumed, {"frequency": e}) for e in (-0.1, 0.0, 0.1)]
-    for point in front.points[::8]:
+    for point in front.points[::12]:
         tasks = [replace(problem.task, plant=plant) for plant in wrong]
         residuals = [evaluate_coefficients(one, point.coefficients).residual for one in tasks]
         assert point.residual == pytest.approx(max(residuals), rel=1e-6)

@@ -13,6 +13,7 @@ import subprocess
 import sys
 from functools import partial
 
+import dying
 import pytest
 import small_pieces
 
@@ -24,7 +25,7 @@ from metaheuristics.sharing.pieces import Listener, LostPieceError, Piece
 from metaheuristics.sharing.running import run_pieces
 from metaheuristics.sharing.workers import Workers
 from models import SingleLinkManipulator
-from ocp import PointToPoint, QuietarmError
+from ocp import CycloidPolynomial, PointToPoint, QuietarmError
 
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
 SMALL = {"bound": 0.2, "population": 8, "generations": 3}
@@ -33,11 +34,11 @@ SIGKILL = pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
 
 
 @contextlib.contextmanager
-def dask(*words, until):
+def dask(*words, until, **variables):
     """A command of dask's own, from the line on standard error that holds these words."""
     process = subprocess.Popen(
         [sys.executable, "-m", "dask", *words],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        env={**os.environ, **variables, "PYTHONPATH": os.pathsep.join(sys.path)},
         stderr=subprocess.PIPE, text=True, start_new_session=True,
     )  # fmt: skip
     try:
@@ -58,12 +59,19 @@ def scheduler():
 
 
 @pytest.fixture(scope="module")
-def address(scheduler, tmp_path_factory):
+def order(tmp_path_factory):
+    """The path of a file that orders one of the workers to die."""
+    return tmp_path_factory.mktemp("order") / "order"
+
+
+@pytest.fixture(scope="module")
+def address(scheduler, order, tmp_path_factory):
     """The address of a scheduler that has two workers."""
     _, address = scheduler
     words = f"worker {address} --nworkers 2 --nthreads 1 --no-dashboard --local-directory"
     folder = tmp_path_factory.mktemp("workers")
-    with dask(*words.split(), str(folder), until="Registered to:") as (process, _):
+    dies = {dying.ORDER: str(order)}
+    with dask(*words.split(), str(folder), until="Registered to:", **dies) as (process, _):
         next(line for line in process.stderr if "Registered to:" in line)  # the second one
         yield address
 
@@ -83,6 +91,22 @@ def test_its_workers_find_the_fronts_of_single_searches(address):
     assert fronts == [search(TASK, "vepso", seed=seed, **SMALL) for seed in (0, 1, 2)]
     assert sorted(front.seed for front in done) == [0, 1, 2]
     assert heard == {0, 1, 2}
+
+
+def test_a_wrong_setting_is_refused_as_by_one_search(address):
+    with pytest.raises(ValueError, match="generations is 0"):
+        search_many(TASK, "vepso", 3, scheduler=address, **{**SMALL, "generations": 0})
+
+
+def test_a_worker_without_memory_costs_its_own_seed_only(address):
+    settings = {**SMALL, "profile": dying.Hungry(2)}
+    with pytest.raises(LostSeedsError) as caught:
+        search_many(TASK, "nsga2", 2, scheduler=address, **settings)
+    assert str(caught.value) == (
+        "lost seed 0 (out of memory), seed 1 (out of memory); 0 of 2 seeds are done; where memory "
+        "ran short, give fewer workers or a smaller population"
+    )
+    assert caught.value.fronts == []
 
 
 def test_what_casadi_needs_is_built_once_a_worker(address):
@@ -108,6 +132,17 @@ def test_pieces_wait_for_those_they_come_after_and_failures_are_noted(address):
     assert begun == ["a", "none", "b", "c"]
     with pytest.raises(ValueError, match="give another"):
         run_pieces([Piece("a", "a", small_pieces.refuse)], workers=where, note=QuietarmError)
+
+
+@SIGKILL
+def test_a_seed_whose_worker_dies_is_searched_by_another(address, order):
+    order.touch()
+    settings = {**SMALL, "generations": 20, "profile": dying.Dying(6)}
+    fronts = search_many(TASK, "nsga2", 3, scheduler=address, **settings)
+    assert not order.exists()  # one did die, in the middle of its search
+    settings["profile"] = CycloidPolynomial(6)  # the same motions
+    for seed, front in enumerate(fronts):
+        assert front.points == search(TASK, "nsga2", seed=seed, **settings).points
 
 
 @SIGKILL

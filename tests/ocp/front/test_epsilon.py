@@ -25,7 +25,7 @@ from ocp.plan.solver import first_steps
 from ocp.program.solution import STILL
 from ocp.program.transcription import NonlinearProgram
 
-POINTS = 9
+POINTS = 12
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -96,19 +96,18 @@ def test_its_iterations_are_all_iterations_of_the_solver(monkeypatch):
         return stopped
 
     monkeypatch.setattr(NonlinearProgram, "solve", counting)
-    front = epsilon_front(CASES["arm"][0], CycloidPolynomial(3), bound=0.5, points=3)
+    front = epsilon_front(CASES["arm"][0], CycloidPolynomial(3), bound=0.5, points=4)
     assert front.iterations == sum(counted)
 
 
 def test_limits_of_the_task_are_kept_along_the_front():
     plant = ArmOnFlexibleLink()
-    settings = {"profile": CycloidPolynomial(4), "bound": 0.5, "points": 3, "starts": 1}
-    free = epsilon_front(PointToPoint(plant, math.pi / 2, 0.8), **settings)
+    free = epsilon_front(PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=3, starts=1)
     peak = min(
         resimulate(free.task, free.profile, point.coefficients).peak_torque for point in free.points
     )
     task = PointToPoint(plant, math.pi / 2, 0.8, torque_limit=0.95 * peak)
-    front = epsilon_front(task, **settings)
+    front = epsilon_front(task, bound=0.5, points=3, starts=1)
     for point in front.points:
         motion = resimulate(task, front.profile, point.coefficients)
         assert motion.peak_torque <= task.torque_limit * 1.001
@@ -118,7 +117,7 @@ def test_limits_of_the_task_are_kept_along_the_front():
 def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     # One term has nothing left to arrive at rest with: two conditions, one coefficient.
     task, profile = CASES["arm"][0], CycloidPolynomial(1)
-    front = epsilon_front(task, profile, points=4, starts=2)
+    front = epsilon_front(task, profile, points=5)
     scan = [resimulate(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)]
     stillest = front.stillest()
     assert 0.9 * min(scan) < stillest.residual < 1.001 * min(scan)
@@ -154,8 +153,7 @@ def test_what_one_sweep_misses_the_other_mends(monkeypatch):
     # A sweep down that ends high at one limit: the sweep up finds better, and restarts agree.
     task, bound = CASES["arm"]
     profile = CycloidPolynomial(3)
-    settings = {"bound": bound, "points": 6, "starts": 1}
-    expected = epsilon_front(task, profile, **settings)
+    expected = epsilon_front(task, profile, bound=bound, points=6)
     attempt, spoilt = _Stretch._try, []
 
     def spoil(self, i, guess, **rest):
@@ -166,15 +164,14 @@ def test_what_one_sweep_misses_the_other_mends(monkeypatch):
         return found
 
     monkeypatch.setattr(_Stretch, "_try", spoil)
-    front = epsilon_front(task, profile, **settings)
+    front = epsilon_front(task, profile, bound=bound, points=6)
     assert len(spoilt) == 1
     np.testing.assert_allclose(front.energies, expected.energies, rtol=1e-6)
 
 
 def test_the_same_settings_give_the_same_front():
     task, bound = CASES["arm"]
-    settings = {"bound": bound, "points": 3, "starts": 2}
-    one, two = (epsilon_front(task, CycloidPolynomial(3), **settings) for _ in "12")
+    one, two = (epsilon_front(task, CycloidPolynomial(3), bound=bound, points=3) for _ in "12")
     assert one == two
 
 
@@ -188,7 +185,7 @@ def test_there_is_a_point_at_every_residual_that_is_asked_for(points):
     task, bound = CASES["arm"]
     at, told = (1e-4, 1e-3, 5e-3, 1.0), []  # at 1 m there is no front
     front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=points, starts=1, at=at,
+        task, CycloidPolynomial(3), bound=bound, points=points, at=at,
         report=lambda done, total: told.append((done, total)),
     )  # fmt: skip
     assert len(front.points) == points + 3
@@ -203,8 +200,8 @@ def test_no_weighted_sum_beats_it_at_a_residual_that_is_asked_for():
     """Each is read as a staircase: without a point there, the last step before it would count."""
     task, bound = CASES["single link"]
     profile, level = CycloidPolynomial(4), 1e-3
-    weighted = weighted_front(task, profile, bound=bound, points=8, starts=1)
-    front = epsilon_front(task, profile, bound=bound, points=6, starts=1, at=[level])
+    weighted = weighted_front(task, profile, bound=bound, points=8)
+    front = epsilon_front(task, profile, bound=bound, points=6, starts=2, at=[level])
     assert front.cheapest(level).energy <= weighted.cheapest(level).energy * (1 + 1e-5)
 
 

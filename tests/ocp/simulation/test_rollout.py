@@ -95,7 +95,7 @@ def test_default_steps_are_as_accurate_as_stated(plants, name, start, target, du
     assert max(arrival) < 1e-7
 
 
-@pytest.mark.parametrize("terms", [0, 1, 2, 4, 8, 10])
+@pytest.mark.parametrize("terms", [0, 1, 4, 10])
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_default_steps_are_accurate_for_any_number_of_terms(tasks, name, terms):
     task, profile, random = tasks[name], CycloidPolynomial(terms), np.random.default_rng(terms)
@@ -224,7 +224,7 @@ def test_only_the_span_counts_for_the_single_link(a, shift):
 
 
 @pytest.mark.parametrize("plant_class", [SingleLinkManipulator, ArmOnFlexibleLink])
-@pytest.mark.parametrize("slower", [0.5, 2.0, 5.0])
+@pytest.mark.parametrize("slower", [0.5, 5.0])
 def test_a_slower_plant_moves_the_same_in_stretched_time(plant_class, slower):
     # With omega and c divided by s and time multiplied by s, eqs (8), (9), (13), (14) keep W(t/T)
     # and divide the torque, and so the energy, by s^2.

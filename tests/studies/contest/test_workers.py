@@ -13,7 +13,7 @@ from studies.contest.runs import Run
 pytestmark = pytest.mark.usefixtures("no_pictures")
 
 
-def test_it_stops_and_goes_on_to_the_runs_of_one_process(call, folder, held, monkeypatch):
+def test_it_stops_and_one_process_goes_on_to_the_same_runs(call, folder, held, monkeypatch):
     keep, kept = Contents.keep, []
 
     def keep_and_interrupt(self, what):
@@ -27,6 +27,7 @@ def test_it_stops_and_goes_on_to_the_runs_of_one_process(call, folder, held, mon
         patch.setattr(Contents, "keep", keep_and_interrupt)
         code, _, err = call(f"{LINE} --workers 2 --output shared")
     assert code == 1
+    assert multiprocessing.active_children() == []
     said = re.fullmatch(
         r"quietarm: interrupted: (\d) of 4 pieces of work are done; give the same line again to go "
         r"on\n",
@@ -37,11 +38,10 @@ def test_it_stops_and_goes_on_to_the_runs_of_one_process(call, folder, held, mon
     assert 1 <= int(said[1]) == len(there) < 4
     assert {(key.method, key.seed) for key in kept} <= there
     assert (folder / "shared/contest.html").exists()
-    code, _, err = call(f"{LINE.removesuffix(' --quiet')} --workers 2 --output shared")
+    code, _, err = call(f"{LINE.removesuffix(' --quiet')} --output shared")
     assert code == 0
     assert (
         err.splitlines()[0]
         == f"{len(there)} of 4 runs are in shared; {4 - len(there)} are to be done"
     )
     assert found(folder / "shared") == found(held)
-    assert multiprocessing.active_children() == []

@@ -61,6 +61,14 @@ def test_the_summary_says_what_the_points_reach_without_motions_between(
     assert re.search(rf"NSGA-II takes 25 % more energy .*?; {words} with the points of its", said)
 
 
+def test_the_findings_name_the_holes_of_the_weighted_sum(small):
+    found = small.cases[0]
+    fronts = [run.front for run in found.comparison.runs]
+    fronts[1] = replace(fronts[1], gaps=((0.0, 2e-3), (3e-3, 4e-3)))
+    words = " ".join(case_findings(replace(found, comparison=compare_fronts(fronts))))
+    assert "reaches the front between rest and 2 mm and between 3 mm and 4 mm." in words
+
+
 def test_where_no_motion_is_still_the_findings_say_how_still_the_stillest_is(small):
     found = small.cases[0]
     fronts = [replace(run.front, points=run.front.points[-1:]) for run in found.comparison.runs]
