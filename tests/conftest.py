@@ -2,6 +2,7 @@
 
 import gc
 import os
+from contextlib import contextmanager
 
 import pytest
 from hypothesis import Phase, settings
@@ -72,18 +73,32 @@ def _plants_of_this_test_are_forgotten(monkeypatch):
     monkeypatch.setattr(Plant, "_known", dict(Plant._known))
 
 
+@pytest.fixture(scope="session")
+def coarsely():
+    """Draw pictures coarsely in a block, without a layout: tests/studies/figures looks at them."""
+
+    @contextmanager
+    def drawing():
+        from matplotlib.figure import Figure  # most tests draw nothing
+
+        whole = Figure.savefig
+
+        def draw(figure, *given, **settings):
+            figure.set_layout_engine(None)
+            whole(figure, *given, **{**settings, "dpi": 40})
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(Figure, "savefig", draw)
+            yield
+
+    return drawing
+
+
 @pytest.fixture
-def quick_pictures(monkeypatch):
-    """Draw pictures coarsely, and do not lay them out: tests/studies/figures looks at them."""
-    from matplotlib.figure import Figure  # most tests draw nothing
-
-    whole = Figure.savefig
-
-    def draw(figure, *given, **settings):
-        figure.set_layout_engine(None)
-        whole(figure, *given, **{**settings, "dpi": 40})
-
-    monkeypatch.setattr(Figure, "savefig", draw)
+def quick_pictures(coarsely):
+    """Draw all pictures of the test coarsely."""
+    with coarsely():
+        yield
 
 
 CRANE = """

@@ -327,7 +327,7 @@ def _on_diagonal(blocks: ca.MX, count: int) -> ca.MX:
     return ca.sparsity_cast(blocks, ca.diagcat(*[block] * count))
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 def condensed(
     plant: Plant, profile: JointProfile, steps: int, quantities: tuple[str, ...]
 ) -> Condensed:

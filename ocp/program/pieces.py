@@ -142,7 +142,7 @@ class NodePieces:
         self.second = _over("node_second", inputs, second, nodes, shared)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 def linear_steps(modes: int, by_modes: Pattern, steps: int) -> ca.Function:
     """Matrices of the steps, from state and forcing at the nodes to modes and state.
 

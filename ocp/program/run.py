@@ -32,7 +32,7 @@ _KEPT, _NEARLY_KEPT = 1e-7, 1e-6
 """A motion that passes a scaled constraint by no more keeps it, or will after corrections."""
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=64)
 def _compiled(
     plant: Plant,
     profile: JointProfile,

@@ -226,7 +226,7 @@ def _rest(task: PointToPoint) -> _Rest:
         return _from_unit_states(task.plant, task.target, task.residual_window, max(1, samples))
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 @keep_interrupts()  # casadi loses a Ctrl-C, and what it left unfinished would be kept here
 def _from_unit_states(plant: Plant, target: float, window: float, samples: int) -> _Rest:
     size, short = 2 * plant.modes, math.ceil(math.sqrt(samples))

@@ -248,7 +248,7 @@ def _fractions(steps: int) -> NDArray[np.float64]:
     return np.concatenate([[0.0], (begin + length * np.array(GAUSS_NODES)).ravel(), [1.0]])
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 @keep_interrupts()
 def _figures(plant: Plant, law: Law, shape: tuple[int, int], steps: int) -> BufferedFunction:
     """(given) -> outputs at nodes and ends of all pieces, state on arrival, energy, net work."""

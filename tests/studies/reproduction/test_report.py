@@ -26,12 +26,13 @@ from studies.reproduction.report import (
 
 
 @pytest.fixture(scope="module")
-def report(reproduction, tmp_path_factory):
+def report(reproduction, tmp_path_factory, coarsely):
     """The folder that `write` filled, and what it says it wrote."""
     folder = tmp_path_factory.mktemp("results")
     files = reproduction_files(folder, reproduction, claims(reproduction))
-    for path, write in files:
-        write(path)
+    with coarsely():
+        for path, write in files:
+            write(path)
     return folder, [path for path, _ in files]
 
 
