@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from metaheuristics.problems.pymoo_problem import ExactProblem
 
 FRONTS = Path(__file__).parent / "fronts"
-"""The folder of the exact fronts."""
+"""The exact fronts, in a folder for each plant, where a problem with several has one of its own."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,9 @@ class NamedProblem:
 
     def fronts(self) -> tuple[Front, ...]:
         """The exact fronts from their files: one, or for a third objective one for each limit."""
-        return tuple(_loaded(FRONTS / f"{name}.json") for name in self.tasks())
+        plant = FRONTS / self.task.plant.name
+        folder = plant / self.name if self.peak else plant
+        return tuple(_loaded(folder / f"{name}.json") for name in self.tasks())
 
     def exact(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Coefficients and objectives of the exact front.

@@ -56,7 +56,7 @@ def test_a_problem_has_its_exact_fronts_in_files_of_its_own(name):
 
 def test_the_files_are_of_the_problems_and_small():
     wanted = {f"{name}.json" for problem in PROBLEMS.values() for name in problem.tasks()}
-    files = {path.name: path.stat().st_size for path in FRONTS.iterdir()}
+    files = {path.name: path.stat().st_size for path in FRONTS.rglob("*.json")}
     assert set(files) == wanted
     assert sum(files.values()) < 300_000
 
