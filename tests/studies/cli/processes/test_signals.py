@@ -62,14 +62,14 @@ def test_a_study_keeps_the_pieces_that_were_done(at_a_terminal, folder, piece, n
         r"quietarm: interrupted: (\d) of 6 pieces of work are done; what was found until then is "
         r"kept", err.splitlines()[-1],
     ).groups()  # fmt: skip
-    # a piece begins where a worker is free; those that were at work may have come to their end
-    assert piece - workers <= int(done) <= piece
+    # a piece begins where a worker is free; however late the signal is, it comes before the end
+    assert piece - workers <= int(done) < 6
     written = out.splitlines()[-2:]
     assert written[0] == "wrote study.html"
     fronts = [Front.load(path) for path in (folder / "fronts").iterdir()]
     assert written[1] == f"wrote {len(fronts)} fronts to fronts"
     # every piece gives a front, but for the last, the floor
-    assert sum(front.complete for front in fronts) == min(int(done), 5)
+    assert sum(front.complete for front in fronts) == int(done)
     assert "interrupt" in (folder / "study.html").read_text()
 
 
