@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import multiprocessing
 import os
 import signal
 import sys
@@ -19,6 +20,7 @@ from typing import Any
 from dask import config
 from distributed import Client, LocalCluster, rpc
 from distributed.comm.addressing import get_address_host_port
+from distributed.utils import get_mp_context
 
 from metaheuristics.sharing.workers import Workers
 from ocp import QuietarmError
@@ -38,6 +40,11 @@ _CONFIG = {
     "distributed.comm.timeouts.connect": "300s",
     "distributed.nanny.pre-spawn-environ.PYTHONWARNINGS": "ignore::UserWarning",
 }
+_FORKED = "forkserver" in multiprocessing.get_all_start_methods()
+"""Whether workers can be forked from a process that has loaded what they need, and nothing else."""
+if _FORKED:
+    _CONFIG["distributed.worker.multiprocessing-method"] = "forkserver"
+_PACKAGES = {"distributed", "models", "ocp", "metaheuristics", "studies"}
 _CONNECT_SECONDS = 10
 _GUARD = (
     "the workers could not be started; in a script of your own run it under "
@@ -99,6 +106,7 @@ def _local(number: int) -> Iterator[Cluster]:
         # nothing is left half started
         with note_interrupts() as came, _deaf_to_interrupts(), warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)
+            _load_for_all_workers()
             try:
                 cluster = LocalCluster(
                     n_workers=number,
@@ -121,6 +129,14 @@ def _local(number: int) -> Iterator[Cluster]:
                 _end(cluster)
                 client.close()
                 cluster.close()
+
+
+def _load_for_all_workers() -> None:
+    """Have what is loaded here loaded once for all workers, not by each of them."""
+    if _FORKED:
+        context = get_mp_context()  # which names other modules, for dask's own tests
+        loaded = [name for name in sys.modules if name.partition(".")[0] in _PACKAGES]
+        context.set_forkserver_preload(loaded)
 
 
 def _end(cluster: LocalCluster) -> None:
