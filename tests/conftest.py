@@ -2,6 +2,7 @@
 
 import gc
 import os
+import signal
 from contextlib import contextmanager
 
 import pytest
@@ -12,7 +13,11 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Numba compiles pymoo's AGE-MOEA anew in every process, which takes longer than its small searches.
 os.environ.setdefault("NUMBA_OPT", "0")
 
+
 from models import DualLinkManipulator, Plant
+
+# Shells start what they run in the background with Ctrl-C ignored, of which no test could be told.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # Derandomised, so that a run on another day gives the same answer; `--hypothesis-profile=search`
 # looks further. No deadline: the first example of a kind compiles.

@@ -11,7 +11,7 @@ import nbformat
 
 sys.path.insert(0, str(Path(__file__).parent / "shared"))
 
-from notebook_files import PATHS, SOLUTION, execute, solutions
+from notebook_files import PATHS, SOLUTION, execute, kernel, solutions
 from slides import slide_types
 
 METADATA = {
@@ -21,8 +21,8 @@ METADATA = {
 
 
 def refresh(path):
-    with tempfile.TemporaryDirectory() as folder:
-        notebook, shown = execute(path, folder)
+    with tempfile.TemporaryDirectory() as folder, kernel() as client:
+        notebook, shown = execute(path, folder, client)
     waiting = iter(shown)
     places = slide_types(notebook.cells)
     for number, (cell, place) in enumerate(zip(notebook.cells, places, strict=True), 1):

@@ -9,6 +9,7 @@ from notebook_files import (
     PATHS,
     code_cells,
     execute,
+    kernel,
     pictures,
     printed,
     read,
@@ -23,11 +24,17 @@ A_FEW_LINES = 100
 each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
 
 
+@pytest.fixture(scope="module")
+def client():
+    with kernel() as started:
+        yield started
+
+
 @pytest.fixture(scope="module", params=PATHS, ids=lambda path: path.stem)
-def both(request, tmp_path_factory):
+def both(request, client, tmp_path_factory):
     """A notebook as committed and executed anew, in a folder that is not the repository's."""
     folder = tmp_path_factory.mktemp("notebook")
-    return read(request.param), execute(request.param, folder), folder
+    return read(request.param), execute(request.param, folder, client), folder
 
 
 def kinds(notebook):

@@ -2,12 +2,13 @@
 
 import base64
 import re
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 import nbformat
 from nbclient import NotebookClient
-from nbformat.v4 import new_code_cell
+from nbformat.v4 import new_code_cell, new_notebook
 
 NOTEBOOKS = Path(__file__).parent.parent.parent.parent / "notebooks"
 PATHS = sorted(NOTEBOOKS.glob("*.ipynb"))
@@ -22,8 +23,11 @@ WIDGET = "application/vnd.jupyter.widget-view+json"
 """What a slider shows where a kernel runs; a file keeps the picture that stands beside it."""
 
 STRICT = """
+%reset -f
+import os
 import warnings
 
+os.chdir({folder!r})
 warnings.simplefilter("error")
 warnings.filterwarnings("ignore", module="ipykernel")  # of its own ways, when it shuts down
 """
@@ -66,13 +70,21 @@ def pictures(notebook):
     return [base64.b64decode(picture) for picture in found if picture]
 
 
-def execute(path, folder):
-    """Execute a notebook and its solutions in a clean kernel, with warnings as errors.
+@contextmanager
+def kernel():
+    """What executes notebooks: a kernel that loads modules once for all of them."""
+    client = NotebookClient(new_notebook(), timeout=600, coalesce_streams=True, record_timing=False)
+    with client.setup_kernel():
+        yield client
+
+
+def execute(path, folder, client):
+    """Execute a notebook and its solutions in a folder, with a clean namespace and strict warnings.
 
     Raises nbclient's CellExecutionError, with the cell and its traceback, where one fails.
     """
     notebook = read(path)
-    extra = [new_code_cell(STRICT)]
+    extra = [new_code_cell(STRICT.format(folder=str(folder)))]
     cells = list(extra)
     for cell in notebook.cells:
         cells.append(cell)
@@ -82,14 +94,8 @@ def execute(path, folder):
             found = [new_code_cell(each["code"]) for each in solutions(cell.source)]
             cells += found
             extra += found
-    whole = nbformat.v4.new_notebook(cells=cells, metadata=notebook.metadata)
-    NotebookClient(
-        whole,
-        timeout=600,
-        coalesce_streams=True,
-        record_timing=False,
-        resources={"metadata": {"path": str(folder)}},
-    ).execute()
+    client.nb = new_notebook(cells=cells, metadata=notebook.metadata)
+    client.execute(cleanup_kc=False)
     for number, cell in enumerate(code_cells(notebook), 1):
         _keep_what_lasts(cell, number)
     return Executed(notebook, [_shown_by(cell) for cell in extra[1:]])
