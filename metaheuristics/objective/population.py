@@ -166,7 +166,7 @@ def _blocks(population: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
         yield np.vstack([block, np.zeros((missing, block.shape[1]))]) if missing else block
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 def _compiled(
     plant: Plant, profile: JointProfile, steps: int, limited: tuple[str, ...], often: bool
 ) -> ca.Function:
