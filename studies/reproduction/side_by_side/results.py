@@ -150,7 +150,7 @@ def _wrong_residual(answer: Plan | Floor, joint: PiecewiseMotion) -> float:
         replace(answer.task, plant=with_errors(plant, {FREQUENCY: error}))
         for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
     ]
-    return max(resimulated(task, joint).motion.residual for task in wrong)
+    return max(resimulated(task, joint).residual for task in wrong)
 
 
 def _shaped(case: Case, shaper: str) -> System:

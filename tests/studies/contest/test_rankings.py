@@ -1,0 +1,144 @@
+"""What a contest of enough runs says of them: on the page, in tables and in pictures."""
+
+import math
+import re
+from dataclasses import replace
+
+import pytest
+from small_contest import NAME, rows_of
+
+from studies.contest.folder import Contents
+from studies.contest.measures import Arena, Field, arenas_of
+from studies.contest.report import page
+from studies.contest.report.figures import draw_ranks, ranks_figure
+from studies.contest.report.files import report_files
+from studies.contest.report.page import contest_page
+from studies.contest.statistics import ranking_over
+from studies.display.html_page import element
+
+MISSING = {
+    "vepso": (0.20, 0.21, 0.22, 0.23, 0.24),
+    "nsga2": (0.10, 0.11, 0.12, 0.13, 0.14),
+    "gde3": (0.105, 0.115, 0.125, 0.135, 0.145),
+}
+"""Shares of the exact hypervolume: on every seed the methods have the same order."""
+ORDER = ["nsga2", "gde3", "vepso"]
+STATISTIC = 10.0
+"""Friedman's largest: five blocks times three methods less one; of two degrees of freedom."""
+P_VALUE = math.exp(-STATISTIC / 2)
+CRITICAL = 2.343 * math.sqrt(3 * 4 / (6 * 5))
+"""Nemenyi's, with Demsar's quantile for three (Journal of Machine Learning Research 7 (2006))."""
+APART = 3 * 2 / math.comb(10, 5)
+"""Mann and Whitney's p of five that are all below five, by Holm for the first of three pairs."""
+LABELS = ["NSGA-II", "GDE3", "VEPSO"]
+
+
+@pytest.fixture(scope="module")
+def arena(held):
+    """Five runs of three methods on one problem, that missed what is written down."""
+    (known,) = arenas_of(Contents.of(held))
+    given = known.fields[0].runs[0]
+
+    def run(method, seed, missing):
+        mark = replace(given.marks[-1], hypervolume=(1 - missing) * known.yardstick.hypervolume)
+        front = replace(given.front, seed=seed)
+        return replace(given, method=method, marks=(mark,), front=front)
+
+    fields = [
+        Field(method, known.yardstick, tuple(run(method, *one) for one in enumerate(shares)))
+        for method, shares in MISSING.items()
+    ]
+    return Arena(known.yardstick, tuple(fields))
+
+
+@pytest.fixture(scope="module")
+def arenas(arena):
+    """The same on five problems."""
+
+    def called(name):
+        yardstick = replace(arena.yardstick, problem=name)
+        return Arena(yardstick, tuple(replace(one, yardstick=yardstick) for one in arena.fields))
+
+    return [called(f"{NAME}-{number}") for number in range(5)]
+
+
+def cells(page, heading):
+    """What stands in the first line of a table that has this heading."""
+    line = re.search(rf"<th[^>]*>{heading}</th>(.*?)</tr>", page, re.DOTALL)[1]
+    return re.findall(r"<td[^>]*>([^<]*)", line)
+
+
+def test_medians_are_ranked_problem_by_problem(arenas):
+    found = ranking_over(arenas)
+    assert (found.blocks, found.what) == (5, "problems")
+    assert list(found.methods) == ORDER
+    assert found.ranks == (1, 2, 3)
+    assert ranking_over(arenas[:4]) is None
+
+
+def test_tables_hold_ranks_and_pairs(arenas, folder):
+    for place, write in report_files(arenas, folder):
+        if place.parent.name == "tables":
+            place.parent.mkdir(exist_ok=True)
+            write(place)
+    ranks = rows_of(folder, "ranks")
+    assert [row["method"] for row in ranks] == 6 * ORDER
+    assert [row["on"] for row in ranks[::3]] == [*(one.problem for one in arenas), "all problems"]
+    assert [row["blocks"] for row in ranks[::3]] == 5 * ["5 seeds"] + ["5 problems"]
+    assert [float(row["mean_rank"]) for row in ranks] == 6 * [1, 2, 3]
+    for row in ranks:
+        assert float(row["friedman_statistic"]) == pytest.approx(STATISTIC, rel=1e-6)
+        assert float(row["friedman_p"]) == pytest.approx(P_VALUE, rel=1e-3)
+        assert float(row["critical_difference"]) == pytest.approx(CRITICAL, rel=1e-3)
+    pairs = rows_of(folder, "pairs")
+    known = {
+        (row["method"], row["other"]): float(row["probability_that_it_misses_less"])
+        for row in pairs[:3]
+    }
+    # of 25 pairs of runs, GDE3's is the lower one in 4 + 3 + 2 + 1
+    assert known == {("vepso", "nsga2"): 0, ("vepso", "gde3"): 0, ("nsga2", "gde3"): 15 / 25}
+    assert len(pairs) == 15
+    for row in pairs:
+        if row["method"] == "vepso":
+            assert float(row["p_after_holm"]) == pytest.approx(APART, rel=1e-3)
+
+
+def test_pictures_are_those_of_every_problem_and_of_all(arenas, folder):
+    names = {place.name for place, _ in report_files(arenas, folder)}
+    assert {f"ranks-{one.problem}.png" for one in arenas} < names
+    assert {"ranks-all-problems.png", "ranks-all-problems.pdf"} < names
+
+
+def test_the_picture_joins_what_is_not_told_apart(arenas):
+    found = ranking_over(arenas)
+    ax = draw_ranks(found)
+    said = [text.get_text().strip() for text in ax.texts]
+    assert [f"{label} ({rank:.2f})" for label, rank in zip(LABELS, (1, 2, 3), strict=True)] == said[
+        :3
+    ]
+    assert said[3] == f"critical difference {CRITICAL:.2f}"
+    bars = [line.get_xdata() for line in ax.lines if line.get_linewidth() > 3]
+    # ranks one apart are within the critical difference, those two apart are not
+    assert [[round(float(x)) for x in bar] for bar in bars] == [[1, 2], [2, 3]]
+    assert ranks_figure(found, "all problems").get_suptitle() == "all problems"
+
+
+def test_the_page_says_it_for_a_problem(arena, quick_pictures):
+    text = contest_page([arena])
+    assert "Over 5 seeds. Friedman's test" in text
+    assert f"chi2 = 10, p = {P_VALUE:.2g}, the methods differ at 5 %" in text
+    assert f"critical difference is {CRITICAL:.2f}" in text
+    # a square: how likely a run of the line's method misses less than one of the column's
+    square = text[text.index("How likely a run misses less") :]
+    assert cells(square, "NSGA-II") == ["1.00*", "-", "0.60"]
+    assert cells(square, "VEPSO") == ["-", "0.00*", "0.00*"]
+    assert "Differences are tested at 5 %: by Friedman" in text
+    for author in ("Friedman, Milton", "Mann, Henry B.", "Holm, Sture", "Vargha"):
+        assert author in text
+
+
+def test_the_page_says_it_for_all_problems(arenas, monkeypatch, quick_pictures):
+    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
+    text = contest_page(arenas)
+    assert "Over 5 problems, by medians. Friedman" in text
+    assert text.count("<img") == text.count('src="data:image') == 1
