@@ -13,10 +13,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Numba compiles pymoo's AGE-MOEA anew in every process, which takes longer than its small searches.
 os.environ.setdefault("NUMBA_OPT", "0")
 
-
 from models import DualLinkManipulator, Plant
 
-# Shells start what they run in the background with Ctrl-C ignored, of which no test could be told.
+# A shell lets what it starts in the background ignore Ctrl-C, which these tests send.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # Derandomised, so that a run on another day gives the same answer; `--hypothesis-profile=search`

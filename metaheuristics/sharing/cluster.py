@@ -27,6 +27,8 @@ from ocp import QuietarmError
 from ocp.answers.provenance import versions
 from ocp.base.interrupts import note_interrupts
 
+_FORKED = "forkserver" in multiprocessing.get_all_start_methods()
+"""Whether a process that only loads what all workers need can be forked into each of them."""
 DEATHS = 3
 """Workers that a piece may cost before it is given up."""
 _CONFIG = {
@@ -38,12 +40,9 @@ _CONFIG = {
     "distributed.admin.tick.interval": "1s",
     # On a busy machine everything takes long: dask's warnings about that are left out.
     "distributed.comm.timeouts.connect": "300s",
+    "distributed.worker.multiprocessing-method": "forkserver" if _FORKED else "spawn",
     "distributed.nanny.pre-spawn-environ.PYTHONWARNINGS": "ignore::UserWarning",
 }
-_FORKED = "forkserver" in multiprocessing.get_all_start_methods()
-"""Whether workers can be forked from a process that has loaded what they need, and nothing else."""
-if _FORKED:
-    _CONFIG["distributed.worker.multiprocessing-method"] = "forkserver"
 _PACKAGES = {"distributed", "models", "ocp", "metaheuristics", "studies"}
 _CONNECT_SECONDS = 10
 _GUARD = (
