@@ -16,11 +16,13 @@ from ocp.base.status import SolveStatus
 from ocp.floor.answer import Floor, FloorSettings
 from ocp.floor.search import energy_floor
 from ocp.front.answer import Front, reference_corner
+from ocp.front.crosscheck import CrossCheck, cross_check
 from ocp.front.epsilon import epsilon_front
 from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
 from ocp.front.polish import Gain, Polish, polish_front
 from ocp.front.weighted import weighted_front
 from ocp.plan.answer import Plan, evaluate_coefficients
+from ocp.plan.many import Moves, plan_moves
 from ocp.plan.shaping import shaped_cycloid
 from ocp.plan.solver import plan_move
 from ocp.profiles.gaussians import CycloidGaussians
@@ -30,11 +32,11 @@ from ocp.profiles.polynomial import MAX_TERMS, CycloidPolynomial
 from ocp.profiles.shaped_cycloid import ShapedCycloid
 from ocp.profiles.spline import CycloidSpline
 from ocp.robustness.measures import Robustness, Sweep, evaluate_robustness
-from ocp.robustness.plants import with_errors
 from ocp.robustness.population import Figures
 from ocp.robustness.uncertain import UncertainPlant
 from ocp.robustness.worst import Worst
 from ocp.simulation.cvodes import Trajectory
+from ocp.simulation.errors import with_errors
 from ocp.simulation.objective import Motion
 from ocp.simulation.residual import residual_matrix
 from ocp.simulation.resimulation import resimulate, sample_trajectory
@@ -43,6 +45,7 @@ from ocp.task.point_to_point import PointToPoint
 
 __all__ = [
     "MAX_TERMS",
+    "CrossCheck",
     "CycloidGaussians",
     "CycloidNetwork",
     "CycloidPolynomial",
@@ -60,6 +63,7 @@ __all__ = [
     "JointPath",
     "JointProfile",
     "Motion",
+    "Moves",
     "Plan",
     "PointToPoint",
     "Polish",
@@ -75,12 +79,14 @@ __all__ = [
     "UncertainPlant",
     "Verification",
     "Worst",
+    "cross_check",
     "energy_floor",
     "epsilon_front",
     "evaluate_coefficients",
     "evaluate_robustness",
     "non_dominated",
     "plan_move",
+    "plan_moves",
     "polish_front",
     "reference_corner",
     "residual_matrix",

@@ -16,7 +16,7 @@ _BETWEEN = (0.25, 0.5, 0.75)
 
 
 class Gradient:
-    """IPOPT on the move of a problem, every iteration counted.
+    """The gradient's solver on the move of a problem, every iteration counted.
 
     An iteration has the energy and the residual with their first and second derivatives. It counts
     as the evaluations that differences would take for these: 1 + n + n (n + 1) / 2 for n
@@ -53,7 +53,7 @@ class Gradient:
             When the budget did not suffice; the solution does not count then.
         """
         before = self.iterations
-        found = self._sweep.solve(start, residual_limit)
+        found = self._sweep.best([start], self._sweep.ask(residual_limit))
         size = len(start)
         an_iteration = 1 + size + size * (size + 1) // 2
         self._problem.spend((self.iterations - before) * an_iteration)

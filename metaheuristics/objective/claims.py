@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.objective.population import BLOCK, PopulationObjective
+from metaheuristics.objective.population import PopulationObjective
 from ocp import Front, FrontPoint, JointProfile, Plan, PointToPoint
 from ocp.answers.provenance import AGREEMENT, REST
 from ocp.base.errors import SolverFailedError
@@ -21,7 +21,7 @@ from ocp.simulation.resimulation import resimulate
 from ocp.simulation.rollout import default_steps
 from ocp.task.quantities import QUANTITIES
 
-_SAMPLE = BLOCK
+_SAMPLE = 100
 """Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves
 all of these as they were."""
 
@@ -46,7 +46,7 @@ def agrees(stated: T, gives: T, least: float) -> Any:
 @lru_cache(maxsize=4)
 def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjective:
     """The objective at the steps that fronts are verified with; made once for a task."""
-    return PopulationObjective(task, profile, steps=default_steps(task), often=False)
+    return PopulationObjective(task, profile, steps=default_steps(task))
 
 
 def check_figures(front: Front, name: str, remedy: str = "find the front again") -> None:

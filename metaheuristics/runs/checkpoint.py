@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from ocp import FileFormatError
-from ocp.answers.documents import Document, content_of, read_bytes
-from ocp.answers.older import checkpoint_of_version_1
+from ocp.answers.documents import content_of, read_bytes
 from ocp.base.files import write_whole
 
 KIND, VERSION = "checkpoint", 2
@@ -82,7 +81,7 @@ def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
         document = json.loads(bytes(arrays.pop(_HEADER)))
     except _DAMAGE:
         raise broken from None
-    header = content_of(path, document, KIND, VERSION, {1: _of_version_1})
+    header = content_of(path, document, KIND, VERSION)
     try:
         rest, names = header.pop("state"), header.pop("arrays")
         state = _join(rest, _STATE, arrays)
@@ -98,11 +97,6 @@ def _refuse_compressed(content: bytes) -> None:
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         if sum(entry.file_size for entry in archive.infolist()) > len(content):
             raise ValueError("it is compressed")
-
-
-def _of_version_1(document: Document) -> Document:
-    kept = {name: document.pop(name) for name in ("state", "arrays")}
-    return {**checkpoint_of_version_1(document), **kept}
 
 
 def _split(state: Mapping[str, Any], prefix: str, arrays: dict[str, np.ndarray]) -> dict[str, Any]:

@@ -104,9 +104,7 @@ def verified_points(
     tuple of FrontPoint
         Those that keep the limits and that no other dominates.
     """
-    fine = PopulationObjective(
-        task, profile, steps=default_steps(task), threads=threads, often=False
-    )
+    fine = PopulationObjective(task, profile, steps=default_steps(task), threads=threads)
     values = fine(X)
     kept = np.flatnonzero((values.violations <= WITHIN).all(axis=1)).tolist()
     return non_dominated(

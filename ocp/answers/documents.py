@@ -6,10 +6,9 @@ import json
 import re
 import reprlib
 from codecs import BOM_UTF8
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, TypeVar
 
 import msgspec
@@ -19,9 +18,6 @@ from ocp.base.errors import FileFormatError
 from ocp.base.files import read_whole, write_whole
 
 Document = dict[str, Any]
-Upgrades = Mapping[int, Callable[[Document], Document]]
-"""Functions that bring a document of an older version up to date, by version."""
-NO_UPGRADES: Upgrades = MappingProxyType({})
 T = TypeVar("T")
 
 
@@ -43,9 +39,7 @@ def write_document(path: str | Path, name: str, version: int, content: Document)
     write_whole(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
 
 
-def read_document(
-    path: str | Path, name: str, version: int, kind: type[T], upgrades: Upgrades = NO_UPGRADES
-) -> T:
+def read_document(path: str | Path, name: str, version: int, kind: type[T]) -> T:
     """Read a document of one kind.
 
     Parameters
@@ -55,11 +49,9 @@ def read_document(
     name : str
         What it should hold.
     version : int
-        Newest version of the format that can be read.
+        Version of the format that can be read.
     kind : type
         What the document is to become.
-    upgrades : mapping, optional
-        For every older version that can be read.
 
     Returns
     -------
@@ -80,7 +72,7 @@ def read_document(
             f"{path} is not a {name}: it is not whole, valid JSON in UTF-8{_where(error)}; "
             f"write the {name} again, or save it so"
         ) from None
-    content = content_of(path, document, name, version, upgrades)
+    content = content_of(path, document, name, version)
     with reading(path, name):
         return typed(content, kind)
 
@@ -103,10 +95,8 @@ def read_bytes(path: str | Path) -> bytes:
         raise FileFormatError(str(error)) from None
 
 
-def content_of(
-    path: str | Path, document: Any, name: str, version: int, upgrades: Upgrades = NO_UPGRADES
-) -> Document:
-    """What a document holds beside its format and version, in the shape of today's version.
+def content_of(path: str | Path, document: Any, name: str, version: int) -> Document:
+    """What a document holds beside its format and version.
 
     Arguments and errors as for `read_document`.
     """
@@ -125,16 +115,12 @@ def content_of(
             f"{path} has version {reprlib.repr(found)} of the {name} format and this quietarm "
             f"reads up to {version}; install a newer quietarm"
         )
-    if found == version:
-        return content
-    if found not in upgrades:
-        oldest = min(upgrades, default=version)
+    if found < version:
         raise FileFormatError(
-            f"{path} has version {found} of the {name} format and this quietarm reads "
-            f"{version if oldest == version else f'{oldest} to {version}'}; find the {name} again"
+            f"{path} has version {found} of the {name} format and this quietarm reads {version}; "
+            f"find the {name} again"
         )
-    with reading(path, name):
-        return upgrades[found](content)
+    return content
 
 
 @contextmanager

@@ -6,7 +6,7 @@ import math
 import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import Generic, Literal, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -55,6 +55,7 @@ class SolveSettings:
     seed: int = 0
     steps: int | None = None
     guess: tuple[float, ...] | None = None
+    solver: Literal["sqp", "ipopt"] = "sqp"
 
     def __post_init__(self) -> None:
         limit = finite("residual limit", self.residual_limit, "m")
@@ -65,6 +66,8 @@ class SolveSettings:
             object.__setattr__(self, "bound", coefficient_bound(self.bound))
         object.__setattr__(self, "starts", number_of_starts(self.starts))
         object.__setattr__(self, "seed", whole("seed", self.seed, 0))
+        if self.solver not in ("sqp", "ipopt"):
+            raise ValueError(f"solver is {self.solver!r}; give 'sqp' or 'ipopt'")
         if self.steps is not None:
             steps = whole("steps", self.steps, 2, MOST_STEPS, "finer ones differ by rounding alone")
             object.__setattr__(self, "steps", steps)
@@ -166,8 +169,8 @@ class Provenance(Generic[S]):
     Attributes
     ----------
     method : str
-        ``"ipopt"``, ``"given coefficients"``, ``"evaluated"`` (the only motion of a profile) or
-        the name of a metaheuristic.
+        ``"sqp"``, ``"ipopt"``, ``"given coefficients"``, ``"evaluated"`` (the only motion of a
+        profile) or the name of a metaheuristic.
     settings : dataclass or None
         What was asked of the gradient's solver, the seed included; None where it was not used.
     search : dict

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar, Self, get_type_hints
 
-from ocp.answers.documents import NO_UPGRADES, Upgrades, read_document, write_document
+from ocp.answers.documents import read_document, write_document
 from ocp.answers.encoding import plain, typed
 
 
@@ -21,8 +21,6 @@ class Saved:
     """What it is, in a word: its format is named quietarm-<kind>."""
     version: ClassVar[int]
     """Version of its format; files of later ones are refused."""
-    upgrades: ClassVar[Upgrades] = NO_UPGRADES
-    """Functions that bring a document of an older version up to date, by version."""
 
     def _check_entries(self, *others: str) -> None:
         """Convert the entries to what a file would give back, so that any value made can be loaded.
@@ -77,7 +75,7 @@ class Saved:
         FileFormatError
             When the file holds something else, is not whole, or of a newer version.
         """
-        return read_document(path, cls.kind, cls.version, cls, cls.upgrades)
+        return read_document(path, cls.kind, cls.version, cls)
 
 
 @cache

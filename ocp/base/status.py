@@ -50,15 +50,15 @@ class SolveStatus(Enum):
 
 
 _TEXTS = {
-    SolveStatus.OPTIMAL: "IPOPT found a local optimum.",
-    SolveStatus.ACCEPTABLE: "IPOPT stopped at its looser, acceptable tolerance; more steps or "
+    SolveStatus.OPTIMAL: "The solver found a local optimum.",
+    SolveStatus.ACCEPTABLE: "The solver stopped at a looser, acceptable tolerance; more steps or "
     "another seed may sharpen it.",
-    SolveStatus.INFEASIBLE: "IPOPT converged to a motion that breaks a limit; allow more residual, "
-    "wider limits, a longer duration or more terms.",
-    SolveStatus.ITERATION_LIMIT: "IPOPT ran out of iterations; try another seed, more starts or a "
-    "bound on the coefficients.",
-    SolveStatus.NUMERICAL_TROUBLE: "IPOPT failed numerically; try another seed, fewer terms or a "
-    "bound on the coefficients.",
+    SolveStatus.INFEASIBLE: "The solver converged to a motion that breaks a limit; allow more "
+    "residual, wider limits, a longer duration or more terms.",
+    SolveStatus.ITERATION_LIMIT: "The solver ran out of iterations; try another seed, more starts "
+    "or a bound on the coefficients.",
+    SolveStatus.NUMERICAL_TROUBLE: "The solver failed numerically; try another seed, fewer terms "
+    "or a bound on the coefficients.",
     SolveStatus.NOT_OPTIMISED: "The motion was given, not optimised.",
 }
 

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
-from ocp.answers.documents import Upgrades
 from ocp.answers.motion_answer import MotionAnswer
-from ocp.answers.older import floor_of_version_1
 from ocp.answers.provenance import Provenance, Verification, number_of_starts
 from ocp.base.checks import positive, whole
 from ocp.base.ranges import CountFromOne
@@ -95,7 +93,6 @@ class Floor(MotionAnswer):
 
     kind: ClassVar[str] = "floor"
     version: ClassVar[int] = 2
-    upgrades: ClassVar[Upgrades] = {1: floor_of_version_1}
 
     task: PointToPoint
     free: FreeMotion

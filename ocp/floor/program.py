@@ -13,13 +13,13 @@ from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.status import SolveStatus
 from ocp.floor.grid import first_grid
+from ocp.floor.step_model import by_group
 from ocp.floor.transcription import FreePoint, FreeProgram
 from ocp.profiles.free_motion import FreeMotion
 from ocp.profiles.joint_profile import JointPath
 from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.ipopt import OPTIONS
 from ocp.program.solution import ENERGY
-from ocp.program.step_model import by_group
 from ocp.simulation.collocation import GAUSS_WEIGHTS, NODES
 from ocp.task.point_to_point import PointToPoint
 from ocp.task.quantities import ask_for_jerk

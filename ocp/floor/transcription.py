@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import Plant
+from ocp.floor.step_model import JOINT, LiftedStep, groups_of
+from ocp.floor.symbols import split
 from ocp.profiles.free_motion import joint_after
 from ocp.program.ipopt import LagrangianHessian, Options, Point, Stop, ipopt, run_ipopt
-from ocp.program.step_model import JOINT, LiftedStep, groups_of
-from ocp.program.symbols import split
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from ocp.task.quantities import QUANTITIES
 

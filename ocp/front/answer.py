@@ -12,8 +12,6 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp.answers.documents import Upgrades
-from ocp.answers.older import front_of_version_2
 from ocp.answers.provenance import Setting, settings_given, versions
 from ocp.answers.saved import Saved
 from ocp.base.checks import not_negative, of_kind
@@ -84,7 +82,6 @@ class Front(Saved):
 
     kind: ClassVar[str] = "front"
     version: ClassVar[int] = 3
-    upgrades: ClassVar[Upgrades] = {2: front_of_version_2}  # 1 was before any release
 
     task: PointToPoint
     profile: JointProfile

@@ -66,7 +66,7 @@ def front_of(
         points=non_dominated(point for point in found if isinstance(point, FrontPoint)),
         method=method,
         settings={"bound": settings.bound, "points": points, "starts": settings.starts,
-                  "steps": sweep.steps, **stated},
+                  "steps": sweep.steps, "solver": settings.solver, **stated},
         seed=settings.seed,
         reference=reference,
         iterations=sweep.iterations + iterations,

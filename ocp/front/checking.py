@@ -11,24 +11,30 @@ from ocp.base.errors import SolverFailedError
 from ocp.base.interrupts import note_interrupts
 from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import Sweep
-from ocp.plan.verification import OF_A_PLAN, Care, verified
-from ocp.program.solution import Solution
-from ocp.program.transcription import RESIDUAL
-from ocp.simulation.resimulation import Resimulation
+from ocp.plan.verification import OF_A_PLAN, Care, Checked, verified
+from ocp.program.batch import batch
+from ocp.program.solution import RESIDUAL, STILL, Solution
+from ocp.robustness.uncertain import UncertainPlant
+from ocp.simulation.cvodes import residual_of
+from ocp.simulation.resimulation import resimulate
+from ocp.simulation.rollout import default_steps
 
 RESIDUAL_LIMIT = "residual_limit"
 _TIME_AFTER_CTRL_C = 0.6
 """How long [s] points are still checked after Ctrl-C."""
+_EVERY, _FINER, _SAME = 10, 3, 1e-6
+"""CVODES checks one point in so many; the others are checked on so many times the solver's steps;
+the share by which the two may differ."""
 SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""
 
 
 def care_of(sweep: Sweep) -> Care:
     """How exact a point between the ends must be: less than a plan; its steps are doubled once."""
-    return Care(agreement=1e-4, enough_steps=2 * sweep.steps, most_steps=2 * sweep.steps)
+    return Care(agreement=1e-4, most_steps=2 * sweep.steps)
 
 
-def front_point(sweep: Sweep, found: Solution, simulated: Resimulation) -> FrontPoint:
+def front_point(sweep: Sweep, found: Solution, simulated: Checked) -> FrontPoint:
     """A solution's coefficients with the figures of the independent integrator."""
     coefficients = sweep.profile.checked(found.coefficients)
     return FrontPoint(coefficients, simulated.residual, simulated.energy)
@@ -65,7 +71,8 @@ def checked(
     try:
         limit = np.inf if free else found.residual
         care = OF_A_PLAN if free else care_of(sweep)
-        point, simulated, _ = verified(sweep.problem(limit), found, care=care, kept=kept)
+        solver = sweep.settings.solver
+        point, simulated, _ = verified(sweep.program, sweep.ask(limit), found, solver, care, kept)
     except SolverFailedError as error:
         return FailedPoint(asked, str(error))
     sweep.iterations += point.iterations - found.iterations  # more steps, or tighter limits
@@ -98,11 +105,43 @@ def all_checked(
     """
     done, until = dict[int, FrontPoint | FailedPoint](), np.inf
     with note_interrupts() as came:
+        fine = _by_finer_rule(sweep, [one for one, _ in found])
         evenly = sorted(range(len(found)), key=lambda i: f"{i:032b}"[::-1])  # ever finer
         for i in evenly:
+            if i in fine:
+                done[i] = fine[i]
+                continue
             if interrupted or came:
                 until = min(until, time.monotonic() + _TIME_AFTER_CTRL_C)
             if time.monotonic() > until:
                 break
             done[i] = checked(sweep, *found[i])
     return [done[i] for i in sorted(done)], len(done) == len(found)
+
+
+def _by_finer_rule(sweep: Sweep, found: Sequence[Solution]) -> dict[int, FrontPoint]:
+    """Points with the figures of many more steps, all in a call, where CVODES confirms every tenth.
+
+    None where it does not, where the solver's own figures differ, or where limits are set, which
+    also have to hold between the nodes.
+    """
+    task, profile = sweep.task, sweep.profile
+    if len(found) < _EVERY or task.limits or isinstance(task.plant, UncertainPlant):
+        return {}
+    steps = max(default_steps(task), _FINER * sweep.steps)
+    table = np.array([one.coefficients for one in found])
+    move, no_errors = np.repeat([task.move], len(table), axis=0), np.zeros((len(table), 0))
+    values = batch(task.plant, profile, steps).values(table, move, no_errors)
+    points = dict[int, FrontPoint]()
+    for i, (one, energy) in enumerate(zip(found, values.energy.tolist(), strict=True)):
+        if abs(one.energy - energy) <= care_of(sweep).agreement * energy:
+            residual = residual_of(task, values.arrival[i])
+            points[i] = FrontPoint(profile.checked(one.coefficients), residual, energy)
+    for i in list(points)[::_EVERY]:
+        exact, point = resimulate(task, profile, points[i].coefficients), points[i]
+        least = _SAME * exact.residual + STILL
+        if abs(exact.energy - point.energy) > _SAME * exact.energy:
+            return {}
+        if abs(exact.residual - point.residual) > least:
+            return {}
+    return points

@@ -11,10 +11,9 @@ from ocp.front.checking import RESIDUAL_LIMIT, SAMPLING, care_of, checked, front
 from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import SAME, Sweep
 from ocp.plan.feasibility import least_peaks
-from ocp.plan.solver import least_energy
+from ocp.plan.starts import from_starts
 from ocp.plan.verification import MOST_SOLVER_STEPS, verified
-from ocp.program.solution import ENERGY, STILL, Solution
-from ocp.program.transcription import RESIDUAL
+from ocp.program.solution import ENERGY, RESIDUAL, STILL, Solution
 from ocp.robustness.uncertain import UncertainPlant, on_assumed
 
 _LESS_AND_LESS = (1.0, 0.1, 0.02, 2e-3)
@@ -85,11 +84,9 @@ def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
     if between and isinstance(sweep.task.plant, UncertainPlant):
         return _of_uncertain(sweep)
     still = _at_rest(sweep)  # first: it settles the number of steps
-    free = sweep.problem(np.inf)
-    cheapest = least_energy(free)
-    sweep.iterations += cheapest.iterations
+    cheapest = _best(sweep, np.inf)
     if still is None:
-        least = least_peaks(free.limits, free.guesses, free.least)
+        least = least_peaks(sweep.program, sweep.ask(), sweep.guesses)
         if RESIDUAL not in least:
             return Ends(
                 cheapest,
@@ -97,10 +94,20 @@ def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
                 cheapest,
             )
         limit = least[RESIDUAL].peaks[RESIDUAL] * (1 + SAMPLING)
-        found = sweep.solve(least[RESIDUAL].coefficients, limit)
+        found = sweep.best([least[RESIDUAL].coefficients], sweep.ask(limit))
         found = found if found.status.solved else least[RESIDUAL]
         still = found, checked(sweep, found, {RESIDUAL_LIMIT: limit})
     return Ends(*still, cheapest)
+
+
+def _best(sweep: Sweep, residual_limit: float) -> Solution:
+    """The best of all starts; KeyboardInterrupt after Ctrl-C."""
+    ask, solver = sweep.ask(residual_limit), sweep.settings.solver
+    found = from_starts(sweep.program, ask, sweep.guesses, solver)
+    sweep.iterations += found.solution.iterations
+    if found.stopped:
+        raise KeyboardInterrupt
+    return found.solution
 
 
 def _of_uncertain(sweep: Sweep) -> Ends:
@@ -114,26 +121,22 @@ def _of_uncertain(sweep: Sweep) -> Ends:
     assumed = find_ends(alone)
     sweep.steps, sweep.iterations = alone.steps, sweep.iterations + alone.iterations
     guesses = [assumed.cheapest.coefficients, assumed.still.coefficients]
-    free = replace(sweep.problem(np.inf), guesses=guesses)
-    cheapest = free.solve(assumed.cheapest.coefficients)
-    if not cheapest.status.solved:
-        cheapest = least_energy(free)
-    sweep.iterations += cheapest.iterations
+    cheapest = sweep.best(guesses, sweep.ask())
     still = cheapest
     for weight in _LESS_AND_LESS if cheapest.residual > STILL else ():
         weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / assumed.still.energy}
-        found = sweep.solve(still.coefficients, minimise=weights)
+        found = sweep.best([still.coefficients], sweep.ask(minimise=weights))
         still = found if found.status.solved else still
     return Ends(still, checked(sweep, still, {RESIDUAL_LIMIT: still.residual}), cheapest)
 
 
 def _at_rest(sweep: Sweep) -> tuple[Solution, FrontPoint] | None:
     try:
-        found = least_energy(sweep.problem(0.0))
-        care = replace(care_of(sweep), enough_steps=sweep.steps, most_steps=MOST_SOLVER_STEPS)
-        found, _, sweep.steps = verified(sweep.problem(0.0), found, care=care)
-        end, simulated, _ = verified(sweep.problem(0.0), found)
+        first, ask, solver = _best(sweep, 0.0), sweep.ask(0.0), sweep.settings.solver
+        care = replace(care_of(sweep), most_steps=MOST_SOLVER_STEPS)
+        found, _, sweep.steps = verified(sweep.program, ask, first, solver, care)
+        end, simulated, _ = verified(sweep.program, ask, found, solver)
     except SolverFailedError:
         return None
-    sweep.iterations += end.iterations
+    sweep.iterations += end.iterations - first.iterations
     return found, front_point(sweep, end, simulated)

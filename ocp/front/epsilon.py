@@ -2,40 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import pairwise
 
 import numpy as np
 
 from ocp.answers.provenance import SolveSettings, number_of_points
 from ocp.base.checks import listed, positive, report_given
+from ocp.base.interrupts import note_interrupts
 from ocp.base.threads import one_at_a_time
 from ocp.front.answer import Front
 from ocp.front.assembly import front_of
 from ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
 from ocp.front.ends import Ends, find_ends
 from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.sweep import Guess, Report, Sweep, better, no_report
+from ocp.front.sweep import Guess, InterruptedSolveError, Report, Sweep, better, no_report
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.program.solution import Solution
+from ocp.program.solution import STILL, Solution
+from ocp.program.solving import Solver
 from ocp.task.point_to_point import PointToPoint
 
-_DOUBT = 1e-4
-"""Random starts are added where the sweeps differ by more than this share of the energy.
-Smaller differences are within the error of the fixed steps: the better of the two is taken."""
-_SCOUTS = 12
-"""Rough limit on the steps along the front that find the spacing of its points."""
+_SCOUTS = 5
+"""Limits between the ends at which all starts are tried; the points lie between those."""
+_AUDITED = 4
+"""One point in so many is also tried from random starts."""
+_ROUNDS = 3
+"""Most times that points are solved again from better neighbours."""
 _JUST_BELOW = 1 - 1e-4
 """The residual limit is this share of the residual wanted: the verified one may be a little
 above."""
-_STRIDE = 4
-"""Stride of the sweep back while both sweeps agree, and of the points that get random starts where
-they do not; a better motion is carried on to the points between."""
 
-_Points = tuple[list[FrontPoint | FailedPoint], bool]
-"""The points, and whether all were done."""
+Best = dict[float, Solution]
+"""The best solution until now at each residual limit [m]."""
 
 
 @one_at_a_time
@@ -51,13 +51,13 @@ def epsilon_front(
     steps: int | None = None,
     between: bool = True,
     report: Report = no_report,
+    solver: Solver = "sqp",
 ) -> Front:
     """Find the front of residual and energy by the gradient, least energy at each residual limit.
 
-    Both ends are found first, from several starts. A few points along the front tell how to space
-    the limits so that the points lie evenly in both objectives. The limits are swept from the cheap
-    end, each solve starting from the solution beside it, and swept back from the still end; where
-    the two disagree, random starts are added, and neighbours start again from any better solution.
+    Both ends are found first, from several starts. Then come a few limits between them, from the
+    same starts, all at once. These tell how to space the points so that they lie evenly in both
+    objectives; all points are then solved at once, each from the solutions on either side.
 
     Parameters
     ----------
@@ -82,6 +82,8 @@ def epsilon_front(
         error within the ranges; else at the plant's samples alone, as in a search.
     report : callable, optional
         Called with the number of points done and of all.
+    solver : {"sqp", "ipopt"}
+        As for `plan_move`.
 
     Returns
     -------
@@ -103,50 +105,64 @@ def epsilon_front(
     profile = CycloidPolynomial() if profile is None else profile
     points, report = number_of_points(points), report_given(report)
     at = [positive("residual", one, "m") for one in listed("at", at, "a list, as [1e-3]")]
-    sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
+    sweep = Sweep(
+        task,
+        profile,
+        SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver),
+    )
     ends = find_ends(sweep, between=between)
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
     found.append(checked(sweep, ends.cheapest, asked, free=True))
     also = _between(ends, at)
     total = points + len(also)
-    report(2, total)
+    first, best, complete = Best(), Best(), True
     try:
-        limits = sorted([*_spaced_limits(sweep, ends, points), *also], reverse=True)
-        stretch = _Stretch(sweep, limits, total, report)
-        inner, complete = stretch.run(ends.cheapest, ends.still.coefficients)
-        found += inner
+        report(2, total)
+        scouts = _scouted(sweep, ends, points, first)
+        limits = sorted([*_spaced_limits(ends, scouts, points), *also])
+        report(2 + len(limits) // 3, total)
+        _solve_between(sweep, ends, scouts, limits, best)
+        report(total, total)
     except KeyboardInterrupt:
-        complete = False
+        best, complete = {**first, **best}, False
+    with note_interrupts() as late:
+        tried = [(one, {RESIDUAL_LIMIT: limit}) for limit, one in best.items()]
+        solved = [(one, ask) for one, ask in tried if one.status.solved]
+        failed = [FailedPoint(ask, one.status.text) for one, ask in tried if not one.status.solved]
+        inner, whole = all_checked(sweep, solved, interrupted=not complete)
+        found = [*found, *(failed if complete else []), *inner]
+    complete = complete and whole and not late
     front = front_of(sweep, "epsilon", found, points, complete=complete, between=between)
     extra = {"at": ", ".join(f"{residual:g}" for residual in at)} if at else {}
     return replace(front, settings={**front.settings, **extra})
 
 
-def _spaced_limits(sweep: Sweep, ends: Ends, points: int) -> list[float]:
-    """Residual limits, falling, at which the points between the ends lie at even distances.
+def _scouted(sweep: Sweep, ends: Ends, points: int, best: Best) -> list[Solution]:
+    """Solutions at some limits between the ends, from both ends and a random start."""
+    if ends.are_one or points == 2:
+        return []
+    count = max(2, min(_SCOUTS, points - 2))
+    shares = (np.arange(1, count + 1) / (count + 1)) ** 1.5
+    limits = (ends.still.residual + shares * ends.width).tolist()
+    starts = [ends.still.coefficients, ends.cheapest.coefficients, *sweep.guesses[1:2]]
+    _improve(sweep, best, [(limit, start) for limit in limits for start in starts])
+    return [best[limit] for limit in limits if best[limit].status.solved]
 
-    Scouts go along the front from its cheap end in steps of about equal length, both objectives
-    scaled to the ends, by the slope that the solver's multiplier gives.
+
+def _spaced_limits(ends: Ends, scouts: Sequence[Solution], points: int) -> list[float]:
+    """Residual limits at which the points between the ends lie at even distances.
+
+    Both objectives are scaled to the ends.
     """
     if ends.are_one or points == 2:
         return []
-    stillest, width, height = ends.still.residual, ends.width, ends.height
-    scouts, limit = [ends.cheapest], ends.cheapest.residual
-    stride = 2 * width / min(_SCOUTS, points)  # the scaled front is between sqrt(2) and 2 long
-    while True:
-        limit -= stride / np.hypot(1.0, scouts[-1].slope * width / height)
-        if limit <= stillest + stride / 4:
-            break
-        found = sweep.solve(scouts[-1], limit)
-        if found.status.solved:
-            scouts.append(found)
-    residuals = np.array([*(one.residual for one in scouts), stillest])
-    energies = np.array([*(one.energy for one in scouts), ends.still.energy])
-    along = np.hypot(np.diff(residuals) / width, np.diff(energies) / height).cumsum()
+    known = [ends.still, *scouts, ends.cheapest]
+    residuals = np.array([one.residual for one in known])
+    energies = np.array([one.energy for one in known])
+    along = np.hypot(np.diff(residuals) / ends.width, np.diff(energies) / ends.height).cumsum()
     along = np.concatenate([[0.0], along])
-    spaced = np.interp(np.linspace(0.0, along[-1], points)[1:-1], along, residuals)
-    return spaced.tolist()
+    return np.interp(np.linspace(0.0, along[-1], points)[1:-1], along, residuals).tolist()
 
 
 def _between(ends: Ends, at: Sequence[float]) -> list[float]:
@@ -155,107 +171,55 @@ def _between(ends: Ends, at: Sequence[float]) -> list[float]:
     return [one for one in limits if ends.still.residual < one < ends.cheapest.residual]
 
 
-def _differ(one: Solution, other: Solution) -> bool:
-    """Whether two solutions at one limit differ by more than the error of the fixed steps."""
-    if not (one.status.solved and other.status.solved):
-        return True
-    return abs(one.energy - other.energy) > _DOUBT * one.energy
+def _solve_between(
+    sweep: Sweep, ends: Ends, scouts: Sequence[Solution], limits: Sequence[float], best: Best
+) -> None:
+    """The best solution at each limit, from the solutions on either side and between them.
+
+    One in so many is also tried from a random start. A point that is better for that, or was not
+    found, is passed on to its neighbours, and they to it, as long as that helps.
+    """
+    known, starts = [ends.still, *scouts, ends.cheapest], list[tuple[float, Guess]]()
+    for limit in limits:
+        after = next(k for k, one in enumerate(known) if one.residual >= limit or one is known[-1])
+        low, high = known[max(after - 1, 0)], known[after]
+        share = (limit - low.residual) / max(high.residual - low.residual, STILL)
+        between = low.coefficients + np.clip(share, 0, 1) * (high.coefficients - low.coefficients)
+        starts += [(limit, a) for a in (between, low.coefficients, high.coefficients)]
+    _improve(sweep, best, starts, warm=True)
+    audited = limits[_AUDITED // 2 :: _AUDITED]
+    changed = _improve(sweep, best, [(limit, a) for limit in audited for a in sweep.guesses[1:2]])
+    changed |= {limit for limit in limits if not best[limit].status.solved}
+    for _ in range(_ROUNDS):
+        pairs = {pair for pair in pairwise(limits) if changed & set(pair)}
+        both = [*pairs, *(pair[::-1] for pair in pairs)]
+        starts = [(to, best[of].coefficients) for of, to in both if best[of].status.solved]
+        changed = _improve(sweep, best, starts, warm=True)
+        if not changed:
+            break
 
 
-class _Stretch:
-    """The front between its ends: the limits, falling, and the best solution at each."""
+def _improve(
+    sweep: Sweep, best: Best, starts: Sequence[tuple[float, Guess]], warm: bool = False
+) -> set[float]:
+    """Solve at limits from coefficients, and keep what is better; tells at which it is.
 
-    def __init__(
-        self, sweep: Sweep, limits: Sequence[float], points: int, report: Report = no_report
-    ) -> None:
-        self.sweep, self.limits = sweep, list(limits)
-        self.best: list[Solution | None] = [None] * len(self.limits)
-        self.points, self.report = points, report
-        self.done = 0
-
-    def run(self, above: Guess, below: Guess) -> _Points:
-        """Sweep down from the guess above and up from the one below; return the checked points."""
-        complete = True
-        try:
-            self._sweep(above, below)
-        except KeyboardInterrupt:
-            complete = False
-        points, whole = self._points(interrupted=not complete)
-        return points, complete and whole
-
-    def _sweep(self, above: Guess, below: Guess) -> None:
-        order, before_sweeps = range(len(self.limits)), self.sweep.iterations
-        for i in order:
-            found = self._try(i, above, done=(i + 1) // 2)
-            above = found if found.status.solved else above
-        doubtful = self._back(below)
-        # many terms have many minima that hardly differ: spend at most as much again as the sweeps
-        most = 2 * self.sweep.iterations - before_sweeps
-        for i, guess in product(sorted(doubtful)[::_STRIDE], self.sweep.guesses):
-            if self.sweep.iterations < most:
-                self._try(i, guess)
-        self._carry_on(doubtful, most)
-        self._tell(len(self.limits))
-
-    def _tell(self, done: int) -> None:
-        """Report how many limits are done, where that changes."""
-        if done != self.done:
-            self.done = done
-            self.report(2 + done, self.points)  # the ends are found
-
-    def _back(self, below: Guess) -> set[int]:
-        """Sweep back from the still end; the points at which it ended elsewhere.
-
-        Where it finds the same motion as the sweep before, it skips points, since both would go on
-        alike; where it finds a better one it goes back to the points that it skipped.
-        """
-        count, doubtful = len(self.limits), set[int]()
-        i, last = count - 1, count
-        while i >= 0:
-            before = self.best[i]
-            found = self._try(i, below, done=count - (i + 1) // 2)
-            below = found if found.status.solved else below
-            improved = self.best[i] is not before
-            if improved or before is None or _differ(before, found):
-                doubtful.add(i)
-            if improved:
-                for k in range(i + 1, last):
-                    self._try(k, below)
-            last = i
-            i -= 1 if improved else _STRIDE
-        return doubtful
-
-    def _try(self, i: int, guess: Guess, done: int | None = None) -> Solution:
-        best = self.best[i]
-        found = self.sweep.solve(guess, self.limits[i])
-        if best is None or better(found, best):
-            self.best[i] = found
-        if done is not None:
-            self._tell(done)
-        return found
-
-    def _carry_on(self, changed: Iterable[int], most: int) -> None:
-        """Start the neighbours of changed points from these, and so on where that helps."""
-        waiting = list(changed)
-        while waiting and self.sweep.iterations < most:
-            i = waiting.pop()
-            for neighbour in (i - 1, i + 1):
-                start = self.best[i]
-                if 0 <= neighbour < len(self.limits) and start is not None and start.status.solved:
-                    before = self.best[neighbour]
-                    self._try(neighbour, start)
-                    if self.best[neighbour] is not before:
-                        waiting.append(neighbour)
-
-    def _points(self, interrupted: bool) -> _Points:
-        tried = [
-            (best, {RESIDUAL_LIMIT: limit})
-            for limit, best in zip(self.limits, self.best, strict=True)
-            if best is not None  # interrupted before
-        ]
-        failed = [
-            FailedPoint(asked, best.status.text) for best, asked in tried if not best.status.solved
-        ]
-        solved = [(best, asked) for best, asked in tried if best.status.solved]
-        points, whole = all_checked(self.sweep, solved, interrupted=interrupted)
-        return [*points, *failed], whole
+    After Ctrl-C what was solved is kept as well.
+    """
+    if not starts:
+        return set()
+    places = {limit: i for i, limit in enumerate(dict.fromkeys(limit for limit, _ in starts))}
+    rows = [(start, sweep.ask(limit)) for limit, start in starts]
+    groups = None if warm else [places[limit] for limit, _ in starts]
+    changed, stopped = set[float](), False
+    try:
+        found = sweep.solve(rows, warm=warm, groups=groups)
+    except InterruptedSolveError as interrupted:
+        found, stopped = interrupted.solutions, True
+    for (limit, _), one in zip(starts, found, strict=True):
+        if limit not in best or better(one, best[limit]):
+            best[limit] = one
+            changed.add(limit)
+    if stopped:
+        raise KeyboardInterrupt
+    return changed

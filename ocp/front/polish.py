@@ -18,6 +18,7 @@ from ocp.front.checking import RESIDUAL_LIMIT, checked
 from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.robust import EXCESS
 from ocp.front.sweep import Report, Sweep, no_report
+from ocp.program.solution import Solution
 
 
 @dataclass(frozen=True)
@@ -117,17 +118,17 @@ class _Tried(NamedTuple):
 
 
 def _polished(sweep: Sweep, points: Sequence[FrontPoint], report: Report) -> list[_Tried]:
-    """The points one after another; after Ctrl-C those that were done."""
+    """All points at once, then their checks; after Ctrl-C those that were done."""
     tried: list[_Tried] = []
     with suppress(KeyboardInterrupt):
-        for point in points:
-            tried.append(_one_polished(sweep, point))
+        rows = [(np.array(point.coefficients), sweep.ask(point.residual)) for point in points]
+        for point, solved in zip(points, sweep.solve(rows), strict=True):
+            tried.append(_one_polished(sweep, point, solved))
             report(len(tried), len(points))
     return tried
 
 
-def _one_polished(sweep: Sweep, point: FrontPoint) -> _Tried:
-    solved = sweep.solve(np.array(point.coefficients), point.residual)
+def _one_polished(sweep: Sweep, point: FrontPoint, solved: Solution) -> _Tried:
     if not solved.status.solved:
         return _failed(point, solved.status.text)
     found = checked(sweep, solved, {RESIDUAL_LIMIT: point.residual}, point.residual)

@@ -156,7 +156,7 @@ def _held_at(sweep: Sweep, one: Found, beside: FrontPoint | None) -> Found:
     target, reason = _target(one), getattr(one, "reason", "")
     asked = {RESIDUAL_LIMIT: target}
     for guess in guesses:
-        solved = sweep.solve(np.array(guess.coefficients), target)
+        solved = sweep.best([np.array(guess.coefficients)], sweep.ask(target))
         if solved.status.solved:
             point = checked(sweep, solved, asked, target * (1 + _SOLVED))
             if isinstance(point, FrontPoint):

@@ -10,21 +10,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocp.answers.provenance import SolveSettings
-from ocp.plan.solver import first_steps, start_coefficients
+from ocp.plan.starts import first_steps, start_coefficients
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.kinds import refuse_other_kinds
-from ocp.program.problem import Problem
-from ocp.program.solution import LEAST_ENERGY, Solution
-from ocp.program.task_program import TaskProgram
-from ocp.program.transcription import RESIDUAL
+from ocp.program.program import Program
+from ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
+from ocp.program.solving import Row, solve
 from ocp.robustness.uncertain import uncertain_plant, with_samples
 from ocp.task.point_to_point import PointToPoint
 
-Guess = NDArray[np.float64] | Solution
+Guess = NDArray[np.float64]
 Report = Callable[[int, int], None]
 """Called with the number of points done and asked for."""
 SAME = 1e-5
 """Solutions whose energies differ by less than this share count as one motion."""
+
+
+class InterruptedSolveError(KeyboardInterrupt):
+    """Ctrl-C while rows were solved.
+
+    Attributes
+    ----------
+    solutions : list of Solution
+        One for each row; those that were not solved say so.
+    """
+
+    def __init__(self, solutions: list[Solution]) -> None:
+        super().__init__()
+        self.solutions = solutions
 
 
 def no_report(done: int, total: int) -> None:
@@ -64,7 +77,7 @@ class Sweep:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
         self.steps = first_steps(self.task, self.profile, self.settings)
         self.guesses = start_coefficients(self.profile, self.settings)
-        self._program: TaskProgram | None = None
+        self._program: Program | None = None
 
     @property
     def ranges(self) -> list[float]:
@@ -86,39 +99,61 @@ class Sweep:
         self.task, self._program = task, None
 
     @property
-    def program(self) -> TaskProgram:
-        """The program with the residual as a variable."""
+    def program(self) -> Program:
+        """The task on its steps."""
         if self._program is None or self._program.steps != self.steps:
-            self._program = TaskProgram(self.task, self.profile, self.steps)
+            self._program = Program(self.task, self.profile, self.steps)
         return self._program
 
-    def problem(self, residual_limit: float) -> Problem:
+    def ask(
+        self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
+    ) -> Ask:
         """What is asked at a residual limit [m]."""
         limits = {**self.task.limits, RESIDUAL: residual_limit}
-        return Problem(self.program, limits, self.settings.bound, self.guesses)
+        return Ask(limits, self.settings.bound, minimise)
 
     def solve(
         self,
-        guess: Guess,
-        residual_limit: float = np.inf,
-        minimise: Mapping[str, float] = LEAST_ENERGY,
-    ) -> Solution:
-        """Run the solver from one start.
+        rows: Sequence[tuple[Guess, Ask]],
+        *,
+        warm: bool = False,
+        groups: Sequence[int] | None = None,
+    ) -> list[Solution]:
+        """Run the solver from many starts at once.
 
         Parameters
         ----------
-        guess : ndarray, shape (profile.size,), or Solution
-            Coefficients, or the solution beside it.
-        residual_limit : float
-            Largest residual [m].
-        minimise : mapping of str to float
-            As for `Problem.solve`.
+        rows : sequence of (ndarray, Ask)
+            Coefficients to start from, and what is asked.
+        warm : bool
+            Whether the starts are beside minima.
+        groups : sequence of int, optional
+            Rows of one number are starts for one thing that is asked.
 
         Returns
         -------
-        Solution
-            The solution, whatever its status.
+        list of Solution
+            One for each row, whatever its status.
+
+        Raises
+        ------
+        InterruptedSolveError
+            After Ctrl-C, with the solutions until then.
         """
-        found = self.problem(residual_limit).solve(guess, minimise)
-        self.iterations += found.iterations
+        program, solver = self.program, self.settings.solver
+        asked = [Row(program, ask, start) for start, ask in rows]
+        found, complete = solve(asked, solver, warm=warm, groups=groups)
+        self.iterations += sum(one.iterations for one in found)
+        if not complete:
+            raise InterruptedSolveError(found)
         return found
+
+    def best(self, starts: Sequence[Guess], ask: Ask, *, warm: bool = False) -> Solution:
+        """The best from several starts."""
+        found = self.solve([(start, ask) for start in starts], warm=warm, groups=[0] * len(starts))
+        return min(found, key=lambda one: (not one.status.solved, _value(one, ask.minimise)))
+
+
+def _value(found: Solution, minimise: Mapping[str, float]) -> float:
+    values = {**found.peaks, ENERGY: found.energy}
+    return sum(weight * values[name] for name, weight in minimise.items())

@@ -18,8 +18,8 @@ from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import Guess, Report, Sweep, no_report
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.program.solution import ENERGY, Solution
-from ocp.program.transcription import RESIDUAL
+from ocp.program.solution import ENERGY, RESIDUAL, Solution
+from ocp.program.solving import Solver
 from ocp.task.point_to_point import PointToPoint
 
 _FLAT = 1e-5
@@ -39,6 +39,7 @@ def weighted_front(
     seed: int = 0,
     steps: int | None = None,
     report: Report = no_report,
+    solver: Solver = "sqp",
 ) -> Front:
     """Find points of the front by the gradient, as minima of weighted sums of both objectives.
 
@@ -67,6 +68,8 @@ def weighted_front(
         Steps of the solver's discretisation, as for `plan_move`.
     report : callable, optional
         Called with the number of points done and of all.
+    solver : {"sqp", "ipopt"}
+        As for `plan_move`.
 
     Returns
     -------
@@ -87,7 +90,11 @@ def weighted_front(
     profile = CycloidPolynomial() if profile is None else profile
     points, report = number_of_points(points), report_given(report)
     chosen = None if weights is None else _pairs(weights)
-    sweep = Sweep(task, profile, SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps))
+    sweep = Sweep(
+        task,
+        profile,
+        SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver),
+    )
     sums = _Sums(sweep, find_ends(sweep))
     complete = True
     try:
@@ -134,7 +141,9 @@ class _Sums:
     def solve(self, of_residual: float, of_energy: float, guesses: Sequence[Guess]) -> Solution:
         """The best minimum of one weighted sum, weights of the scaled objectives."""
         minimise = {RESIDUAL: of_residual / self.ends.width, ENERGY: of_energy / self.ends.height}
-        tried = [self.sweep.solve(guess, minimise=minimise) for guess in guesses]
+        ask = self.sweep.ask(minimise=minimise)
+        # far starts lead past a dearer minimum, near ones keep to the minimum beside them
+        tried = [self.sweep.best(guesses, ask, warm=warm) for warm in (False, True)]
 
         def value(one: Solution) -> float:
             if not one.status.solved:
@@ -152,7 +161,7 @@ class _Sums:
             lengths = [np.hypot(*self._sides(*chord)) for chord in chords]
             still, cheap = chords.pop(int(np.argmax(lengths)))
             wide, high = self._sides(still, cheap)
-            found = self.solve(high, wide, [cheap, self._guess(still)])
+            found = self.solve(high, wide, [cheap.coefficients, still.coefficients])
             if not found.status.solved:
                 self._failed(high, wide, found)
                 continue
@@ -170,14 +179,14 @@ class _Sums:
         """Given weights, sorted from most weight on the energy to most on the residual."""
         if self.ends.are_one:
             return
-        beside: Guess = self.ends.cheapest
+        beside = self.ends.cheapest.coefficients
         still = self.ends.still.coefficients
         for i, pair in enumerate(sorted(weights, key=lambda pair: pair[0] / sum(pair)), start=1):
             if min(pair) > 0:  # with one weight 0 it is an end of the front
                 found = self.solve(*pair, [beside, still])
                 if found.status.solved:
                     self.found.append(found)
-                    beside = found
+                    beside = found.coefficients
                 else:
                     self._failed(*pair, found)
             report(i, len(weights))
@@ -193,9 +202,6 @@ class _Sums:
             (cheap.residual - still.residual) / self.ends.width,
             (still.energy - cheap.energy) / self.ends.height,
         )
-
-    def _guess(self, one: Solution) -> Guess:
-        return one.coefficients if one is self.ends.still else one  # which is of another program
 
     def _failed(self, of_residual: float, of_energy: float, found: Solution) -> None:
         asked = {"residual_weight": of_residual, "energy_weight": of_energy}

@@ -14,9 +14,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ocp.answers.documents import Upgrades
 from ocp.answers.motion_answer import MotionAnswer
-from ocp.answers.older import plan_of_version_1
 from ocp.answers.provenance import Provenance, Setting, SolveSettings, Verification
 from ocp.base.checks import positive
 from ocp.base.files import write_whole
@@ -63,8 +61,7 @@ class Plan(MotionAnswer):
     """
 
     kind: ClassVar[str] = "plan"
-    version: ClassVar[int] = 2
-    upgrades: ClassVar[Upgrades] = {1: plan_of_version_1}
+    version: ClassVar[int] = 3
 
     task: PointToPoint
     profile: JointProfile

@@ -6,13 +6,15 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ocp.base.errors import InfeasibleTaskError, SolverFailedError
 from ocp.base.status import SolveStatus
-from ocp.program.problem import Problem
-from ocp.program.solution import STILL, Solution
-from ocp.program.transcription import RESIDUAL
-from ocp.simulation.resimulation import Resimulation
+from ocp.plan.verification import Checked
+from ocp.program.program import Program
+from ocp.program.solution import RESIDUAL, STILL, Ask, Solution
+from ocp.program.solving import Row, solve
+from ocp.simulation.objective import WithPeaks
 from ocp.task.quantities import QUANTITIES
 
 UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
@@ -40,30 +42,29 @@ Found = TypeVar("Found", bound=Attempt)
 
 
 def least_peaks(
-    limits: Mapping[str, float],
-    starts: Sequence[Start],
-    solve: Callable[[Start, Mapping[str, float], str], Found],
-) -> dict[str, Found]:
+    program: Program, ask: Ask, starts: Sequence[NDArray[np.float64]]
+) -> dict[str, Solution]:
     """Make each limited quantity in turn as small as it can be while the other limits are kept.
 
     Parameters
     ----------
-    limits : mapping of str to float
-        Residual [m] and peaks [SI units] that were asked for.
-    starts : sequence
-        Where to start from.
-    solve : callable
-        (start, other limits, name of the quantity) -> run of the solver.
+    program : Program
+        The task.
+    ask : Ask
+        What was asked.
+    starts : sequence of ndarray
+        Coefficients to start from.
 
     Returns
     -------
-    dict of str to run
+    dict of str to Solution
         The best solution found for each quantity; a quantity without any is left out.
     """
-    best: dict[str, Found] = {}
-    for name in limits:
-        others = {key: value for key, value in limits.items() if key != name}
-        found = [solve(start, others, name) for start in starts]
+    best: dict[str, Solution] = {}
+    for name in ask.limits:
+        others = {key: value for key, value in ask.limits.items() if key != name}
+        alone = ask._replace(limits=others, minimise={name: 1.0})
+        found = solve([Row(program, alone, start) for start in starts]).solutions
         solved = [one for one in found if one.status.solved]
         if solved:
             best[name] = min(solved, key=lambda one, name=name: one.peaks[name])
@@ -74,30 +75,19 @@ def rescued(
     runs: Sequence[Found],
     limits: Mapping[str, float],
     starts: Sequence[Start],
-    solve: Callable[[Start, Mapping[str, float], str], Found],
+    solve_least: Callable[[Start, Mapping[str, float], str], Found],
     again: Callable[[Found], Found],
 ) -> tuple[list[Found], dict[str, Found]]:
-    """Where no run was solved, start again from motions of least peaks.
-
-    Parameters
-    ----------
-    runs : sequence of run
-        The runs of the solver.
-    limits, starts, solve
-        As for `least_peaks`.
-    again : callable
-        (motion of a least peak) -> run of the solver from there, with all limits.
-
-    Returns
-    -------
-    list of run
-        The given runs and those from motions of least peaks.
-    dict of str to run
-        What `least_peaks` found; empty where it was not needed.
-    """
+    """Where no run was solved, start again from motions of least peaks."""
     if any(run.status.solved for run in runs):
         return list(runs), {}
-    least = least_peaks(limits, starts, solve)
+    least: dict[str, Found] = {}
+    for name in limits:
+        others = {key: value for key, value in limits.items() if key != name}
+        found = [solve_least(start, others, name) for start in starts]
+        solved = [one for one in found if one.status.solved]
+        if solved:
+            least[name] = min(solved, key=lambda one, name=name: one.peaks[name])
     within = [found for name, found in least.items() if _keeps(found.peaks[name], name, limits)]
     return [*runs, *map(again, within)], least
 
@@ -108,7 +98,7 @@ def _keeps(peak: float, name: str, limits: Mapping[str, float]) -> bool:
 
 
 def true_peaks(
-    least: Mapping[str, Found], resimulated: Callable[[Found], Resimulation]
+    least: Mapping[str, Found], resimulated: Callable[[Found], WithPeaks]
 ) -> dict[str, float]:
     """The least peaks as they are between the nodes as well, by what simulates a run's motion."""
 
@@ -122,17 +112,17 @@ def true_peaks(
 
 
 def explain(
-    problem: Problem, solutions: Sequence[Solution], least: Mapping[str, Solution]
+    program: Program, ask: Ask, tried: Sequence[Solution], least: Mapping[str, Solution]
 ) -> SolverFailedError:
-    """The error for a problem that no start solved; other arguments as for `unmet`."""
-    size, bound = problem.program.profile.size, problem.bound
+    """The error for a program that no start solved; other arguments as for `unmet`."""
+    size = program.profile.size
     return unmet(
         f"motion of {size} term{'s' if size > 1 else ''}",
-        problem.limits,
-        solutions,
-        true_peaks(least, problem.resimulated),
+        ask.limits,
+        tried,
+        true_peaks(least, lambda found: Checked(program, found)),
         "more terms or a longer duration",
-        "" if bound is None else f", coefficients within +-{bound:g}",
+        "" if ask.bound is None else f", coefficients within +-{ask.bound:g}",
     )
 
 

@@ -3,39 +3,37 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ocp.answers.provenance import SolveSettings
-from ocp.base.errors import InfeasibleTaskError, SolverFailedError
-from ocp.base.interrupts import note_interrupts
-from ocp.plan.answer import Plan, evaluate_coefficients
+from ocp.base.errors import SolverFailedError
+from ocp.plan.answer import Plan
+from ocp.plan.starts import start_coefficients
 from ocp.plan.verification import OVERRUN
 from ocp.profiles.joint_profile import JointProfile
-from ocp.robustness.measures import tolerated_residual
-from ocp.robustness.uncertain import (
-    UncertainPlant,
-    on_assumed,
-    uncertain_plant,
-    with_halves,
-    with_samples,
-)
+from ocp.robustness.measures import quiet_residual
+from ocp.robustness.uncertain import UncertainPlant, uncertain_plant, with_samples
 from ocp.robustness.worst import peaks_between
 from ocp.task.point_to_point import PointToPoint
 
 EXCESS = 0.05
 """Share of the limit by which the residual between samples may pass it before more are added."""
-_ROUNDS, _ADDED = 6, 4
-"""Most rounds of added samples, and most samples that one adds."""
+_ROUNDS, _ADDED, _KEPT = 6, 4, 4
+"""Most rounds of added samples; most samples that one adds; most motions to go on from."""
 _SAME = 1e-6
 """Errors that differ by less than this share of their range are one sample."""
 _TIGHTENINGS = 4
 """Most times that the limit is tightened by what is left of the excess."""
 
-Solve = Callable[[PointToPoint, JointProfile, SolveSettings], Plan]
+Starts = Sequence[NDArray[np.float64]]
+PlanFrom = Callable[
+    [PointToPoint, JointProfile, SolveSettings, Starts], tuple[Plan, list[NDArray[np.float64]]]
+]
+"""(task, profile, settings, starts) -> plan, and coefficients of all starts that were solved."""
 
 
 def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
@@ -51,7 +49,7 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
     Returns
     -------
     float
-        The same; where it is None, 0, or for an uncertain plant its `tolerated_residual`.
+        The same; where it is None, 0, or for an uncertain plant its `quiet_residual`.
 
     Raises
     ------
@@ -61,27 +59,28 @@ def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
     if not isinstance(task.plant, UncertainPlant):
         return 0.0 if residual_limit is None else residual_limit
     if residual_limit is None:
-        residual_limit = tolerated_residual(task)
+        residual_limit = quiet_residual(task)
         if residual_limit == 0:
             raise ValueError(
-                "the plain cycloid leaves no residual on this plant, so that 5 % of it is no "
-                "limit; give a residual limit above 0"
+                "the plain cycloid does not bend this plant, so that 5 % of that is no limit; give "
+                "a residual limit above 0"
             )
     if residual_limit == 0:
         raise ValueError(
             "residual limit is 0, but no motion arrives at rest whatever the errors of its plant; "
-            "leave it out (5 % of the plain cycloid's residual) or give one above 0"
+            "leave it out (5 % of how far the plain cycloid bends the tip) or give one above 0"
         )
     return residual_limit
 
 
 def robust_plan(
-    task: PointToPoint, profile: JointProfile, settings: SolveSettings, solve: Solve
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, plan_from: PlanFrom
 ) -> Plan:
     """The plan of an uncertain plant, with its residual limit held between the samples.
 
-    The first start is the guess, or else the assumed plant's plan, at rest on arrival. Where the
-    solver fails, it starts again with more samples, half way to those that there are.
+    Every sample's residual is a constraint of one program. Where the residual of its solution
+    passes the limit between them by more than `EXCESS`, those peaks become samples, and the motions
+    that were found are the next starts. What is left of the excess is then taken off the limit.
 
     Parameters
     ----------
@@ -91,15 +90,14 @@ def robust_plan(
         How the joint moves.
     settings : SolveSettings
         What was asked for.
-    solve : callable
-        Gives the plan of a task, a profile and settings.
+    plan_from : callable
+        Solves from starts.
 
     Returns
     -------
     Plan
         The plan with its `worst`, which is above the limit where no tighter one could be kept.
-        After Ctrl-C the last plan until then, not ``complete``; before there is a robust one, that
-        of the assumed plant.
+        After Ctrl-C the last plan until then, not ``complete``.
 
     Raises
     ------
@@ -108,98 +106,48 @@ def robust_plan(
     KeyboardInterrupt
         After Ctrl-C before there is any plan.
     """
-    began = time.perf_counter()
-    assumed = None if settings.guess else _of_assumed(task, profile, settings, solve)
+    began, plan, stopped = time.perf_counter(), None, None
     try:
-        if assumed and not assumed.complete:
-            raise KeyboardInterrupt
-        first = replace(settings, guess=assumed.coefficients) if assumed else settings
-        plan = _from_samples(task, profile, first, settings, solve)
-    except KeyboardInterrupt:
-        if assumed is None:
-            raise
-        with note_interrupts():
-            plan = _unheld(task, assumed, settings)
-    seconds = time.perf_counter() - began
-    return replace(plan, provenance=replace(plan.provenance, seconds=seconds))
-
-
-def _of_assumed(
-    task: PointToPoint, profile: JointProfile, settings: SolveSettings, solve: Solve
-) -> Plan | None:
-    """The plan of the plant without errors, at rest on arrival; None where there is none."""
-    try:
-        return solve(on_assumed(task), profile, replace(settings, residual_limit=0.0))
-    except SolverFailedError:
-        return None
-
-
-def _from_samples(
-    task: PointToPoint,
-    profile: JointProfile,
-    first: SolveSettings,
-    settings: SolveSettings,
-    solve: Solve,
-) -> Plan:
-    try:
-        return _held_between(solve(task, profile, first), settings, solve)
-    except InfeasibleTaskError:  # more samples make it no easier
-        raise
-    except SolverFailedError:
-        finer = with_halves(task)
-    return _held_between(solve(finer, profile, first), settings, solve)
-
-
-def _unheld(task: PointToPoint, assumed: Plan, settings: SolveSettings) -> Plan:
-    """The assumed plant's plan with its figures on the uncertain one."""
-    plan = evaluate_coefficients(task, assumed.coefficients, profile=assumed.profile)
-    stopped = "the assumed plant's plan, before there was a robust one"
-    provenance = replace(assumed.provenance, settings=settings, stopped=stopped)
-    return replace(plan, status=assumed.status, provenance=provenance)
-
-
-def _held_between(plan: Plan, settings: SolveSettings, solve: Solve) -> Plan:
-    """The plan with its `worst`, solved on until the limit holds between the samples as well.
-
-    Where the residual passes the limit by more than `EXCESS`, its peaks become samples. What is
-    left of the excess is then taken off the limit; `worst` is above the limit where no tighter one
-    could be kept. After Ctrl-C it is the last plan until then, not ``complete``.
-    """
-    began = time.perf_counter() - plan.provenance.seconds
-    stopped = plan.provenance.stopped
-    try:
-        for better in _held(plan, settings, solve):
+        for better in _held(task, profile, settings, plan_from):
             plan, stopped = better, better.provenance.stopped
             if stopped:
                 break
     except KeyboardInterrupt:
+        if plan is None:
+            raise
         stopped = "some rounds, before the residual was held between the samples"
+    assert plan is not None
     seconds = time.perf_counter() - began
     provenance = replace(plan.provenance, settings=settings, seconds=seconds, stopped=stopped)
     return replace(plan, provenance=provenance)
 
 
-def _held(plan: Plan, settings: SolveSettings, solve: Solve) -> Iterator[Plan]:
+def _held(
+    task: PointToPoint, profile: JointProfile, settings: SolveSettings, plan_from: PlanFrom
+) -> Iterator[Plan]:
     """The plan with its worst, then with more samples, then with tighter limits."""
     limit = used = settings.residual_limit
-    plan, peaks = _checked(plan)
+
+    def solved(starts: Starts) -> tuple[Plan, NDArray[np.float64], Starts]:
+        plan, others = plan_from(task, profile, settings, starts)
+        return *_checked(plan), [np.array(plan.coefficients), *others[:_KEPT]]
+
+    plan, peaks, starts = solved(start_coefficients(profile, settings))
     yield plan
     for _ in range(_ROUNDS):
-        if _excess(plan, limit) <= EXCESS:
+        more = _new_samples(task, peaks[peaks[:, 0] > limit, 1:])
+        if _excess(plan, limit) <= EXCESS or not more:
             break
-        more = _new_samples(plan.task, peaks[peaks[:, 0] > limit, 1:])
-        if not more:
-            break
-        task = with_samples(plan.task, more)
-        plan, peaks = _checked(solve(task, plan.profile, _from(plan, settings)))
+        task = with_samples(task, more)
+        plan, peaks, starts = solved(starts)
         yield plan
     for _ in range(_TIGHTENINGS):
         if _excess(plan, limit) <= 0:
             break
         used /= (1 + _excess(plan, limit)) * (1 + OVERRUN)
-        tighter = replace(_from(plan, settings), residual_limit=used)
+        tighter = replace(settings, residual_limit=used, steps=plan.verification.steps)
         try:
-            plan, _ = _checked(solve(plan.task, plan.profile, tighter))
+            plan, _ = _checked(plan_from(task, profile, tighter, starts[:1])[0])
         except SolverFailedError:
             break
         yield plan
@@ -219,8 +167,3 @@ def _checked(plan: Plan) -> tuple[Plan, NDArray[np.float64]]:
 
 def _excess(plan: Plan, limit: float) -> float:
     return -1.0 if plan.worst is None else plan.worst.residual / limit - 1
-
-
-def _from(plan: Plan, settings: SolveSettings) -> SolveSettings:
-    steps = plan.verification.steps
-    return replace(settings, starts=1, guess=plan.coefficients, steps=steps)

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from ocp.base.errors import SolverFailedError
-from ocp.program.problem import Problem
-from ocp.program.solution import STILL, STILL_SHARE, Solution
-from ocp.program.transcription import RESIDUAL
-from ocp.simulation.objective import WithPeaks
-from ocp.simulation.resimulation import Resimulation
+from ocp.program.program import Program
+from ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Solution
+from ocp.program.solving import Row, Solver, solve
+from ocp.robustness.uncertain import on_assumed
+from ocp.simulation.objective import Motion, WithPeaks
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.resimulation import resimulated
 
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
@@ -35,31 +39,37 @@ class Care:
     ----------
     agreement : float
         Share of the energy by which they may differ.
-    enough_steps : int
-        Steps from which on a solution is accepted although the solver did not settle there.
     most_steps : int
         Steps up to which they are doubled.
     """
 
     agreement: float = 1e-5
-    enough_steps: int = 150
     most_steps: int = MOST_SOLVER_STEPS
 
 
 OF_A_PLAN = Care()
 """The solver's cheapest motion is then the independent integrator's within 1e-6, in all but one of
 56 plans tried (6e-6)."""
-HURRIED = Care(agreement=np.inf, enough_steps=0, most_steps=0)
+HURRIED = Care(agreement=np.inf, most_steps=0)
 """Correct the arrival and passed limits without adding steps: for after Ctrl-C."""
 
 
+class Verified(NamedTuple):
+    """A solution with the figures of CVODES, and the number of steps it was found with."""
+
+    solution: Solution
+    checked: Checked
+    steps: int
+
+
 def verified(
-    problem: Problem,
+    program: Program,
+    ask: Ask,
     best: Solution,
-    *,
+    solver: Solver = "sqp",
     care: Care = OF_A_PLAN,
     kept: Mapping[str, float] | None = None,
-) -> tuple[Solution, Resimulation, int]:
+) -> Verified:
     """Verify; correct the arrival, double the steps while energies disagree, tighten passed limits.
 
     The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
@@ -68,10 +78,14 @@ def verified(
 
     Parameters
     ----------
-    problem : Problem
-        What was solved.
+    program : Program
+        The task.
+    ask : Ask
+        What was asked.
     best : Solution
         Its solution.
+    solver : {"sqp", "ipopt"}
+        What goes on from there.
     care : Care
         How far to go.
     kept : mapping of str to float, optional
@@ -79,49 +93,94 @@ def verified(
 
     Returns
     -------
-    Solution, Resimulation, int
-        The solution, its simulation by CVODES, and the number of steps it was found with.
+    Verified
+        The solution with the figures of CVODES.
 
     Raises
     ------
     SolverFailedError
         When a limit stays passed.
     """
-    program, limits = problem.program, problem.limits
-    simulated = problem.resimulated(best)
-    kept, used = limits if kept is None else kept, dict(limits)
+    kept, used = ask.limits if kept is None else kept, dict(ask.limits)
     still = max(STILL, STILL_SHARE * program.of_cycloid)
-    tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * limits.get(RESIDUAL, np.inf))
-    tried: list[tuple[Solution, Resimulation, int]] = []
+    tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * ask.limits.get(RESIDUAL, np.inf))
+    tried: list[Verified] = []
+
+    def add(found: Solution) -> Checked:
+        tried.append(Verified(found, Checked(program, found), program.steps))
+        return tried[-1].checked
+
+    simulated = add(best)
     for _ in range(_ROUNDS):
-        steps = problem.program.steps
-        tried.append((best, simulated, steps))
         used = tightened(used, simulated, kept)
         rough = abs(best.energy - simulated.energy) > care.agreement * simulated.energy
-        unsettled = not best.settled and steps < care.enough_steps
         missed = abs(best.residual - simulated.residual) > tolerated
         again = None
         if not rough and (missed or simulated.passed(kept)):
-            again = problem.within(used).corrected(best, simulated.arrival)
-        elif not (rough or unsettled):
+            offset = simulated.arrival - program.evaluated(best.coefficients).arrival
+            asked = ask._replace(limits=used, offset=offset)
+            again = _from(program, asked, best, solver)
+        elif not rough:
             break
         if again is None or not again.status.solved:
-            if 2 * steps > care.most_steps:
+            if 2 * program.steps > care.most_steps:
                 break
-            problem = problem.finer()
-            again, used = problem.refined(best), dict(limits)
+            program = Program(program.task, program.profile, 2 * program.steps)
+            again, used = _from(program, ask, best, solver), dict(ask.limits)
             if not again.status.solved:
                 break
-        best = again
-        simulated = problem.resimulated(best)
-    else:
-        tried.append((best, simulated, problem.program.steps))
-    best, simulated, steps = _cheapest_kept(tried, kept, still)
+        best, simulated = again, add(again)
+    cheapest = _cheapest_kept(tried, kept, still)
     remedy = "bound the coefficients or use fewer terms"
     refuse_passed(
-        simulated, kept, f"the solver's steps are too coarse for this motion; {remedy}", still
+        cheapest.checked,
+        kept,
+        f"the solver's steps are too coarse for this motion; {remedy}",
+        still,
     )
-    return best, simulated, steps
+    return cheapest
+
+
+def _from(program: Program, ask: Ask, found: Solution, solver: Solver) -> Solution:
+    """Go on from a solution beside the one that is asked for."""
+    rows = [Row(program, ask, found.coefficients)]
+    again = solve(rows, solver, warm=True).solutions[0]
+    return replace(again, iterations=found.iterations + again.iterations)
+
+
+class Checked(WithPeaks):
+    """What CVODES makes of a solution, on all plants whose residual counts.
+
+    Attributes
+    ----------
+    energy : float
+        F2 on the assumed plant [J].
+    residual : float
+        F1 [m], the largest.
+    arrival : ndarray, shape (plants, 2 * modes)
+        State on arrival.
+    """
+
+    def __init__(self, program: Program, found: Solution) -> None:
+        task = on_assumed(program.task)
+        joint = PiecewiseMotion.of_profile(task, program.profile, found.coefficients)
+        names = program.batch.errors
+        wrong = [tuple(zip(names, errors.tolist(), strict=True)) for errors in program.errors[1:]]
+        self._all = [resimulated(task, joint), *(resimulated(task, joint, one) for one in wrong)]
+        self.energy = self._all[0].energy
+        self.residual = max(one.residual for one in self._all)
+        self.arrival = np.array([one.arrival for one in self._all])
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The figures: residual and deflection of the worst plant, all else of the assumed one."""
+        deflection = max(one.motion.peak_deflection for one in self._all)
+        motion = self._all[0].motion
+        return replace(motion, residual=self.residual, peak_deflection=deflection)
+
+    def peak(self, name: str) -> float:
+        """As of `WithPeaks`."""
+        return self.residual if name == RESIDUAL else self.motion.peak(name)
 
 
 def tightened(
@@ -179,13 +238,11 @@ def refuse_passed(
             )
 
 
-def _cheapest_kept(
-    tried: list[tuple[Solution, Resimulation, int]], kept: Mapping[str, float], still: float
-) -> tuple[Solution, Resimulation, int]:
+def _cheapest_kept(tried: list[Verified], kept: Mapping[str, float], still: float) -> Verified:
     """The cheapest of the verified motions that keep every limit; else the last."""
     keeping = [
         one
         for one in tried
-        if all(one[1].peak(name) <= max(limit, still) for name, limit in kept.items())
+        if all(one.checked.peak(name) <= max(limit, still) for name, limit in kept.items())
     ]
-    return min(keeping, key=lambda one: one[1].energy) if keeping else tried[-1]
+    return min(keeping, key=lambda one: one.checked.energy) if keeping else tried[-1]

@@ -103,10 +103,9 @@ class Cycloid(JointProfile):
         target: Expression,
         duration: Expression,
     ) -> Sequence[Expression]:
-        """U, U', U''."""
-        del start, target
-        U, dU, ddU = self.input(coefficients, fraction)
-        return U, dU / duration, ddU / duration**2
+        """U and its derivatives by the fraction, which do not depend on the move."""
+        del start, target, duration
+        return self.input(coefficients, fraction)
 
     def outer(
         self,
@@ -116,8 +115,7 @@ class Cycloid(JointProfile):
         duration: Expression,
     ) -> JointMotion:
         """The cycloid of U: eqs (1), (2) and (3), the latter mended."""
-        del duration
-        U, dU, ddU = inner
+        U, dU, ddU = inner[0], inner[1] / duration, inner[2] / duration**2
         sine, cosine = ca.sin(math.pi * U), ca.cos(math.pi * U)
         span, pi = target - start, math.pi
         return JointMotion(

@@ -32,54 +32,6 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-SAMPLED = {**OPTIONS, "tol": 1e-5}
-"""Options from coefficients in a box. The tolerance is much finer than the sampling error."""
-UNBOXED = {**SAMPLED, "mu_strategy": "monotone", "mu_init": 1e-3}
-"""Without a box the adaptive barrier does not converge with ten terms or more; with a box it takes
-a fifth fewer iterations."""
-CREEPING = {
-    **SAMPLED,
-    "acceptable_tol": 1e3,
-    "acceptable_dual_inf_tol": 1e10,
-    "acceptable_constr_viol_tol": 1e-6,
-    "acceptable_compl_inf_tol": 1e-4,
-    "acceptable_obj_change_tol": 1e-5,
-    "acceptable_iter": 10,
-}
-"""For several plants along a profile whose coefficients enter nonlinearly. There the minimum lies
-in a curved valley, along which the energy falls by 1e-6 an iteration, for ever: the iterations end
-when it has hardly changed ten times."""
-PEAK = OPTIONS
-"""The least peak, from coefficients alone."""
-_BARRIER = 2e-9
-RESOLVED = {
-    **OPTIONS,
-    "tol": 1e-7,
-    # IPOPT keeps the barrier above an eleventh of this. The barrier times the rows of a residual
-    # limit is energy lost.
-    "compl_inf_tol": 10 * _BARRIER,
-    "mu_strategy": "monotone",
-    "mu_init": _BARRIER,
-    "warm_start_init_point": "yes",
-    **{
-        f"warm_start_{name}": _BARRIER
-        for name in ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac",
-                     "mult_bound_push")
-    },
-    "max_iter": 30,
-    # Else more energy is accepted in exchange for slightly less constraint violation.
-    "delta": 1e-12,
-    "acceptable_tol": 1e3,
-    "acceptable_dual_inf_tol": 1e10,
-    "acceptable_constr_viol_tol": 1e-8,
-    "acceptable_compl_inf_tol": 1e-5,
-    "acceptable_obj_change_tol": 1e-9,
-    "acceptable_iter": 3,
-}  # fmt: skip
-"""From a minimum close by, with its multipliers. Where zeros of the power meet, second derivatives
-no longer help: the iterations end when the energy has hardly changed three times.
-"""
-
 _THREADS = "OPENBLAS_NUM_THREADS"
 
 
@@ -165,6 +117,45 @@ def ipopt(
         return ca.nlpsol("program", "ipopt", dict(problem), everything)
 
 
+def ipopt_of_functions(
+    unknowns: int,
+    f: ca.Function,
+    g: ca.Function,
+    gradient: ca.Function,
+    jacobian: ca.Function,
+    hessian: ca.Function,
+    options: Options,
+) -> ca.Function:
+    """A solver of a nonlinear program that is given by functions of (unknowns, parameter).
+
+    Parameters
+    ----------
+    unknowns : int
+        How many.
+    f, g : Function
+        Objective and constraints.
+    gradient, jacobian : Function
+        (f, its gradient), (g, its Jacobian).
+    hessian : Function
+        (unknowns, parameter, multiplier of f, multipliers of g) -> upper half of the Lagrangian's.
+    options : mapping
+        IPOPT's.
+
+    Returns
+    -------
+    Function
+        The solver.
+    """
+    x, p = ca.MX.sym("x", unknowns), ca.MX.sym("p")
+    given = {"grad_f": gradient, "jac_g": jacobian, "hess_lag": hessian}
+    chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
+    everything = {**given, **chosen, "ipopt": dict(options)}
+    with _on_one_thread():
+        return ca.nlpsol(
+            "program", "ipopt", {"x": x, "p": p, "f": f(x, p), "g": g(x, p)}, everything
+        )
+
+
 @contextmanager
 def _on_one_thread() -> Iterator[None]:
     """Let casadi load IPOPT with one thread for its linear algebra, or as many as are asked for.
@@ -221,5 +212,5 @@ def run_ipopt(
         )  # fmt: skip
     point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
     g, stats = result["g"].full().ravel(), solver.stats()
-    passed = float(np.max([lower - g, g - upper]))
+    passed = float(np.max([lower - g, g - upper], initial=0.0))
     return Stop(point, str(stats["return_status"]), int(stats["iter_count"]), passed)

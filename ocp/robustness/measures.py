@@ -14,9 +14,10 @@ from ocp.base.threads import one_at_a_time
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.robustness.plants import checked_ranges
 from ocp.robustness.population import ErrorPopulation, Figures
 from ocp.robustness.uncertain import on_assumed
+from ocp.simulation.errors import checked_ranges
+from ocp.simulation.objective import Motion
 from ocp.simulation.resimulation import resimulate
 from ocp.task.point_to_point import PointToPoint
 
@@ -138,7 +139,19 @@ def tolerated_residual(task: PointToPoint) -> float:
 
     A motion is insensitive to errors within which it leaves no more.
     """
-    return TOLERATED * resimulate(on_assumed(task), CycloidPolynomial(0), []).residual
+    return TOLERATED * _plain(task).residual
+
+
+def quiet_residual(task: PointToPoint) -> float:
+    """`TOLERATED` of how far the plain cycloid bends the assumed plant's tip on its way [m].
+
+    Unlike what the cycloid leaves, this has no zeros: it falls steadily with the duration.
+    """
+    return TOLERATED * _plain(task).peak_deflection
+
+
+def _plain(task: PointToPoint) -> Motion:
+    return resimulate(on_assumed(task), CycloidPolynomial(0), [])
 
 
 @one_at_a_time

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from models import Expression, JointMotion, Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
-from ocp.robustness.plants import with_errors
 from ocp.simulation.buffered import BufferedFunction
 from ocp.simulation.collocation import NODES, step
+from ocp.simulation.errors import with_errors
 from ocp.simulation.residual import residual_samples
 from ocp.simulation.rollout import ROLLOUT_STEPS, default_steps, node_times, rollout_along
 from ocp.task.point_to_point import PointToPoint

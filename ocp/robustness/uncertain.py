@@ -11,7 +11,7 @@ from typing import Any
 from models import Body, Expression, JointMotion, Plant
 from ocp.base.checks import finite, listed, of_kind
 from ocp.base.readonly import ReadOnlyDict
-from ocp.robustness.plants import checked_ranges, with_errors
+from ocp.simulation.errors import checked_ranges, with_errors
 from ocp.task.point_to_point import PointToPoint
 
 MOST_RANGES = 4

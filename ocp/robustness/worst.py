@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from ocp.base.ranges import NotNegative
 from ocp.base.readonly import ReadOnlyDict
 from ocp.profiles.joint_profile import JointProfile
-from ocp.robustness.plants import with_errors
 from ocp.robustness.population import ErrorPopulation
 from ocp.robustness.uncertain import UncertainPlant, on_assumed, uncertain_plant
-from ocp.simulation.resimulation import resimulate
+from ocp.simulation.piecewise import PiecewiseMotion
+from ocp.simulation.resimulation import resimulated
 from ocp.task.point_to_point import PointToPoint
 
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
@@ -92,9 +92,10 @@ def worst_at(
 ) -> Worst:
     """What a motion leaves with errors in the order of the ranges; else as `peaks_between`."""
     plant = uncertain_plant(task.plant)
-    named = dict(zip(plant.ranges, errors, strict=True))
-    there = replace(on_assumed(task), plant=with_errors(plant.assumed, named))
-    return Worst(named, resimulate(there, profile, coefficients).residual)
+    named = tuple(zip(plant.ranges, map(float, errors), strict=True))
+    assumed = on_assumed(task)
+    joint = PiecewiseMotion.of_profile(assumed, profile, coefficients)
+    return Worst(dict(named), resimulated(assumed, joint, named).residual)
 
 
 def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:

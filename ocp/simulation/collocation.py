@@ -12,7 +12,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -159,11 +160,19 @@ def _system_of(plant: Plant, joint: JointMotion) -> ModalSystem:
 
 def _acting(plant: Plant) -> list[list[bool]]:
     """Whether mode j is in the equation of mode i at all: else there is no term to compute with."""
-    modes = range(plant.modes)
-    joint = JointMotion(*(ca.MX.sym("joint") for _ in range(3)))
-    W, dW = ([ca.MX.sym("W") for _ in modes] for _ in range(2))
-    after = [ca.MX(entry) for entry in plant.modal_accelerations(joint, W, dW)]
+    modes, kind = range(plant.modes), _kind_of(plant)
+    joint = JointMotion(*(kind.sym("joint") for _ in range(3)))
+    W, dW = ([kind.sym("W") for _ in modes] for _ in range(2))
+    after = [kind(entry) for entry in plant.modal_accelerations(joint, W, dW)]
     return [[ca.depends_on(after[i], ca.vertcat(W[j], dW[j])) for j in modes] for i in modes]
+
+
+def _kind_of(plant: Plant) -> Any:
+    """SX where a parameter of the plant, or of one inside it, is such a symbol, else MX."""
+    values = list(vars(plant).values())
+    inside = (one for one in values if isinstance(one, Plant))
+    is_sx = any(isinstance(one, ca.SX) for one in values)
+    return ca.SX if is_sx or any(_kind_of(one) is ca.SX for one in inside) else ca.MX
 
 
 @dataclass(frozen=True)
@@ -187,11 +196,23 @@ class Step:
         For node j and mode i, entry j * modes + i: W'' as [constant, by W..., by W'...].
     modes : int
         Number of modes.
+    forced : list of list of Expression
+        In the same rows, W'' by an excitation of 1 in each of these rows: where it was asked for.
     """
 
     h: Expression
     response: list[list[Expression]]
     modes: int
+    forced: Sequence[Sequence[Expression]] = ()
+
+    def driven_by(self, forcing: Sequence[Expression]) -> Step:
+        """The step with another excitation of each node and mode, in the order of `response`."""
+        constant = [
+            sum(gain * force for gain, force in zip(row, forcing, strict=True) if not is_zero(gain))
+            for row in self.forced
+        ]
+        rows = zip(constant, self.response, strict=True)
+        return replace(self, response=[[force, *row[1:]] for force, row in rows])
 
     def accelerations(
         self, W: Sequence[Expression], dW: Sequence[Expression]
@@ -253,7 +274,7 @@ class Step:
         ]
 
 
-def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
+def step(plant: Plant, joints: Sequence[JointMotion], h: Expression, forced: bool = False) -> Step:
     """Build one step from the joint's motion at its nodes.
 
     Parameters
@@ -265,6 +286,8 @@ def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
         candidate at once.
     h : Expression
         Length of the step [s].
+    forced : bool
+        Whether the step can be `driven_by` another excitation.
 
     Returns
     -------
@@ -294,8 +317,12 @@ def step(plant: Plant, joints: Sequence[JointMotion], h: Expression) -> Step:
             by_rate = [
                 -D[mode] - GAUSS_NODES[j] * h * K[mode] if acts[mode] else 0.0 for mode in modes
             ]
-            right.append([system.g[i], *(-K[mode] for mode in modes), *by_rate])
-    return Step(h, eliminate(matrix, right), plant.modes)
+            unit = (
+                [float(len(right) == row) for row in range(NODES * plant.modes)] if forced else []
+            )
+            right.append([system.g[i], *(-K[mode] for mode in modes), *by_rate, *unit])
+    rows, size = eliminate(matrix, right), 1 + 2 * plant.modes
+    return Step(h, [row[:size] for row in rows], plant.modes, [row[size:] for row in rows])
 
 
 def _times(factor: Expression, entry: Expression) -> Expression:

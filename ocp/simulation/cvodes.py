@@ -19,6 +19,7 @@ from models import Expression, JointMotion, Plant
 from ocp.base.errors import SolverFailedError
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import silent_errors
+from ocp.simulation.errors import with_errors
 from ocp.simulation.residual import fastest_mode
 from ocp.task.point_to_point import PointToPoint
 
@@ -28,6 +29,8 @@ CVODES = {
     "abstol": 1e-13,
 }
 """Options of every run, but for its steps: see `options_for`."""
+Errors = tuple[tuple[str, float], ...]
+"""Relative errors of a plant by name, as `with_errors` takes them."""
 _MOST_STEPS, _LEAST_A_SAMPLE = 3_000_000, 1_000
 """Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of 1000,
 five hundred times those of any plan, take 700 from one of 3500 samples to the next."""
@@ -184,7 +187,9 @@ def options_for(times: ArrayLike) -> dict[str, str | float | int]:
     return {**CVODES, "max_num_steps": max(_LEAST_A_SAMPLE, round(_MOST_STEPS * share))}
 
 
-def after_arrival(plant: Plant, target: float, times: NDArray[np.float64]) -> ca.Function:
+def after_arrival(
+    plant: Plant, target: float, times: NDArray[np.float64], names: Sequence[str] = ()
+) -> ca.Function:
     """CVODES from the state at arrival.
 
     Parameters
@@ -195,15 +200,19 @@ def after_arrival(plant: Plant, target: float, times: NDArray[np.float64]) -> ca
         Where the joint rests [rad].
     times : ndarray, shape (samples,)
         Increasing times since arrival [s], beyond 0.
+    names : sequence of str
+        What may be wrong of the plant, as by `with_errors`.
 
     Returns
     -------
     Function
-        The integrator: from `x0`, W (m) and then W' (m/s), to `xf`, a column a time.
+        The integrator: from `x0`, W (m) and then W' (m/s), with errors `p`, to `xf`, a column a
+        time.
     """
-    state = ca.SX.sym("x", 2 * plant.modes)
-    rates = rates_of(plant, JointMotion(target, 0.0, 0.0), state)
-    problem, options = {"x": state, "ode": rates}, options_for(times)
+    state, errors = ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("e", len(names))
+    wrong = with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
+    rates = rates_of(wrong, JointMotion(target, 0.0, 0.0), state)
+    problem, options = {"x": state, "p": errors, "ode": rates}, options_for(times)
     return ca.integrator("rest", "cvodes", problem, 0.0, times.tolist(), options)
 
 
@@ -220,30 +229,45 @@ class _Rest:
     tips: NDArray[np.float64]  # (tips * short times, 2 * modes)
 
 
-def _rest(task: PointToPoint) -> _Rest:
-    samples = math.ceil(task.residual_window * fastest_mode(task) / _RADIANS_A_SAMPLE)
+def _rest(task: PointToPoint, errors: Errors = ()) -> _Rest:
+    faster = 1 + max((abs(error) for _, error in errors), default=0.0)
+    faster = math.ceil(10 * faster) / 10  # so that like errors share what is compiled
+    radians = task.residual_window * fastest_mode(task) * faster
+    samples = max(1, math.ceil(radians / _RADIANS_A_SAMPLE))
     with cvodes_for("'s residual vibration"):
-        return _from_unit_states(task.plant, task.target, task.residual_window, max(1, samples))
+        return _from_unit_states(task.plant, task.target, task.residual_window, samples, errors)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=256)
 @keep_interrupts()  # casadi loses a Ctrl-C, and what it left unfinished would be kept here
-def _from_unit_states(plant: Plant, target: float, window: float, samples: int) -> _Rest:
+def _from_unit_states(
+    plant: Plant, target: float, window: float, samples: int, errors: Errors
+) -> _Rest:
     size, short = 2 * plant.modes, math.ceil(math.sqrt(samples))
     long = math.ceil(samples / short)
-    at = np.append(np.arange(1, short + 1), short * np.arange(2, long + 1))
-    run = after_arrival(plant, target, window * at / (short * long))
-    later = run(x0=ca.DM.eye(size))["xf"].full().reshape(size, size, -1)
+    run = _after_arrival(plant, target, window, (short, long), tuple(name for name, _ in errors))
+    values = ca.DM([error for _, error in errors])
+    later = run(x0=ca.DM.eye(size), p=values)["xf"].full().reshape(size, size, -1)
     matrices = np.concatenate([np.eye(size)[None], later.transpose(2, 0, 1)])
     into = matrices[: short + 1]
     W = [ca.DM(into[:, mode].reshape(1, -1)) for mode in range(plant.modes)]
-    tips = ca.horzcat(*plant.tip_displacements(W)).full().reshape(-1, size)
+    wrong = with_errors(plant, dict(errors))
+    tips = ca.horzcat(*wrong.tip_displacements(W)).full().reshape(-1, size)
     return _Rest(into, matrices[[0, *range(short, short + long - 1)]], tips)
 
 
-def residual_of(task: PointToPoint, arrival: NDArray[np.float64]) -> float:
-    """Largest absolute tip displacement [m] of `rest_of`."""
-    rest = _rest(task)
+@lru_cache(maxsize=32)
+def _after_arrival(
+    plant: Plant, target: float, window: float, counts: tuple[int, int], names: tuple[str, ...]
+) -> ca.Function:
+    short, long = counts
+    at = np.append(np.arange(1, short + 1), short * np.arange(2, long + 1))
+    return after_arrival(plant, target, window * at / (short * long), names)
+
+
+def residual_of(task: PointToPoint, arrival: NDArray[np.float64], errors: Errors = ()) -> float:
+    """Largest absolute tip displacement [m] of `rest_of`, on a plant with errors."""
+    rest = _rest(task, errors)
     return float(np.abs(rest.tips @ (rest.long @ arrival).T).max())
 
 

@@ -18,6 +18,7 @@ from ocp.simulation.collocation import NODES, modal_system, step
 from ocp.task.point_to_point import PointToPoint
 
 MOST_SAMPLES = 200_000
+_TIMES_AT_ONCE = 256
 RADIANS_A_SAMPLE = 0.02
 """Phase of the fastest mode between samples: these miss at most 5e-5 of a peak."""
 
@@ -56,25 +57,82 @@ def _fastest(plant: Plant, angle: float) -> float:
 @keep_interrupts()  # casadi loses a Ctrl-C
 def _eigenvalues(plant: Plant, angle: float) -> NDArray[np.complex128]:
     """Of the matrix that gives (W', W'') by (W, W') with the joint at rest [1/s]; read-only."""
-    system = modal_system(plant, JointMotion(angle, 0.0, 0.0))
-    modes = plant.modes
-    state_matrix = np.zeros((2 * modes, 2 * modes))
-    state_matrix[:modes, modes:] = np.eye(modes)
-    state_matrix[modes:, :modes] = -_numbers(system.K)
-    state_matrix[modes:, modes:] = -_numbers(system.D)
-    values = np.linalg.eigvals(state_matrix).astype(complex)
+    values = np.linalg.eigvals(state_matrices(plant, np.array([angle]))[0]).astype(complex)
     values.setflags(write=False)
     return values
 
 
+def state_matrices(plant: Plant, angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What gives (W', W'') by (W, W') with the joint at rest at each of some angles.
+
+    Parameters
+    ----------
+    plant : Plant
+        What moves.
+    angles : ndarray, shape (n,)
+        Where the joint rests [rad].
+
+    Returns
+    -------
+    ndarray, shape (n, 2 * modes, 2 * modes)
+        The matrices [1/s].
+    """
+    system, modes = modal_system(plant, JointMotion(ca.DM(angles), 0.0, 0.0)), plant.modes
+    matrices = np.zeros((len(angles), 2 * modes, 2 * modes))
+    matrices[:, :modes, modes:] = np.eye(modes)
+    for part, columns in ((system.K, slice(0, modes)), (system.D, slice(modes, None))):
+        for i, row in enumerate(part):
+            entries = [np.broadcast_to(np.array(ca.DM(x)).ravel(), len(angles)) for x in row]
+            matrices[:, modes + i, columns] = -np.array(entries).T
+    return matrices
+
+
+def residuals_at_rest(
+    task: PointToPoint, targets: NDArray[np.float64], arrivals: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """F1 of many moves of a task's plant and window, by modal decomposition.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        Its plant and its window count.
+    targets : ndarray, shape (n,)
+        Where the joint rests [rad].
+    arrivals : ndarray, shape (n, 2 * modes)
+        W [m] and then W' [m/s] on arrival.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        F1 [m], at times `RADIANS_A_SAMPLE` of the fastest mode apart.
+    """
+    plant, modes = task.plant, task.plant.modes
+    values, vectors = np.linalg.eig(state_matrices(plant, targets))
+    count = math.ceil(task.residual_window * np.abs(values).max() / RADIANS_A_SAMPLE) + 1
+    times = np.linspace(0.0, task.residual_window, count)
+    shares = np.linalg.solve(vectors, arrivals[:, :, None].astype(complex))[:, :, 0]
+    units = [[float(i == j) for i in range(modes)] for j in range(modes)]
+    tips = np.array([[float(ca.DM(x)) for x in plant.tip_displacements(one)] for one in units]).T
+    of_tips = (tips @ vectors[:, :modes, :]) * shares[:, None, :]
+    most = np.zeros(len(targets))
+    for first in range(0, count, _TIMES_AT_ONCE):
+        moved = np.exp(values[:, :, None] * times[first : first + _TIMES_AT_ONCE])
+        most = np.maximum(most, np.abs((of_tips @ moved).real).max(axis=(1, 2)))
+    return most
+
+
 def residual_samples(task: PointToPoint) -> int:
     """Times in the residual window that resolve the plant's fastest mode at the target."""
-    fastest = _fastest(task.plant, task.target)
-    samples = task.residual_window * fastest / RADIANS_A_SAMPLE
+    return _samples(task.plant, task.target, task.residual_window)
+
+
+def _samples(plant: Plant, target: float, window: float) -> int:
+    fastest = _fastest(plant, target)
+    samples = window * fastest / RADIANS_A_SAMPLE
     if samples > MOST_SAMPLES:
         most = MOST_SAMPLES * RADIANS_A_SAMPLE / fastest
         raise ValueError(
-            f"residual window {task.residual_window:g} s is {samples * RADIANS_A_SAMPLE:.3g} "
+            f"residual window {window:g} s is {samples * RADIANS_A_SAMPLE:.3g} "
             f"radians of the plant's fastest mode; give at most {most:.3g} s"
         )
     return max(2, math.ceil(samples) + 1)  # both ends of the window at least
@@ -122,18 +180,23 @@ def _residual_matrix(
     for mode in range(modes):
         unit = [float(other == mode) for other in range(modes)]
         tip_of_state[:, mode] = [float(tip) for tip in plant.tip_displacements(unit)]
-    rows = [tip_of_state]
-    for _ in range(samples - 1):
-        rows.append(rows[-1] @ transition)
-    matrix = np.vstack(rows)
+    matrix = tip_of_state
+    while len(matrix) < samples * plant.tips:
+        matrix = np.vstack([matrix, matrix @ transition])
+        transition = transition @ transition
+    matrix = matrix[: samples * plant.tips].copy()
     matrix.setflags(write=False)
     return matrix
 
 
-def residual_rows(task: PointToPoint) -> NDArray[np.float64]:
-    """The rows of `residual_matrix` that hold the largest displacement of some state; read-only."""
-    samples = residual_samples(task)
-    return _residual_rows(task.plant, task.target, task.residual_window, samples)
+def residual_rows(task: PointToPoint, plant: Plant | None = None) -> NDArray[np.float64]:
+    """The rows of `residual_matrix` that hold the largest displacement of some state; read-only.
+
+    Of the task's plant, or of another in its place.
+    """
+    plant = task.plant if plant is None else plant
+    samples = _samples(plant, task.target, task.residual_window)
+    return _residual_rows(plant, task.target, task.residual_window, samples)
 
 
 @lru_cache(maxsize=256)

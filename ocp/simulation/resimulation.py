@@ -27,6 +27,7 @@ from ocp.profiles.kinds import refuse_other_kinds
 from ocp.simulation.buffered import BufferedFunction
 from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from ocp.simulation.cvodes import (
+    Errors,
     Trajectory,
     after_arrival,
     cvodes_for,
@@ -37,6 +38,7 @@ from ocp.simulation.cvodes import (
     residual_of,
     rest_of,
 )
+from ocp.simulation.errors import with_errors
 from ocp.simulation.extremes import extremes
 from ocp.simulation.objective import Motion, WithPeaks, beyond_quadratic, resolved_energy
 from ocp.simulation.piecewise import Law, PiecewiseMotion
@@ -96,7 +98,9 @@ def sample_trajectory(
     moving, later = grid[grid <= task.duration], grid[grid > task.duration] - task.duration
     fractions, at = np.unique(np.append(moving / task.duration, [0.0, 1.0]), return_inverse=True)
     with cvodes_for(joint.remedy):
-        states, outputs = _along(task.plant, joint.law, joint.given.shape, fractions)(joint.given)
+        states, outputs = _along(task.plant, joint.law, joint.given.shape, fractions)(
+            joint.given, ca.DM(0, 1)
+        )
         rows = outputs.full()[:, at[:-2]]
     if later.size:
         with cvodes_for(f"'s vibration until {grid[-1]:g} s; give earlier sample times"):
@@ -206,7 +210,7 @@ class Resimulation(WithPeaks):
 
 @one_at_a_time
 @keep_interrupts()
-def resimulated(task: PointToPoint, joint: PiecewiseMotion) -> Resimulation:
+def resimulated(task: PointToPoint, joint: PiecewiseMotion, errors: Errors = ()) -> Resimulation:
     """Simulate a joint motion with CVODES.
 
     Parameters
@@ -215,6 +219,8 @@ def resimulated(task: PointToPoint, joint: PiecewiseMotion) -> Resimulation:
         The move.
     joint : PiecewiseMotion
         How the joint moves.
+    errors : tuple of (str, float)
+        What is wrong of the plant. Plants with errors of the same names share what is compiled.
 
     Returns
     -------
@@ -234,10 +240,14 @@ def resimulated(task: PointToPoint, joint: PiecewiseMotion) -> Resimulation:
     of_a_piece = math.ceil(least * max(1, blocks) / joint.given.shape[1])
     steps = max(of_a_piece, _LEAST_STEPS_OF_A_PIECE)
     with cvodes_for(joint.remedy):
-        figures = _figures(task.plant, joint.law, joint.given.shape, steps)
-        outputs, arrival, energy, net_work = (value.T.copy() for value in figures(joint.given.T))
+        names = tuple(name for name, _ in errors)
+        figures = _figures(task.plant, joint.law, joint.given.shape, steps, names)
+        wrong = [[error for _, error in errors]]
+        outputs, arrival, energy, net_work = (
+            value.T.copy() for value in figures(joint.given.T, wrong)
+        )
     arrived = arrival[:, 0]
-    residual = residual_of(task, arrived)
+    residual = residual_of(task, arrived, errors)
     return Resimulation(task, joint, residual, energy.item(), net_work.item(), arrived, outputs)
 
 
@@ -250,10 +260,13 @@ def _fractions(steps: int) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=32)
 @keep_interrupts()
-def _figures(plant: Plant, law: Law, shape: tuple[int, int], steps: int) -> BufferedFunction:
-    """(given) -> outputs at nodes and ends of all pieces, state on arrival, energy, net work."""
+def _figures(
+    plant: Plant, law: Law, shape: tuple[int, int], steps: int, names: tuple[str, ...]
+) -> BufferedFunction:
+    """(given, errors) -> outputs at nodes and ends of all pieces, arrival, energy, net work."""
     given, fractions = ca.MX.sym("p", *shape), _fractions(steps)
-    states, outputs = _along(plant, law, shape, fractions)(given)
+    errors = ca.MX.sym("e", len(names))
+    states, outputs = _along(plant, law, shape, fractions, names)(given, errors)
     rows = ca.vertsplit(outputs)
     power = ca.reshape(rows[-1] * rows[1], len(fractions), shape[1])[1:-1, :]
     h = given[-1, :].T @ mesh(ca.DM(np.arange(steps)).T, steps)[1]
@@ -263,37 +276,53 @@ def _figures(plant: Plant, law: Law, shape: tuple[int, int], steps: int) -> Buff
     net_work = h * sum(w * p for w, p in zip(GAUSS_WEIGHTS, at_nodes, strict=True))
     figures = [outputs, states[:, -1], energy, ca.sum1(ca.sum2(net_work))]
     dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
-    return BufferedFunction(ca.Function("figures", [given], dense))
+    return BufferedFunction(ca.Function("figures", [given, errors], dense))
 
 
 def _along(
-    plant: Plant, law: Law, shape: tuple[int, int], fractions: NDArray[np.float64]
+    plant: Plant,
+    law: Law,
+    shape: tuple[int, int],
+    fractions: NDArray[np.float64],
+    names: tuple[str, ...] = (),
 ) -> ca.Function:
-    """(given) -> states and outputs at these fractions of every piece, from 0 on."""
+    """(given, errors) -> states and outputs at these fractions of every piece, from 0 on."""
     (numbers, pieces), size, count = shape, 2 * plant.modes, len(fractions)
-    integrate = _over_a_piece(plant, law, numbers, fractions)
-    given = ca.MX.sym("p", numbers, pieces)
-    _, states = integrate.mapaccum(pieces)(ca.DM.zeros(size), given)
+    integrate = _over_a_piece(plant, law, numbers, fractions, names)
+    given, errors = ca.MX.sym("p", numbers, pieces), ca.MX.sym("e", len(names))
+    with_each = ca.vertcat(given, ca.repmat(errors, 1, pieces))
+    _, states = integrate.mapaccum(pieces)(ca.DM.zeros(size), with_each)
     at_samples = [
         row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T for row in ca.vertsplit(given)
     ]
     joint = law(at_samples, ca.DM(np.tile(fractions, pieces)).T, jerk=True)
-    return ca.Function("along", [given], [states, outputs_of(plant, joint, states)])
+    wrong = _wrong(plant, names, errors)
+    return ca.Function("along", [given, errors], [states, outputs_of(wrong, joint, states)])
+
+
+def _wrong(plant: Plant, names: tuple[str, ...], errors: ca.SX | ca.MX) -> Plant:
+    return with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
 
 
 def _over_a_piece(
-    plant: Plant, law: Law, numbers: int, fractions: NDArray[np.float64]
+    plant: Plant,
+    law: Law,
+    numbers: int,
+    fractions: NDArray[np.float64],
+    names: tuple[str, ...],
 ) -> ca.Function:
-    """CVODES: (state before, given) -> state after a piece, states at these fractions of it."""
-    state, fraction, given = (
+    """CVODES: (state before, given and errors) -> state after a piece, states along it."""
+    count = numbers + len(names)
+    state, fraction, both = (
         ca.SX.sym("x", 2 * plant.modes),
         ca.SX.sym("t"),
-        ca.SX.sym("p", numbers),
+        ca.SX.sym("p", count),
     )
-    rates = given[-1] * rates_of(plant, law(ca.vertsplit(given), fraction, jerk=False), state)
-    problem = {"t": fraction, "x": state, "p": given, "ode": rates}
+    given, wrong = ca.vertsplit(both[:numbers]), _wrong(plant, names, both[numbers:])
+    rates = given[-1] * rates_of(wrong, law(given, fraction, jerk=False), state)
+    problem = {"t": fraction, "x": state, "p": both, "ode": rates}
     times = fractions[1:]
     integrate = ca.integrator("piece", "cvodes", problem, 0.0, times.tolist(), options_for(times))
-    before, given = ca.MX.sym("x", state.numel()), ca.MX.sym("p", numbers)
-    states = ca.horzcat(before, integrate(x0=before, p=given)["xf"])
-    return ca.Function("over", [before, given], [states[:, -1], states])
+    before, both = ca.MX.sym("x", state.numel()), ca.MX.sym("p", count)
+    states = ca.horzcat(before, integrate(x0=before, p=both)["xf"])
+    return ca.Function("over", [before, both], [states[:, -1], states])

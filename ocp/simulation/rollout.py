@@ -21,7 +21,6 @@ from ocp.simulation.collocation import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
     NodeState,
-    Step,
     end_to_end,
     is_zero,
     mesh,
@@ -160,7 +159,7 @@ def rollout_along(plant: Plant, joints: list[JointMotion], h: Expression) -> Sym
         Every joint, mode and torque at the Gauss nodes, and the state at arrival.
     """
     steps_at_once = step(plant, joints, h)
-    W, dW, arrival = _march(steps_at_once, *h.shape)
+    W, dW, arrival = march(*steps_at_once.transition(), h.shape)
     ddW = steps_at_once.accelerations(W, dW)
     states = steps_at_once.nodes(W, dW, ddW)
     torque = [
@@ -183,22 +182,40 @@ def _jerk(
     return profile.motion(coefficients, at, start, target, duration, jerk=True).jerk
 
 
-def _march(
-    batch: Step, candidates: int, steps: int
+def march(
+    constant: Sequence[Expression],
+    columns: Sequence[Sequence[Expression]],
+    shape: tuple[int, int],
 ) -> tuple[list[Expression], list[Expression], Expression]:
-    """States before every step (candidates, steps), by mode, and the state at arrival.
+    """States before every step (rows, steps), by mode, and the state at arrival.
 
     Only this recursion is sequential: everything else is computed for all steps at once.
+
+    Parameters
+    ----------
+    constant, columns : sequence of Expression
+        The steps, as by `Step.transition`.
+    shape : tuple of int
+        Rows and steps.
+
+    Returns
+    -------
+    W, dW : list of Expression, shape (rows, steps)
+        Before every step, by mode.
+    arrival : Expression, shape (rows, 2 * modes)
+        W and then W'.
     """
-    modes, size = batch.modes, 2 * batch.modes
-    constant, columns = batch.transition()
+    rows, steps = shape
+    size = len(constant)
+    if size > 2 and _apart(columns):
+        return _march_apart(constant, columns, shape)
     offsets = [_by_step(row, steps) for row in constant]
     by_row = [
         {c: _by_step(column[row], steps) for c, column in enumerate(columns)
          if not is_zero(column[row])}
         for row in range(size)
     ]  # fmt: skip
-    state: list[Expression] = [ca.DM.zeros(candidates, 1)] * size
+    state: list[Expression] = [ca.DM.zeros(rows, 1)] * size
     before: list[list[Expression]] = [[] for _ in range(size)]
     for k in range(steps):
         for row in range(size):
@@ -207,8 +224,60 @@ def _march(
             offsets[row][k] + sum(gain[k] * state[column] for column, gain in by_row[row].items())
             for row in range(size)
         ]
-    rows = [ca.horzcat(*entry) for entry in before]
-    return rows[:modes], rows[modes:], ca.horzcat(*state)
+    after = [ca.horzcat(*entry) for entry in before]
+    return after[: size // 2], after[size // 2 :], ca.horzcat(*state)
+
+
+def _apart(columns: Sequence[Sequence[Expression]]) -> bool:
+    """Whether no mode acts on another."""
+    size, modes = len(columns), len(columns) // 2
+    return all(
+        is_zero(columns[c][row])
+        for c in range(size)
+        for row in range(size)
+        if c % modes != row % modes
+    )
+
+
+def _march_apart(
+    constant: Sequence[Expression],
+    columns: Sequence[Sequence[Expression]],
+    shape: tuple[int, int],
+) -> tuple[list[Expression], list[Expression], Expression]:
+    """As `march` of modes that do not act on each other: at each step they stand below each other.
+
+    That is a step of one mode with more rows, built that much sooner.
+    """
+    (rows, steps), modes = shape, len(constant) // 2
+
+    def below(entries: Sequence[Expression]) -> list[Expression]:
+        by_step = [_by_step(entry, steps) for entry in entries]
+        return [
+            ca.vertcat(*(x if x.shape[0] == rows else ca.repmat(x, rows, 1) for x in at))
+            for at in zip(*by_step, strict=True)
+        ]
+
+    of_W, of_dW = (below(constant[part : part + modes]) for part in (0, modes))
+    gains = [
+        [below([columns[c + i][row + i] for i in range(modes)]) for c in (0, modes)]
+        for row in (0, modes)
+    ]
+    W = dW = ca.DM.zeros(rows * modes, 1)
+    before: list[list[Expression]] = [[], []]
+    for k in range(steps):
+        before[0].append(W)
+        before[1].append(dW)
+        W, dW = (
+            offset[k] + gain[0][k] * W + gain[1][k] * dW
+            for offset, gain in zip((of_W, of_dW), gains, strict=True)
+        )
+    halves = []
+    for states, last in zip(before, (W, dW), strict=True):
+        apart = zip(*(ca.vertsplit(state, rows) for state in [*states, last]), strict=True)
+        halves.append([list(one) for one in apart])
+    arrival = ca.horzcat(*(one[-1] for half in halves for one in half))
+    W_before, dW_before = ([ca.horzcat(*one[:-1]) for one in half] for half in halves)
+    return W_before, dW_before, arrival
 
 
 def _by_step(entry: Expression, steps: int) -> list[Expression]:

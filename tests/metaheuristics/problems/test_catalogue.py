@@ -15,7 +15,7 @@ from metaheuristics.problems.catalogue import FRONTS
 from ocp import CycloidPolynomial, evaluate_coefficients, weighted_front
 from ocp.answers.provenance import SolveSettings
 from ocp.plan.solver import plan_at_samples
-from ocp.robustness.plants import with_errors
+from ocp.simulation.errors import with_errors
 
 NAMES = pytest.mark.parametrize("name", PROBLEMS)
 TWO_TERMS = ["single-link-30deg-0.8s-2-terms", "arm-on-flexible-link-90deg-0.8s-2-terms"]

@@ -27,10 +27,11 @@ def exhaust(known, say):
 
 def built(known, say):
     """Which worker it is, and how often it has built the same objective of a population."""
-    from metaheuristics.objective import population
+    from ocp.program.batch import batch
 
-    PopulationObjective(PointToPoint(SingleLinkManipulator(), 0.5, 0.8), CycloidPolynomial(2))
-    return os.getpid(), population._compiled.cache_info().misses
+    task = PointToPoint(SingleLinkManipulator(), 0.5, 0.8)
+    PopulationObjective(task, CycloidPolynomial(2))([[0.0, 0.0]])
+    return os.getpid(), batch.cache_info().misses
 
 
 def kill_once(path, known, say):

@@ -92,10 +92,8 @@ def test_the_polished_front_says_where_it_comes_from(rough, polish):
 def test_a_point_that_cannot_be_improved_stays(rough, monkeypatch):
     whole = Sweep.solve
 
-    def failing(self, guess, residual_limit=np.inf, **rest):
-        found = whole(self, guess, residual_limit, **rest)
-        object.__setattr__(found, "status", SolveStatus.NUMERICAL_TROUBLE)
-        return found
+    def failing(self, rows):
+        return [replace(one, status=SolveStatus.NUMERICAL_TROUBLE) for one in whole(self, rows)]
 
     monkeypatch.setattr(Sweep, "solve", failing)
     polish = polish_front(rough)

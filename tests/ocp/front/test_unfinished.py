@@ -1,9 +1,10 @@
 """Sweeps of a front that are interrupted, or lose a solve."""
 
 import signal
+from dataclasses import replace
 from types import SimpleNamespace
 
-import numpy as np
+import pytest
 from front_moves import CASES
 
 from ocp import (
@@ -16,7 +17,8 @@ from ocp import (
 from ocp.base.status import SolveStatus
 from ocp.front import checking, weighted
 from ocp.front.ends import find_ends
-from ocp.front.sweep import Sweep
+from ocp.front.sweep import InterruptedSolveError, Sweep
+from ocp.program.stack import Stack
 
 
 def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):
@@ -63,12 +65,13 @@ def test_a_solve_that_fails_does_not_end_the_sweep(monkeypatch):
     profile, whole = CycloidPolynomial(3), Sweep.solve
     solved = []
 
-    def failing(self, guess, residual_limit=np.inf, **rest):
-        found = whole(self, guess, residual_limit, **rest)
-        if 4e-3 < residual_limit < 6e-3:
-            object.__setattr__(found, "status", SolveStatus.NUMERICAL_TROUBLE)
-        solved.append(residual_limit)
-        return found
+    def failing(self, rows, **rest):
+        limits = [ask.limits["residual"] for _, ask in rows]
+        solved.extend(limits)
+        return [
+            replace(one, status=SolveStatus.NUMERICAL_TROUBLE) if 4e-3 < limit < 6e-3 else one
+            for one, limit in zip(whole(self, rows, **rest), limits, strict=True)
+        ]
 
     monkeypatch.setattr(Sweep, "solve", failing)
     front = epsilon_front(task, profile, bound=bound, points=8)
@@ -80,16 +83,46 @@ def test_a_solve_that_fails_does_not_end_the_sweep(monkeypatch):
     assert min(solved) < 4e-3 < 6e-3 < max(solved)
 
 
-def test_ctrl_c_keeps_what_was_found(monkeypatch):
+# The solver runs for the limits between the ends first, then for all points.
+@pytest.mark.parametrize("run", [0, 1])
+def test_ctrl_c_keeps_what_was_solved(monkeypatch, run):
     task, bound = CASES["arm"]
-    calls = []
+    runs, whole = [], Sweep.solve
 
-    def interrupt(done, total):
-        calls.append((done, total))
-        if done == 4:
-            raise KeyboardInterrupt
+    def interrupted(self, rows, **rest):
+        found = whole(self, rows, **rest)
+        runs.append(len(found))
+        if len(runs) <= run:
+            return found
+        half, stopped = len(found) // 2, SolveStatus.ITERATION_LIMIT
+        rest_of = [replace(one, status=stopped) for one in found[half:]]
+        raise InterruptedSolveError([*found[:half], *rest_of])
 
-    front = epsilon_front(task, CycloidPolynomial(3), bound=bound, points=8, report=interrupt)
+    monkeypatch.setattr(Sweep, "solve", interrupted)
+    front = epsilon_front(task, CycloidPolynomial(3), bound=bound, points=20)
+    assert len(runs) == run + 1
     assert not front.complete
-    assert 3 <= len(front.points) < 8
-    assert calls[-1] == (4, 8)
+    assert 2 < len(front.points) < 20
+    assert front.failures == ()  # those not solved yet are none
+
+
+@pytest.mark.parametrize("solver", ["sqp", "ipopt"])
+def test_ctrl_c_within_a_run_of_the_solver_keeps_the_ends(monkeypatch, solver):
+    task, bound = CASES["arm"]
+    whole, calls = Stack.evaluate, []
+
+    def evaluate(self, *arguments):
+        calls.append(self)
+        if len(calls) == 3:
+            signal.raise_signal(signal.SIGINT)
+        return whole(self, *arguments)
+
+    def watch(done, total):
+        if done == 2:  # the ends are there, and the solver runs next
+            monkeypatch.setattr(Stack, "evaluate", evaluate)
+
+    profile = CycloidPolynomial(3)
+    front = epsilon_front(task, profile, bound=bound, points=8, solver=solver, report=watch)
+    assert len(calls) >= 3
+    assert not front.complete
+    assert 2 <= len(front.points) < 8  # IPOPT ends the row that it has begun

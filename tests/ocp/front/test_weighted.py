@@ -1,6 +1,7 @@
 """The front by weighted sums: its points are on the front, its gaps where the front bends away."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -52,7 +53,7 @@ def test_its_points_are_those_of_the_residual_limit(case):
     assert len(front.points) == POINTS
     for point in front.points[1:-1:3]:
         sweep = Sweep(task, front.profile, SolveSettings(bound=bound))
-        at_limit = sweep.solve(np.array(point.coefficients), point.residual)
+        at_limit = sweep.best([np.array(point.coefficients)], sweep.ask(point.residual))
         energy = resimulate(task, front.profile, at_limit.coefficients).energy
         assert point.energy == pytest.approx(energy, rel=1e-4)
 
@@ -125,11 +126,11 @@ def test_a_solve_that_fails_is_kept_with_its_reason(monkeypatch):
     task, bound = CASES["arm"]
     whole = Sweep.solve
 
-    def failing(self, guess, residual_limit=np.inf, **rest):
-        found = whole(self, guess, residual_limit, **rest)
-        if 0.0 < found.peaks.get("residual", 0.0) < 8e-3:
-            object.__setattr__(found, "status", SolveStatus.ITERATION_LIMIT)
-        return found
+    def failing(self, rows, **rest):
+        return [
+            replace(one, status=SolveStatus.ITERATION_LIMIT) if 0 < one.residual < 8e-3 else one
+            for one in whole(self, rows, **rest)
+        ]
 
     monkeypatch.setattr(Sweep, "solve", failing)
     front = weighted_front(task, CycloidPolynomial(3), bound=bound, points=6, starts=1)

@@ -189,7 +189,7 @@ def test_a_file_has_the_keys_that_others_read(any_plan, tmp_path):
     task = document["task"]
     assert task["plant"]["name"] == any_plan.task.plant.name
     assert (task["start"], task["target"], task["duration"]) == any_plan.task.move
-    assert (document["format"], document["version"]) == ("quietarm-plan", 2)
+    assert (document["format"], document["version"]) == ("quietarm-plan", Plan.version)
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False)

@@ -17,12 +17,9 @@ from ocp import (
     plan_move,
     rollout,
 )
-from ocp.plan.feasibility import explain
-from ocp.program.ipopt import Point
-from ocp.program.problem import Problem
-from ocp.program.solution import Solution
-from ocp.program.task_program import TaskProgram
-from ocp.program.transcription import Form
+from ocp.plan.feasibility import explain, least_peaks
+from ocp.program.program import Program
+from ocp.program.solution import Ask, Solution
 
 # Name, terms, task's limits, settings of the solve.
 CASES = {
@@ -38,7 +35,7 @@ CASES = {
     "torque and speed": ("arm", 4, {"torque_limit": 0.05, "speed_limit": 20.0}, {"starts": 1}),
 }
 ALLOWED = 1e-3
-"""Share of a limit by which ocp.plan.solver lets a verified peak pass it, if there is no room."""
+"""Share of a limit by which a verified peak may pass it, if there is no room (`OVERRUN`)."""
 QUOTED = re.compile(r"(residual|torque|speed|acceleration|deflection) limit (\S+) (?:N m|rad|m)")
 
 
@@ -144,17 +141,28 @@ def test_an_infeasible_task_is_a_failed_solve_is_quietarms_own():
     assert issubclass(SolverFailedError, QuietarmError)
 
 
+def test_least_peaks_are_as_small_as_the_other_limits_let_them(tasks):
+    task = PointToPoint(tasks["arm"].plant, math.pi / 2, 0.8, torque_limit=0.2)
+    program, start = Program(task, CycloidPolynomial(4), 48), np.zeros(4)
+    found = least_peaks(program, Ask({"residual": 0.0, "torque": 0.2}, 0.5), [start])
+    assert list(found) == ["residual", "torque"]
+    assert found["residual"].peaks["torque"] <= 0.2 * (1 + 1e-6)
+    assert found["torque"].residual == 0.0
+    # Where one is free the other is lower still.
+    alone = least_peaks(program, Ask({"torque": 0.2}, 0.5), [start])
+    assert alone["torque"].peaks["torque"] < found["torque"].peaks["torque"]
+
+
 # -- the words --
 
 
 def _solution(status, **peaks):
-    stopped = {"form": Form("sampled", 0, None), "point": Point(np.empty(0))}
-    return Solution(np.zeros(3), 1.0, peaks, status, 0.0, 9, np.zeros(2), **stopped)
+    return Solution(np.zeros(3), 1.0, peaks, status, 9, np.zeros((1, 2)))
 
 
 def _explained(tasks, limits, bound, runs, least):
-    program = TaskProgram(tasks["arm"], CycloidPolynomial(3), 8)
-    return explain(Problem(program, limits, bound), runs, least)
+    program = Program(tasks["arm"], CycloidPolynomial(3), 8)
+    return explain(program, Ask(limits, bound), runs, least)
 
 
 @pytest.mark.parametrize("status", [SolveStatus.ITERATION_LIMIT, SolveStatus.NUMERICAL_TROUBLE])

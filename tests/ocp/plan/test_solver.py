@@ -19,7 +19,7 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.plan.solver import PLAN_STEPS, start_coefficients
+from ocp.plan.starts import PLAN_STEPS, start_coefficients
 from ocp.task.point_to_point import LIMITS
 
 pi = math.pi
@@ -120,7 +120,11 @@ def test_the_seed_is_kept_with_the_answer():
     plan = _plan(seed=5, starts=2)
     expected = SolveSettings(residual_limit=0.0, bound=0.5, starts=2, seed=5)
     assert plan.provenance.settings == expected
-    assert plan.provenance.method == "ipopt"
+    assert plan.provenance.method == "sqp"
+    other = _plan(seed=5, starts=2, solver="ipopt")
+    assert other.provenance.settings == replace(expected, solver="ipopt")
+    assert other.provenance.method == "ipopt"
+    assert other.energy == pytest.approx(plan.energy, rel=1e-5)
 
 
 @pytest.mark.parametrize(("bound", "spread"), [(0.05, 0.05), (None, 0.2), (3.0, 3.0)])
@@ -158,7 +162,7 @@ def test_a_limit_is_kept_and_costs_energy(tasks, solved, limit):
     value, task = 0.9 * free.motion.peak(quantity), tasks["arm"]
     limited = solved(replace(task, **{limit: value}), starts=1)
     # Kept to the solver's tolerance by the verified motion, and between its samples to the share
-    # that ocp.plan.solver allows.
+    # that ocp.plan.verification allows.
     assert limited.motion.peak(quantity) <= value * (1 + 1e-6)
     sampled = limited.sampled(np.linspace(0.0, task.duration, 20_001))
     peak = {
@@ -318,6 +322,7 @@ def test_two_links_keep_limits(tasks, solved, limit, share):
         ({"steps": 0}, "steps is 0"),
         ({"steps": 1}, "steps is 1; give a whole number from 2 up"),
         ({"steps": 10.0}, "steps is 10.0"),
+        ({"solver": "simplex"}, "solver is 'simplex'; give 'sqp' or 'ipopt'"),
     ],
 )
 def test_a_setting_out_of_range_is_named(tasks, settings, message):

@@ -1,91 +1,57 @@
-"""How many of the starts are solved."""
+"""Several starts of one plan: what they share, and what is tried where none is solved."""
 
-from dataclasses import replace
-
+import numpy as np
 import pytest
 
-from ocp import CycloidGaussians, CycloidPolynomial, SolverFailedError, SolveStatus, plan_move
-from ocp.plan import solver
-from ocp.program.problem import Problem
-from ocp.program.transcription import RESIDUAL
+from ocp import CycloidPolynomial, InfeasibleTaskError, PointToPoint, SolveSettings
+from ocp.plan.starts import FINER_STEPS, PLAN_STEPS, first_steps, from_starts, start_coefficients
+from ocp.program.program import Program
+from ocp.program.solution import RESIDUAL, Ask
 
-ENOUGH = CycloidPolynomial(6)
-"""Four coefficients beyond the two that rest takes for one mode."""
-
-
-@pytest.fixture
-def energies(monkeypatch):
-    """Let the starts end at these energies [J]; what is left of the list is not solved."""
-
-    def put(left):
-        known = Problem.solve
-
-        def solve(*given, **settings):
-            return replace(known(*given, **settings), energy=left.pop(0))
-
-        monkeypatch.setattr(Problem, "solve", solve)
-        return left
-
-    return put
+PROFILE = CycloidPolynomial(6)
+AT_REST = Ask({RESIDUAL: 0.0})
 
 
-@pytest.mark.parametrize(
-    ("starts", "at", "solved"),
-    [
-        (1, [2.0], 1),
-        (2, [2.0, 2.0], 2),
-        (4, [2.0, 2.0, 1.0, 1.0], 2),
-        (4, [2.0, 2.1, 2.0, 1.0], 3),  # one more minimum
-        (4, [2.1, 2.0, 1.0, 1.5], 4),
-        (4, [2.0, 1.0, 2.0, 1.0], 4),  # two agree, but not at the least
-        (6, [2.0, 2.0, 2.000001, 1.0, 1.0, 1.0], 3),  # half of them, within the solver's tolerance
-    ],
-)
-def test_starts_end_when_half_of_them_agree_at_the_least_energy(
-    tasks, energies, starts, at, solved
-):
-    left = energies(list(at))
-    plan_move(tasks["single link"], ENOUGH, starts=starts)
-    assert len(at) - len(left) == solved
+@pytest.fixture(scope="module")
+def starts():
+    return start_coefficients(PROFILE, SolveSettings(starts=6))
+
+
+@pytest.mark.parametrize("solver", ["sqp", "ipopt"])
+def test_the_best_of_several_starts_is_the_cheapest(tasks, starts, solver):
+    program = Program(tasks["arm"], PROFILE, PLAN_STEPS)
+    found = from_starts(program, AT_REST, starts, solver)
+    assert found.stopped is None
+    energies = [one.energy for one in found.solved]
+    assert energies == sorted(energies)
+    assert found.solution.energy == energies[0]
+    alone = from_starts(program, AT_REST, starts[:1], solver)
+    assert found.solution.energy == pytest.approx(alone.solution.energy, rel=1e-6)
+    assert found.solution.iterations > alone.solution.iterations  # those of all
+
+
+def test_no_start_is_solved_where_there_is_no_motion(tasks, starts):
+    task = PointToPoint(tasks["arm"].plant, np.pi / 2, 0.8, torque_limit=0.05)
+    ask = Ask({RESIDUAL: 0.0, "torque": 0.05})
+    with pytest.raises(InfeasibleTaskError, match=r"torque limit 0\.198"):  # 0.1983, and 0.1 %
+        from_starts(Program(task, PROFILE, FINER_STEPS), ask, starts[:2])
 
 
 @pytest.mark.parametrize(
-    ("of", "profile"),
+    ("terms", "limits", "steps"),
     [
-        ("single link", CycloidPolynomial(5)),  # a few still motions may lie apart
-        ("two links", CycloidPolynomial(6)),  # rest of two modes takes four
-        ("single link", CycloidGaussians(2)),  # not linear in the coefficients
+        (6, {}, PLAN_STEPS),
+        (9, {}, 56),
+        (30, {}, FINER_STEPS),
+        (6, {"torque_limit": 1.0}, FINER_STEPS),
     ],
 )
-def test_where_agreement_says_little_all_are_solved(tasks, energies, of, profile):
-    left = energies([2.0] * 4)
-    plan_move(tasks[of], profile, starts=4)
-    assert left == []
+def test_more_terms_and_limits_take_more_steps(tasks, terms, limits, steps):
+    task = PointToPoint(tasks["arm"].plant, np.pi / 2, 0.8, **limits)
+    assert first_steps(task, CycloidPolynomial(terms), SolveSettings()) == steps
+    assert first_steps(task, CycloidPolynomial(terms), SolveSettings(steps=33)) == 33
 
 
-@pytest.mark.parametrize(
-    ("residuals", "solved"),
-    [
-        ([2e-3, 2.01e-3, 1e-3, 1e-3], 2),  # the same motion, within 1 %
-        ([2e-3, 2.1e-3, 2e-3, 1e-3], 3),
-        ([1e-3, 2e-3, 3e-3, 4e-3], 4),
-    ],
-)
-def test_starts_end_when_half_of_them_break_a_limit_at_the_same_motion(
-    tasks, monkeypatch, residuals, solved
-):
-    known, left, ended = Problem.solve, list(residuals), []
-
-    def solve(*given, **settings):
-        peaks = {RESIDUAL: left.pop(0)}
-        return replace(known(*given, **settings), status=SolveStatus.INFEASIBLE, peaks=peaks)
-
-    def note(solutions, *rest):
-        ended.extend(solutions)
-        raise SolverFailedError("enough is known")
-
-    monkeypatch.setattr(Problem, "solve", solve)
-    monkeypatch.setattr(solver, "rescued", note)
-    with pytest.raises(SolverFailedError, match="enough"):
-        plan_move(tasks["single link"], ENOUGH, starts=4)
-    assert len(ended) == solved
+def test_a_move_of_too_many_periods_is_refused(tasks):
+    with pytest.raises(ValueError, match=r"duration is 1000 s, .* give a shorter duration"):
+        first_steps(PointToPoint(tasks["arm"].plant, 1.0, 1000.0), PROFILE, SolveSettings())

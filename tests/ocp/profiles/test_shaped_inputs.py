@@ -27,10 +27,9 @@ from ocp import (
     rollout,
 )
 from ocp.answers.provenance import SolveSettings
-from ocp.plan.solver import start_coefficients
+from ocp.plan.starts import start_coefficients
 from ocp.profiles.spline import DEGREE, b_splines
 from ocp.profiles.units import SHARPEST
-from ocp.program.pieces import ProfilePieces
 
 UNITS = {"gaussians": CycloidGaussians, "network": CycloidNetwork}
 FAMILIES = {**UNITS, "spline": CycloidSpline}
@@ -138,8 +137,18 @@ def test_the_splines_sum_to_one(at):
 
 
 def test_a_spline_is_linear_in_its_coefficients_and_units_are_not():
-    pieces = {name: ProfilePieces(family(), 2) for name, family in FAMILIES.items()}
-    assert {name for name, piece in pieces.items() if piece.second is None} == {"spline"}
+    random, times = np.random.default_rng(1), ca.DM(np.linspace(0.0, 1.0, 9))
+    linear = set()
+    for name, family in FAMILIES.items():
+        profile = family()
+        a, b = profile.plain + random.uniform(-0.2, 0.2, (2, profile.size))
+        ends, middle = (
+            [profile.input(list(one), times)[0].full() for one in of]
+            for of in ((a, b), [a / 2 + b / 2])
+        )
+        if middle[0] == pytest.approx((ends[0] + ends[1]) / 2, abs=1e-12):
+            linear.add(name)
+    assert linear == {"spline"}
 
 
 @pytest.mark.parametrize("terms", [1, 2, 5, 9])

@@ -1,10 +1,9 @@
-"""What the tests of `ocp.program` share: a task of each plant, and problems of tasks."""
+"""What the tests of `ocp.program` share."""
 
 import pytest
 
 from ocp import CycloidPolynomial
-from ocp.program.problem import Problem
-from ocp.program.task_program import TaskProgram
+from ocp.program.program import Program
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])
@@ -13,10 +12,10 @@ def task(request, tasks):
 
 
 @pytest.fixture(scope="session")
-def problem():
-    """What a problem is made of, in few words."""
+def program():
+    """The program of a task, in few words."""
 
-    def of(task, limits, bound=None, *, terms=6, steps=60):
-        return Problem(TaskProgram(task, CycloidPolynomial(terms), steps), limits, bound)
+    def of(task, *, terms=6, steps=48):
+        return Program(task, CycloidPolynomial(terms), steps)
 
     return of

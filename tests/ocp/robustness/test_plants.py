@@ -18,7 +18,7 @@ from models import (
     parameter,
 )
 from ocp import evaluate_robustness, with_errors
-from ocp.robustness.plants import checked_ranges
+from ocp.simulation.errors import checked_ranges
 from ocp.simulation.residual import vibrations
 
 PLANTS = [SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()]

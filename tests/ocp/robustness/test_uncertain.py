@@ -90,7 +90,8 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
     there = with_errors(task.plant.assumed, evaluated.worst.errors)
     again = resimulate(replace(task, plant=there), evaluated.profile, MOVE)
-    assert evaluated.worst.residual == again.residual
+    # With the errors as parameters CVODES takes other steps: within its tolerance the same.
+    assert evaluated.worst.residual == pytest.approx(again.residual, rel=1e-5)
 
 
 def test_peaks_lie_within_the_ranges_the_largest_first(task, evaluated):

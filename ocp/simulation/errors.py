@@ -99,6 +99,8 @@ def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     ValueError
         When there is no such parameter, or a number makes the frequency 0 or the damping negative.
     """
+    if not errors:
+        return plant
     refuse_unknown(plant, errors)
     for name, least in ((FREQUENCY, np.nextafter(-1.0, 0.0)), (DAMPING, -1.0)):
         error = errors.get(name, 0.0)

@@ -1,0 +1,280 @@
+"""Plans of many moves at once, a row each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.answers.provenance import SolveSettings
+from ocp.base.errors import SolverFailedError
+from ocp.base.status import SolveStatus
+from ocp.base.threads import one_at_a_time
+from ocp.plan.starts import first_steps, start_coefficients
+from ocp.plan.verification import OF_A_PLAN, verified
+from ocp.profiles.joint_profile import JointProfile
+from ocp.profiles.kinds import refuse_other_kinds
+from ocp.profiles.polynomial import CycloidPolynomial
+from ocp.program.batch import Values, batch
+from ocp.program.program import Program, programs_of
+from ocp.program.solution import RESIDUAL, STILL, Ask, Solution
+from ocp.program.solving import Row, Solver, solve
+from ocp.robustness.uncertain import UncertainPlant
+from ocp.simulation.residual import residuals_at_rest, state_matrices
+from ocp.simulation.resimulation import resimulate
+from ocp.task.point_to_point import PointToPoint
+
+Array = NDArray[np.float64]
+_FINER, _EVERY, _SAME = 3, 10, 1e-6
+"""Figures are by so many times the solver's steps; CVODES checks one move in so many; the share by
+which energies may then differ."""
+_ROUNDS, _AT_REST = 4, 0.3
+"""Most corrections of the state on arrival, until a residual is below this share of `STILL`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Moves:
+    """Plans of many moves.
+
+    Attributes
+    ----------
+    tasks : tuple of PointToPoint
+        The moves.
+    profile : JointProfile
+        How the joint moves.
+    coefficients : ndarray, shape (moves, profile.size)
+        Coefficients; NaN where there is no plan.
+    energy, residual : ndarray, shape (moves,)
+        F2 [J] and F1 [m]; NaN where there is no plan.
+    status : tuple of SolveStatus
+        How each ended.
+    reasons : tuple of str
+        The same in the solver's words.
+    iterations : ndarray, shape (moves,)
+        Iterations of the solver.
+    by_cvodes : ndarray of bool, shape (moves,)
+        Whose figures CVODES computed; the others are by a finer rule that it confirmed.
+    complete : bool
+        Whether no Ctrl-C came.
+    """
+
+    tasks: tuple[PointToPoint, ...]
+    profile: JointProfile
+    coefficients: Array
+    energy: Array
+    residual: Array
+    status: tuple[SolveStatus, ...]
+    reasons: tuple[str, ...]
+    iterations: NDArray[np.intp]
+    by_cvodes: NDArray[np.bool_]
+    complete: bool
+
+
+@one_at_a_time
+def plan_moves(
+    tasks: Sequence[PointToPoint],
+    profile: JointProfile | None = None,
+    *,
+    residual_limit: float = 0.0,
+    bound: float | None = None,
+    starts: int = 1,
+    seed: int = 0,
+    solver: Solver = "sqp",
+) -> Moves:
+    """Find the motions of least energy of many moves of one plant.
+
+    Parameters
+    ----------
+    tasks : sequence of PointToPoint
+        Moves of one plant, none of them uncertain, with the same quantities limited.
+    profile, residual_limit, bound, starts, seed, solver
+        As for `plan_move`; a move that no start solves is tried from three random ones, then by
+        IPOPT.
+
+    Returns
+    -------
+    Moves
+        The plans. Moves at rest and without limits are certified together, by a finer rule in one
+        call, and by CVODES at one in ten and wherever the two differ; all others by CVODES. After
+        Ctrl-C those that were solved until then.
+
+    Raises
+    ------
+    ValueError
+        When there is no task, the plants or limits differ, or an argument is out of range.
+    """
+    profile = CycloidPolynomial() if profile is None else profile
+    settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
+    _check(tasks, profile)
+    programs = programs_of(tasks, profile, _steps(tasks, profile, settings))
+    asks = [Ask({RESIDUAL: settings.residual_limit, **task.limits}, bound) for task in tasks]
+    first = start_coefficients(profile, settings)
+    random = start_coefficients(profile, replace(settings, starts=4))[1:]
+    best: list[Solution | None] = [None] * len(tasks)
+    complete = True
+    attempts: list[tuple[Solver, list[Array]]]
+    attempts = [(solver, first), (solver, random), ("ipopt", first[:1])]
+    for by, guesses in attempts:
+        left = [i for i, one in enumerate(best) if one is None or not one.status.solved]
+        rows = [Row(programs[i], asks[i], guess) for i in left for guess in guesses]
+        if not rows or not complete:
+            break
+        groups = np.repeat(left, len(guesses)).tolist()
+        found, complete = solve(rows, by, groups=groups)
+        for i, one in zip(groups, found, strict=True):
+            held = best[i]
+            if held is None or _preferred(one) < _preferred(held):
+                best[i] = one
+    return _certified(programs, asks, [one for one in best if one], settings, complete)
+
+
+def _steps(tasks: Sequence[PointToPoint], profile: JointProfile, settings: SolveSettings) -> int:
+    """Steps that do for all: those of the move that takes the most periods."""
+    ends = np.array([angle for task in tasks for angle in (task.start, task.target)])
+    fastest = np.abs(np.linalg.eigvals(state_matrices(tasks[0].plant, ends))).max(axis=1)
+    radians = fastest.reshape(-1, 2).max(axis=1) * [task.duration for task in tasks]
+    return first_steps(tasks[int(np.argmax(radians))], profile, settings)
+
+
+def _certified(
+    programs: Sequence[Program],
+    asks: Sequence[Ask],
+    found: list[Solution],
+    settings: SolveSettings,
+    complete: bool,
+) -> Moves:
+    """Correct what the steps miss, and give the figures of finer steps or of CVODES."""
+    count, profile = len(found), programs[0].profile
+    moves = Moves(
+        tasks=tuple(program.task for program in programs),
+        profile=profile,
+        coefficients=np.full((count, profile.size), np.nan),
+        energy=np.full(count, np.nan),
+        residual=np.full(count, np.nan),
+        status=tuple(one.status for one in found),
+        reasons=tuple(one.reason for one in found),
+        iterations=np.array([one.iterations for one in found]),
+        by_cvodes=np.zeros(count, dtype=bool),
+        complete=complete,
+    )
+    solved = [i for i, one in enumerate(found) if one.status.solved]
+    together = [i for i in solved if asks[i].at_rest and not programs[i].task.limits]
+    doubtful = set(solved) - set(together)
+    if together:
+        rows = [_Found(i, programs[i], asks[i], found[i]) for i in together]
+        doubtful |= _together(moves, rows, settings.solver)
+    for i in sorted(doubtful):
+        try:
+            best, checked, _ = verified(programs[i], asks[i], found[i], settings.solver)
+        except SolverFailedError:
+            moves.coefficients[i] = moves.energy[i] = moves.residual[i] = np.nan
+            continue
+        moves.coefficients[i], moves.by_cvodes[i] = best.coefficients, True
+        moves.energy[i], moves.residual[i] = checked.energy, checked.residual
+    return moves
+
+
+class _Found(NamedTuple):
+    """A move's place, what was asked and what was found."""
+
+    place: int
+    program: Program
+    ask: Ask
+    solution: Solution
+
+
+def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int = 2) -> set[int]:
+    """Certify moves at rest in a few calls; the places of those left to CVODES alone.
+
+    Those whose energy the finer steps do not confirm are solved again on twice the steps.
+    """
+    one, places = rows[0].program, [row.place for row in rows]
+    table = np.array([row.solution.coefficients for row in rows])
+    values = _finer(rows, table)
+    energy = np.array([row.solution.energy for row in rows])
+    rough = np.abs(energy - values.energy) > OF_A_PLAN.agreement * values.energy
+    doubtful = set[int]()
+    if rough.any():
+        doubtful = {places[k] for k in np.flatnonzero(rough)}
+        if doublings:
+            again = _on_twice_the_steps([rows[k] for k in np.flatnonzero(rough)], solver)
+            doubtful = _together(moves, again, solver, doublings - 1)
+        kept = np.flatnonzero(~rough)
+        rows, table = [rows[k] for k in kept], table[kept]
+        if not rows:
+            return doubtful
+    table, values, residual = _corrected(rows, table, solver)
+    places = [row.place for row in rows]
+    moves.coefficients[places], moves.energy[places] = table, values.energy
+    moves.residual[places] = residual
+    doubtful |= {places[k] for k in np.flatnonzero(residual > STILL)}
+    for k in range(0, len(rows), _EVERY):
+        exact = resimulate(rows[k].program.task, one.profile, table[k])
+        differs = abs(exact.energy - values.energy[k]) > _SAME * exact.energy
+        if differs or exact.residual > STILL:
+            return doubtful | set(places)
+        moves.by_cvodes[places[k]] = True
+    return doubtful
+
+
+def _on_twice_the_steps(rows: list[_Found], solver: Solver) -> list[_Found]:
+    tasks, one = [row.program.task for row in rows], rows[0].program
+    programs = programs_of(tasks, one.profile, 2 * one.steps)
+    given = [
+        Row(program, row.ask, row.solution.coefficients)
+        for program, row in zip(programs, rows, strict=True)
+    ]
+    found = solve(given, solver, warm=True).solutions
+    return [
+        row._replace(program=program, solution=solution)
+        for row, program, solution in zip(rows, programs, found, strict=True)
+    ]
+
+
+def _finer(rows: list[_Found], table: Array) -> Values:
+    """Figures of coefficients on many more steps."""
+    one = rows[0].program
+    fine = batch(one.plant, one.profile, _FINER * one.steps)
+    move = np.array([row.program.task.move for row in rows])
+    return fine.values(table, move, np.zeros((len(rows), 0)))
+
+
+def _corrected(rows: list[_Found], table: Array, solver: Solver) -> tuple[Array, Values, Array]:
+    """Coefficients, figures and residuals, corrected by what the steps miss on arrival."""
+    targets = np.array([row.program.task.target for row in rows])
+    by_steps = np.array([row.solution.arrival[0] for row in rows])
+    for correction in range(_ROUNDS + 1):
+        values = _finer(rows, table)
+        residual = residuals_at_rest(rows[0].program.task, targets, values.arrival)
+        again = np.flatnonzero(residual > _AT_REST * STILL)
+        if not again.size or correction == _ROUNDS:
+            return table, values, residual
+        offset = values.arrival - by_steps
+        given = [
+            Row(rows[k].program, rows[k].ask._replace(offset=offset[k]), table[k]) for k in again
+        ]
+        for k, found in zip(again, solve(given, solver, warm=True).solutions, strict=True):
+            table[k], by_steps[k] = found.coefficients, found.arrival[0] - offset[k]
+    raise AssertionError  # the last round returns
+
+
+def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
+    if not tasks:
+        raise ValueError("no moves are given; give one task or more")
+    for i, task in enumerate(tasks, start=1):
+        refuse_other_kinds(task, profile)
+        if isinstance(task.plant, UncertainPlant):
+            raise ValueError(f"the plant of move {i} is uncertain; plan such moves by plan_move")
+        if task.plant != tasks[0].plant or set(task.limits) != set(tasks[0].limits):
+            raise ValueError(
+                f"move {i} has another plant or other limits than move 1; plan them apart"
+            )
+    if profile.size == 0:
+        raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+
+
+def _preferred(found: Solution) -> tuple[bool, float]:
+    return not found.status.solved, found.energy

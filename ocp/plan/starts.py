@@ -1,0 +1,158 @@
+"""Where the gradient starts, on how many steps, and the best of what it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.answers.provenance import SolveSettings
+from ocp.plan.feasibility import explain, least_peaks
+from ocp.plan.verification import MOST_SOLVER_STEPS
+from ocp.profiles.joint_profile import JointProfile
+from ocp.program.program import Program
+from ocp.program.solution import Ask, Solution
+from ocp.program.solving import STOPPED, Row, Solver, solve
+from ocp.simulation.rollout import default_steps
+from ocp.task.point_to_point import PointToPoint
+
+PLAN_STEPS, FINER_STEPS, STEPS_A_TERM = 48, 80, 8
+"""Steps that resolve a profile: more with more terms, since the power changes sign more often, but
+within the first two; with limits the second, since limits hold only at the nodes."""
+
+
+def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> int:
+    """Steps of the solver's discretisation to begin with.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    settings : SolveSettings
+        Its steps count where they are given.
+
+    Returns
+    -------
+    int
+        Number of steps.
+
+    Raises
+    ------
+    ValueError
+        When the move takes too many periods of the plant's fastest mode.
+    """
+    fewest = FINER_STEPS if task.limits else PLAN_STEPS
+    least = min(max(fewest, STEPS_A_TERM * (profile.size - 2)), FINER_STEPS)
+    steps = settings.steps or default_steps(task, least=least)
+    if steps > MOST_SOLVER_STEPS and settings.steps is None:
+        raise ValueError(
+            f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
+            f"mode; the solver resolves up to {MOST_SOLVER_STEPS // 2}: give a shorter duration"
+        )
+    return steps
+
+
+def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[NDArray[np.float64]]:
+    """Coefficients to start from: the guess or the plain cycloid, then random ones of the seed."""
+    random = np.random.default_rng(settings.seed)
+    within = profile.start_box(settings.bound)
+    others = [random.uniform(*within) for _ in range(settings.starts - 1)]
+    first = profile.plain if settings.guess is None else np.array(settings.guess)
+    return [first, *others]
+
+
+class Best(NamedTuple):
+    """The best of several starts.
+
+    Attributes
+    ----------
+    solution : Solution
+        That of least energy, with the iterations of all.
+    solved : list of Solution
+        All that were solved, the cheapest first.
+    stopped : str or None
+        After what Ctrl-C came, in words.
+    """
+
+    solution: Solution
+    solved: list[Solution]
+    stopped: str | None
+
+
+def from_starts(
+    program: Program,
+    ask: Ask,
+    starts: Sequence[NDArray[np.float64]],
+    solver: Solver = "sqp",
+) -> Best:
+    """Solve from several starts, and help where none of them leads to a solution.
+
+    Help are motions of least peaks as further starts, then IPOPT.
+
+    Parameters
+    ----------
+    program : Program
+        The task.
+    ask : Ask
+        What is asked.
+    starts : sequence of ndarray
+        Coefficients.
+    solver : {"sqp", "ipopt"}
+        What solves it.
+
+    Returns
+    -------
+    Best
+        What was found.
+
+    Raises
+    ------
+    InfeasibleTaskError
+        When no motion of this profile meets the limits.
+    SolverFailedError
+        When no start ended at an optimum for another reason.
+    KeyboardInterrupt
+        After Ctrl-C before a start was solved.
+    """
+    tried, least = list[Solution](), dict[str, Solution]()
+    begun, stopped, complete = 0, None, True
+    attempts: list[tuple[Solver, Callable[[], Sequence[NDArray[np.float64]]]]]
+    attempts = [(solver, lambda: starts)]
+    if ask.limits:
+        attempts.append((solver, lambda: _still_within(program, ask, starts, least)))
+    if solver != "ipopt":
+        attempts.append(("ipopt", lambda: starts[:2]))
+    for by, from_ in attempts:
+        rows = [Row(program, ask, start) for start in from_()]
+        if not rows:
+            continue
+        found, complete = solve(rows, by, groups=[0] * len(rows))
+        tried += found
+        begun += len(rows)
+        if any(one.status.solved for one in tried) or not complete:
+            break
+    solved = sorted((one for one in tried if one.status.solved), key=lambda one: one.energy)
+    if not complete:
+        if not solved:
+            raise KeyboardInterrupt
+        stopped = f"{begun - sum(one.reason == STOPPED for one in tried)} of {begun} starts"
+    if not solved:
+        raise explain(program, ask, tried, least)
+    total = sum(one.iterations for one in tried)
+    return Best(replace(solved[0], iterations=total), solved, stopped)
+
+
+def _still_within(
+    program: Program,
+    ask: Ask,
+    starts: Sequence[NDArray[np.float64]],
+    least: dict[str, Solution],
+) -> list[NDArray[np.float64]]:
+    """Coefficients of motions of least peaks, which are kept in `least`."""
+    least.update(least_peaks(program, ask, starts[:2]))
+    return [one.coefficients for one in least.values()]

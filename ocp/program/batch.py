@@ -1,0 +1,273 @@
+"""Candidates in rows: what each costs, leaves and asks of the joint, with exact derivatives.
+
+A row is a candidate with a move and errors of the plant of its own. The modes are linear in the
+state before a step and in what forces them at its nodes, so the first derivatives follow by the
+same steps: they are a rollout of their own, forced by the derivatives of the forcing, with a row
+for each coefficient of each candidate. The same steps backwards carry multipliers to the forcing.
+All that is nonlinear belongs to a single node, where second derivatives are small blocks.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from models import Plant
+from ocp.base.interrupts import keep_interrupts
+from ocp.profiles.joint_profile import JointProfile
+from ocp.program.expressions import differentiated, evaluated
+from ocp.program.node import PathFunctions
+from ocp.simulation.buffered import BufferedFunction
+from ocp.simulation.collocation import NODES
+from ocp.simulation.rollout import node_times
+from ocp.task.quantities import QUANTITIES
+
+Array = NDArray[np.float64]
+_BLOCKS, _MANY = (1, 2, 4, 8), 100
+"""Rows of a compiled call with derivatives, where more rows take several; of one for values."""
+_PADDED = 200
+"""A function for more rows than are needed serves so many times, before one is built that fits."""
+
+
+@dataclass(frozen=True)
+class Values:
+    """What candidates cost; rows are candidates.
+
+    Attributes
+    ----------
+    energy : ndarray, shape (rows,)
+        F2 [J], with its sign changes resolved.
+    arrival : ndarray, shape (rows, 2 * modes)
+        W [m], then W' [m/s].
+    limited : ndarray, shape (rows, values)
+        Each limited quantity at the nodes, one after another.
+    """
+
+    energy: Array
+    arrival: Array
+    limited: Array
+
+
+@dataclass(frozen=True)
+class Derivatives(Values):
+    """The same with derivatives by the coefficients.
+
+    Attributes
+    ----------
+    gradient : ndarray, shape (rows, coefficients)
+        Of the energy, with the zeros of the power held fixed, which is exact.
+    by_arrival : ndarray, shape (rows, 2 * modes, coefficients)
+        Of the arrival.
+    by_limited : ndarray, shape (rows, values, coefficients)
+        Of the limited quantities.
+    curvature : ndarray, shape (rows, coefficients, coefficients)
+        Second derivatives of the Lagrangian.
+    """
+
+    gradient: Array
+    by_arrival: Array
+    by_limited: Array
+    curvature: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """A plant's motion along a profile in a number of steps, for many candidates at once.
+
+    Attributes
+    ----------
+    plant : Plant
+        What moves.
+    profile : JointProfile
+        How the joint moves.
+    steps : int
+        Number of steps.
+    quantities : tuple of str
+        Limited quantities.
+    errors : tuple of str
+        What may differ from the plant in a row, as by `with_errors`.
+    """
+
+    plant: Plant
+    profile: JointProfile
+    steps: int
+    quantities: tuple[str, ...] = ()
+    errors: tuple[str, ...] = ()
+
+    @cached_property
+    def even_axes(self) -> Array:
+        """Axes along which the first value of `inner` moves alike and independently.
+
+        The powers of T of a polynomial are nearly the same function from about ten terms on.
+        Coefficients are these axes times the unknowns of a program; the identity where the
+        coefficients enter nonlinearly.
+        """
+        path = PathFunctions(self.profile, self.steps, jerk=False)
+        if not path.linear:
+            return np.eye(self.profile.size)
+        times, length = node_times(self.steps)
+        at_nodes = [[np.array(slope[0]).ravel() for slope in path.slopes(at)] for at in times]
+        slopes = np.array(at_nodes) * np.sqrt(np.array(length).ravel())
+        columns = slopes.transpose(0, 2, 1).reshape(-1, self.profile.size)
+        triangle: Any = np.linalg.qr(columns, mode="r")
+        return np.linalg.inv(triangle) * triangle[0, 0]
+
+    @cached_property
+    def _built(self) -> dict[int, BufferedFunction]:
+        return {}
+
+    @cached_property
+    def _lent(self) -> dict[int, int]:
+        return dict.fromkeys(_BLOCKS, 0)
+
+    def _function(self, rows: int) -> tuple[int, BufferedFunction]:
+        """One for so many rows or more: to build one takes as long as hundreds of its calls."""
+        fitting = next(size for size in _BLOCKS if size >= rows)
+        larger = [size for size in self._built if size >= rows]
+        if fitting not in self._built and larger and self._lent[fitting] < _PADDED:
+            self._lent[fitting] += 1
+            fitting = min(larger)
+        if fitting not in self._built:
+            parts = self.plant, self.profile, self.steps, self.quantities, self.errors
+            self._built[fitting] = BufferedFunction(differentiated(*parts, fitting))
+        return fitting, self._built[fitting]
+
+    @property
+    def parts(self) -> list[tuple[str, slice]]:
+        """Where the values of each limited quantity stand among all."""
+        found = list[tuple[str, slice]]()
+        for name in self.quantities:
+            first = found[-1][1].stop if found else 0
+            count = QUANTITIES[name].rows(self.plant) * NODES * self.steps
+            found.append((name, slice(first, first + count)))
+        return found
+
+    @cached_property
+    def _idle(self) -> list[BufferedFunction]:
+        return []
+
+    @cached_property
+    def _valued(self) -> ca.Function:
+        parts = self.plant, self.profile, self.steps, self.quantities, self.errors
+        return evaluated(*parts, _MANY)
+
+    @keep_interrupts()  # casadi loses a Ctrl-C
+    def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:
+        """Evaluate candidates without derivatives, the energy a little more exactly.
+
+        Other arguments as for `derivatives`; the energy takes in what neighbouring steps say.
+
+        Parameters
+        ----------
+        threads : int
+            Blocks of candidates that are evaluated at the same time.
+        """
+        inputs = coefficients, move, errors
+        blocks = [
+            [one[first : first + _MANY] for one in inputs]
+            for first in range(0, len(coefficients), _MANY)
+        ]
+        if threads > 1 and len(blocks) > 1:
+            with ThreadPoolExecutor(threads) as pool:
+                parts = list(pool.map(self._values, blocks))
+        else:
+            parts = [self._values(block) for block in blocks]
+        if not parts:
+            values = self.parts[-1][1].stop if self.parts else 0
+            return Values(np.zeros(0), np.zeros((0, 2 * self.plant.modes)), np.zeros((0, values)))
+        energy, arrival, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return Values(energy[:, 0], arrival, limited)
+
+    def _values(self, block: list[Array]) -> list[Array]:
+        try:
+            function = self._idle.pop()
+        except IndexError:  # all are in use by other threads, or none is made yet
+            function = BufferedFunction(self._valued)
+        rows = len(block[0])
+        found = function(*(_filled(one, _MANY).T for one in block))
+        copies = [one[:, :rows].T.copy() for one in found]
+        self._idle.append(function)
+        return copies
+
+    def derivatives(
+        self,
+        coefficients: Array,
+        move: Array,
+        errors: Array,
+        width: Array,
+        weights: tuple[Array, Array, Array],
+    ) -> Derivatives:
+        """Evaluate candidates with first derivatives, and second ones of a weighted sum.
+
+        Parameters
+        ----------
+        coefficients : ndarray, shape (rows, profile.size)
+            One candidate a row.
+        move : ndarray, shape (rows, 3)
+            Start, target [rad], duration [s].
+        errors : ndarray, shape (rows, len(errors))
+            Relative errors of the plant.
+        weights : tuple of ndarray, shapes (rows,), (rows, 2 * modes), (rows, values)
+            Of energy, arrival and limited quantities in `curvature`.
+
+        Returns
+        -------
+        Derivatives
+            Figures and derivatives.
+        """
+        inputs = [coefficients, move, errors, width[:, None], weights[0][:, None], *weights[1:]]
+        parts = [
+            self._block([one[first : first + rows] for one in inputs], rows)
+            for first, rows in _cut(len(coefficients))
+        ]
+        return Derivatives(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+
+    def _block(self, inputs: list[Array], rows: int) -> tuple[Array, ...]:
+        fitting, function = self._function(rows)
+        size, raw = self.profile.size, function(*(_filled(one, fitting).T for one in inputs))
+
+        def by_coefficient(one: Array) -> Array:
+            """From (values, coefficients, steps; rows) to (rows; coefficients; values, steps)."""
+            apart = one.reshape(-1, size, self.steps, fitting)[..., :rows]
+            return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
+
+        # copies: the next call overwrites the function's own
+        energy, arrival, limited, gradient, by_arrival = (one[:, :rows].T.copy() for one in raw[:5])
+        by_limited, left, right = (by_coefficient(one) for one in raw[5:8])
+        curvature = left @ right.transpose(0, 2, 1)
+        if raw[8].size:
+            curvature += raw[8][:, :rows].T.reshape(rows, size, size)
+        return (
+            energy[:, 0], arrival, limited, gradient, by_arrival.reshape(rows, -1, size),
+            by_limited.transpose(0, 2, 1), curvature,
+        )  # fmt: skip
+
+
+def _filled(rows: Array, count: int) -> Array:
+    """Rows, the last of them as often as makes so many."""
+    missing = count - len(rows)
+    return np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) if missing else rows
+
+
+def _cut(rows: int) -> list[tuple[int, int]]:
+    """First row and number of rows of each call."""
+    most = _BLOCKS[-1]
+    return [(first, min(most, rows - first)) for first in range(0, rows, most)]
+
+
+@lru_cache(maxsize=32)
+def batch(
+    plant: Plant,
+    profile: JointProfile,
+    steps: int,
+    quantities: tuple[str, ...] = (),
+    errors: tuple[str, ...] = (),
+) -> Batch:
+    """The compiled functions of a plant, a profile and a number of steps."""
+    return Batch(plant, profile, steps, quantities, errors)

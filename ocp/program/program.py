@@ -1,0 +1,134 @@
+"""One task on a grid of steps: its numbers, measured against the profile's plain motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.base.interrupts import keep_interrupts
+from ocp.profiles.joint_profile import JointProfile
+from ocp.program.batch import Derivatives, batch
+from ocp.program.solution import ENERGY, RESIDUAL
+from ocp.robustness.uncertain import UncertainPlant, assumed_plant
+from ocp.simulation.errors import with_errors
+from ocp.simulation.residual import residual_rows
+from ocp.task.point_to_point import PointToPoint
+
+Array = NDArray[np.float64]
+
+
+class Program:
+    """A task's numbers for a number of steps.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    steps : int
+        Number of steps.
+
+    Attributes
+    ----------
+    batch : Batch
+        Evaluates candidates, on the assumed plant and on those with errors.
+    errors : ndarray, shape (plants, ranges)
+        Errors of the plants whose residual counts; the first is the assumed one.
+    parts : list of (str, slice)
+        Where the values of each limited quantity stand among all.
+    """
+
+    def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
+        self.task, self.profile, self.steps = task, profile, steps
+        self.plant, names, samples = assumed_plant(task.plant), (), [()]
+        if isinstance(task.plant, UncertainPlant):
+            names = tuple(task.plant.ranges)
+            samples = [(0.0,) * len(names), *task.plant.samples]
+        self.errors = np.array(samples, dtype=float).reshape(len(samples), len(names))
+        self.batch = batch(self.plant, profile, steps, tuple(task.limits), names)
+        self.parts = self.batch.parts
+
+    @cached_property
+    def rests(self) -> list[Array]:
+        """What makes each plant's tip displacements of its state on arrival, a row a time."""
+        names = self.batch.errors
+        named = [dict(zip(names, errors.tolist(), strict=True)) for errors in self.errors]
+        return [residual_rows(self.task, with_errors(self.plant, one)) for one in named]
+
+    @cached_property
+    def plain(self) -> Derivatives:
+        """The plain motion, on all plants."""
+        return self.evaluated(self.profile.plain)
+
+    @cached_property
+    def scale(self) -> Array:
+        """Scale of the state on arrival, shape (2 * modes,)."""
+        scale = np.abs(self.plain.by_arrival).max(axis=(0, 2))
+        scale[scale == 0] = 1.0
+        return scale
+
+    @property
+    def of_cycloid(self) -> float:
+        """Residual of the plain motion [m]."""
+        return self.peaks(self.plain)[RESIDUAL]
+
+    @cached_property
+    def energy(self) -> float:
+        """Scale of the energy [J]: that of the plain motion."""
+        return float(self.plain.energy[0]) or 1.0
+
+    def scale_of(self, name: str) -> float:
+        """Scale of the energy, of the residual or of a limited quantity."""
+        if name == ENERGY:
+            return self.energy
+        if name == RESIDUAL:
+            return max(float(np.abs(rows * self.scale).max()) for rows in self.rests) or 1.0
+        return self.peak(self.plain, name) or 1.0
+
+    @keep_interrupts()  # casadi loses a Ctrl-C
+    def evaluated(self, coefficients: Array) -> Derivatives:
+        """One candidate on all plants."""
+        return evaluated([self], coefficients[None])[0]
+
+    def peaks(self, of: Derivatives, offset: Array | None = None) -> dict[str, float]:
+        """The largest residual of all plants [m], and the peaks of the limited quantities."""
+        arrival = of.arrival if offset is None else of.arrival + offset
+        left = [np.abs(r @ z).max() for r, z in zip(self.rests, arrival, strict=True)]
+        return {RESIDUAL: float(max(left)), **{name: self.peak(of, name) for name, _ in self.parts}}
+
+    def peak(self, of: Derivatives, name: str) -> float:
+        """The peak of a limited quantity on the assumed plant."""
+        return float(np.abs(of.limited[0, dict(self.parts)[name]]).max())
+
+
+def evaluated(programs: Sequence[Program], coefficients: Array) -> list[Derivatives]:
+    """A candidate of each of several programs of one batch, on all its plants."""
+    one = programs[0]
+    counts = [len(program.errors) for program in programs]
+    rows, first = sum(counts), np.cumsum([0, *counts])
+    values = one.parts[-1][1].stop if one.parts else 0
+    found = one.batch.derivatives(
+        np.repeat(coefficients, counts, axis=0),
+        np.repeat([program.task.move for program in programs], counts, axis=0),
+        np.concatenate([program.errors for program in programs]),
+        np.zeros(rows),
+        (np.zeros(rows), np.zeros((rows, 2 * one.plant.modes)), np.zeros((rows, values))),
+    )
+    return [
+        Derivatives(**{name: part[begin:end] for name, part in vars(found).items()})
+        for begin, end in pairwise(first)
+    ]
+
+
+def programs_of(tasks: Sequence[PointToPoint], profile: JointProfile, steps: int) -> list[Program]:
+    """Programs of many tasks of one plant, whose plain motions are evaluated in one call."""
+    programs = [Program(task, profile, steps) for task in tasks]
+    plain = np.repeat(profile.plain[None], len(programs), axis=0)
+    for program, found in zip(programs, evaluated(programs, plain), strict=True):
+        program.__dict__["plain"] = found
+    return programs

@@ -1,0 +1,498 @@
+"""Sequential quadratic programming: many small nonlinear programs, a row each, side by side.
+
+Every row minimises f(x) with c(x) = 0 and lower <= v(x) <= upper. In an iteration all rows are
+evaluated in one call; each solves a quadratic program of its own within a trust region, by DAQP, a
+dual active-set method (Arnstrom, Bemporad and Axehill, IEEE Trans. Automatic Control 67, 2022).
+
+- Curvature is exact. Along the linearised equalities, where it has to be positive, negative
+  curvature counts as positive.
+- A step is accepted by a funnel (Kiessling, Leyffer and Vanaret, 2024, after Gould and Toint,
+  2010): the violation of the constraints stays within a width that shrinks; where the model
+  promises more than feasibility can cost, the objective has to fall. Unlike a merit function this
+  has no weight that could be too large to see the objective, or too small to see 1e-9 m.
+- A step that is not accepted for the curvature of the constraints is corrected to second order
+  (Nocedal and Wright, Numerical Optimization, 2nd ed., section 18.3).
+- Where the linearised constraints cannot be met, the step makes their violation least.
+- The objective has kinks that a quadratic model does not see before it is beyond them: where the
+  power, hardly away from zero, changes its sign. So it is rounded off over a width that shrinks
+  from stage to stage, as the barrier does it for an interior-point method; the last stage has none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, NamedTuple
+
+import daqp
+import numpy as np
+from numpy.typing import NDArray
+
+from ocp.base.interrupts import note_interrupts
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+WIDTHS = (0.5, 0.15, 0.05, 0.015, 0.005, 0.0)
+"""Widths over which the objective is rounded off, stage by stage."""
+SHARP = (0.0,)
+"""The widths for a start next to a minimum."""
+_FINE = 1e-2
+"""A stage ends where the model promises less than this share of its width."""
+_OPTIMAL, _MET = 1e-9, 1e-10
+"""A row is solved where the model promises no larger share of f and constraints are met so well."""
+FEASIBLE = 1e-7
+"""A row that ends otherwise is feasible with no larger violation."""
+_NEAR = 1e-3
+"""A stage ends with no larger violation."""
+_FUNNEL, _DESCENT, _SWITCH = 0.9, 1e-4, 0.1
+"""Share of the funnel's width to stay within, of the promised descent to reach, and of the squared
+violation that a promise has to exceed for the descent to count."""
+_SMALLEST, _SHRINK, _GROW = 1e-9, (0.1, 0.5), 2.5
+"""Least radius of a trust region; limits of the factor by which it shrinks; by which it grows."""
+_PATIENCE, _CREEP = 40, 1e-5
+"""A row creeps where in so many iterations f falls by less than this share."""
+_ALIKE = 1e-6
+"""Rows whose f differ by no more than this share agree."""
+_EXACT = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 300}
+_LOOSER, _STIFFER = {"primal_tol": 1e-9, "dual_tol": 1e-9}, 1e-6
+"""Settings of the quadratic programs, and where these fail."""
+_TIE = 1e-3
+"""Curvature that settles which of the steps of least violation is taken: a short one."""
+_MEETING = 2e-3
+"""Rows whose points are no farther apart in the same stage, past the first, go on as one."""
+_EQUALITY, _OPTIMUM, _EMPTY = 5, 1, -1
+"""DAQP's mark of one; its words for a solution, and for constraints that cannot be met."""
+
+
+class Model(NamedTuple):
+    """Rows of programs at their points: values, derivatives, Hessian of the Lagrangian.
+
+    Attributes
+    ----------
+    f : ndarray, shape (rows,)
+        Objective.
+    gradient : ndarray, shape (rows, n)
+        Its derivatives.
+    c, v : ndarray, shapes (rows, m) and (rows, k)
+        Equalities, and what is bounded.
+    by_c, by_v : ndarray, shapes (rows, m, n) and (rows, k, n)
+        Their derivatives.
+    hessian : ndarray, shape (rows, n, n)
+        Of the Lagrangian.
+    """
+
+    f: Array
+    gradient: Array
+    c: Array
+    by_c: Array
+    v: Array
+    by_v: Array
+    hessian: Array
+
+    def put(self, rows: Index, other: Model) -> None:
+        """Replace rows."""
+        for part, new in zip(self, other, strict=True):
+            part[rows] = new
+
+    def take(self, rows: Index | NDArray[np.bool_]) -> Model:
+        """Some rows."""
+        return Model(*(part[rows] for part in self))
+
+
+Evaluate = Callable[[Index, Array, Array, Array, Array], Model]
+"""(rows, points, multipliers of c, of v, widths) -> model at these points."""
+
+
+class End(Enum):
+    """How a row ended."""
+
+    SOLVED = "a local optimum"
+    CREEPING = "feasible, and hardly better for many iterations"
+    INFEASIBLE = "no smaller violation nearby"
+    UNFINISHED = "the iterations ran out"
+    AGREED = "left, since another start led to the same, or others agreed"
+    STOPPED = "stopped by the user"
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Where the rows ended.
+
+    Attributes
+    ----------
+    x : ndarray, shape (rows, n)
+        Points.
+    f, violation : ndarray, shape (rows,)
+        Objective; the largest distance from c = 0 and from the bounds of v.
+    of_c, of_v : ndarray, shapes (rows, m) and (rows, k)
+        Multipliers, positive where f falls if c grows, or at an upper bound.
+    ends : list of End
+        Why.
+    iterations : ndarray, shape (rows,)
+        How many.
+    stopped : bool
+        Whether Ctrl-C came.
+    """
+
+    x: Array
+    f: Array
+    violation: Array
+    of_c: Array
+    of_v: Array
+    ends: list[End]
+    iterations: NDArray[np.intp]
+    stopped: bool = False
+
+
+def minimise(
+    evaluate: Evaluate,
+    x: Array,
+    lower: Array,
+    upper: Array,
+    *,
+    linear: int = 0,
+    groups: Index | None = None,
+    widths: tuple[float, ...] = WIDTHS,
+    reach: float = 0.25,
+    most: int = 500,
+) -> Rows:
+    """Minimise every row from its start.
+
+    Parameters
+    ----------
+    evaluate : callable
+        The rows' model.
+    x : ndarray, shape (rows, n)
+        Starts.
+    lower, upper : ndarray, shape (rows, k)
+        Bounds of v.
+    linear : int
+        How many entries of v, the last, are linear and kept from the start on.
+    groups : ndarray of int, shape (rows,), optional
+        Rows of one number are starts of one program: once half of them, and more than one, agree on
+        the least f, the others are left.
+    widths : tuple of float
+        Widths over which f is rounded off, the last of them 0.
+    reach : float
+        Radius of the trust regions at first.
+    most : int
+        Most iterations of a row.
+
+    Returns
+    -------
+    Rows
+        Where they ended; after Ctrl-C where they were.
+    """
+    with note_interrupts() as came:
+        run = _Run(evaluate, x, lower, upper, linear, groups, np.array(widths), reach)
+        for _ in range(most):
+            if came or not len(run.going):
+                break
+            run.iterate()
+        for row in run.going:
+            run.ends[row] = End.STOPPED if came else run.unfinished(row)
+    ends = [End.UNFINISHED if end is None else end for end in run.ends]
+    found = run.x, run.f, run.violation, run.of_c, run.of_v, ends, run.iterations
+    return Rows(*found, stopped=bool(came))
+
+
+class _Step(NamedTuple):
+    """Steps d with multipliers; whether the linearised constraints are met."""
+
+    d: Array
+    of_c: Array
+    of_v: Array
+    met: NDArray[np.bool_]
+
+
+class _Run:
+    """The rows on their way. Arrays by row; `model` has those of the rows still `going`."""
+
+    def __init__(
+        self,
+        evaluate: Evaluate,
+        x: Array,
+        lower: Array,
+        upper: Array,
+        linear: int,
+        groups: Index | None,
+        widths: Array,
+        reach: float,
+    ) -> None:
+        rows = len(x)
+        self.evaluate, self.linear, self.widths, self.groups = evaluate, linear, widths, groups
+        self.x, self.lower, self.upper = x.copy(), lower, upper
+        self.going, self.stage = np.arange(rows), np.zeros(rows, dtype=int)
+        self.ends: list[End | None] = [None] * rows
+        self.iterations = np.zeros(rows, dtype=int)
+        self.count = np.ones(rows, dtype=int)  # of the starts that lead here
+        k = lower.shape[1]
+        # the number of equalities is known from the first model
+        none = np.zeros((rows, 0))
+        self.model = evaluate(self.going, self.x, none, np.zeros((rows, k)), self.width(self.going))
+        self.of_c, self.of_v = np.zeros((rows, self.model.c.shape[1])), np.zeros((rows, k))
+        self.f, self.violation = self.model.f.copy(), self._violation(self.going, self.model)
+        self.funnel = np.maximum(0.1, 1.1 * self.violation)
+        self.radius = np.full(rows, reach)
+        self.mark, self.marked = self.f.copy(), np.zeros(rows, dtype=int)
+
+    def width(self, rows: Index) -> Array:
+        return self.widths[self.stage[rows]]
+
+    def iterate(self) -> None:
+        """One iteration of all rows that are going."""
+        rows, model = self.going, self.model
+        self.iterations[rows] += 1
+        hessian = _convex(model)
+        every = np.arange(len(rows))
+        step = self._steps(every, hessian, model.c, model.v)
+        promised = -np.einsum("rn,rn->r", model.gradient, step.d)
+        promised -= 0.5 * np.einsum("rn,rnm,rm->r", step.d, hessian, step.d)
+        sharper = self._sharper(step, promised)
+        width = self.widths[self.stage[rows] + sharper]
+        trial = self.evaluate(rows, self.x[rows] + step.d, step.of_c, step.of_v, width)
+        good = self._accepted(every, step, step.d, promised, trial)
+        # of another width f says nothing; so small a step need not lower it
+        after = self._violation(rows, trial)
+        good = np.where(sharper, after <= np.maximum(self.funnel[rows], _MET), good)
+        self._correct(hessian, step, promised, trial, good)
+        for_f = (promised > _SWITCH * self.violation[rows] ** 2) & ~sharper
+        size = np.abs(step.d).max(axis=1)
+        bound = size > 0.99 * self.radius[rows]
+        self._resize(good, for_f, bound, size, promised, self.model.f - trial.f)
+        self._move(good, for_f, step, trial)
+        self.stage[rows] += sharper & good
+        self.mark[rows[sharper]] = np.inf
+        small = (np.abs(promised) <= _OPTIMAL * np.abs(model.f)) & ~bound & step.met
+        self._end(small & ~sharper & (self.violation[rows] <= _MET) & (width == 0))
+
+    def _sharper(self, step: _Step, promised: Array) -> NDArray[np.bool_]:
+        """Which rows go on to the next stage with this step."""
+        rows = self.going
+        width = self.width(rows)
+        little = np.abs(promised) <= _FINE * width * np.abs(self.model.f)
+        return step.met & (width > 0) & (self.violation[rows] <= _NEAR) & little
+
+    def _violation(self, rows: Index, model: Model) -> Array:
+        return _farthest(model.c, model.v, self.lower[rows], self.upper[rows])
+
+    def _accepted(
+        self, which: Index, step: _Step, d: Array, promised: Array, trial: Model
+    ) -> NDArray[np.bool_]:
+        """Whether the rows at these places of the model accept their steps d."""
+        rows, model = self.going[which], self.model.take(which)
+        before, after = self.violation[rows], self._violation(rows, trial)
+        with np.errstate(invalid="ignore"):
+            descends = model.f - trial.f >= _DESCENT * promised - 1e-13 * np.abs(model.f)
+            within = after <= np.maximum(self.funnel[rows], _MET)
+            nearer = after <= np.maximum(_FUNNEL * self.funnel[rows], _MET)
+            # far from feasible a large step may cost any f, and lead to another minimum
+            bounded = trial.f <= model.f + np.abs(model.f) + 0.5
+            for_f = promised > _SWITCH * before**2
+            good = np.where(for_f, within & descends, nearer & bounded)
+            linearised = _farthest(
+                model.c + _times(model.by_c, d), model.v + _times(model.by_v, d),
+                self.lower[rows], self.upper[rows],
+            )  # fmt: skip
+            restores = (after < before) & (before - after >= 0.1 * (before - linearised))
+            good = np.where(step.met[which], good, restores)
+        return good & np.isfinite(trial.f) & np.isfinite(after)
+
+    def _correct(
+        self,
+        hessian: Array,
+        step: _Step,
+        promised: Array,
+        trial: Model,
+        good: NDArray[np.bool_],
+    ) -> None:
+        """Second-order corrections of the steps that are not good."""
+        missed = self._violation(self.going, trial) > _MET
+        again = np.flatnonzero(~good & step.met & missed & np.isfinite(trial.f))
+        if not again.size:
+            return
+        rows, d = self.going[again], step.d[again]
+        c = trial.c[again] - _times(self.model.by_c[again], d)
+        v = trial.v[again] - _times(self.model.by_v[again], d)
+        corrected = self._steps(again, hessian, c, v, relax=False)
+        of_c, of_v = step.of_c[again], step.of_v[again]
+        second = self.evaluate(rows, self.x[rows] + corrected.d, of_c, of_v, self.width(rows))
+        better = self._accepted(again, step, corrected.d, promised[again], second)
+        better &= corrected.met
+        good[again[better]] = True
+        step.d[again[better]] = corrected.d[better]
+        trial.put(again[better], second.take(better))
+
+    def _resize(
+        self,
+        good: NDArray[np.bool_],
+        for_f: NDArray[np.bool_],
+        bound: NDArray[np.bool_],
+        size: Array,
+        promised: Array,
+        gained: Array,
+    ) -> None:
+        """Trust regions that shrink to where a parabola through f has its least, or grow."""
+        share = np.where(for_f, gained / np.where(promised == 0, 1.0, promised), -1.0)
+        share = np.nan_to_num(share, nan=-1e3, posinf=1.0, neginf=-1e3)
+        shrunk = size * np.clip(0.5 / (1 - np.minimum(share, 0.5)), *_SHRINK)
+        radius = self.radius[self.going]
+        growing = good & bound & ((share > 0.75) | ~for_f)
+        poor = good & for_f & (share < 0.25)
+        kept = np.where(growing, _GROW * radius, np.where(poor, 0.5 * radius, radius))
+        self.radius[self.going] = np.where(good, kept, np.minimum(shrunk, radius))
+
+    def _move(
+        self, good: NDArray[np.bool_], for_f: NDArray[np.bool_], step: _Step, trial: Model
+    ) -> None:
+        rows = self.going
+        self.of_c[rows], self.of_v[rows] = step.of_c, step.of_v
+        moved = rows[good]
+        self.x[moved] += step.d[good]
+        self.model.put(np.flatnonzero(good), trial.take(good))
+        self.violation[moved] = self._violation(moved, trial.take(good))
+        self.f[moved] = trial.f[good]
+        nearer = rows[good & ~for_f]
+        self.funnel[nearer] = 0.45 * self.funnel[nearer] + 0.5 * self.violation[nearer]
+
+    def _end(self, solved: NDArray[np.bool_]) -> None:
+        """Drop the rows that are solved, stuck, creeping, or left because others agree."""
+        rows = self.going
+        for row in rows[solved]:
+            self.ends[row] = End.SOLVED
+        for row in rows[~solved & (self.radius[rows] < _SMALLEST)]:
+            self.ends[row] = self.unfinished(row, End.CREEPING, End.INFEASIBLE)
+        due = rows[self.iterations[rows] - self.marked[rows] >= _PATIENCE]
+        slow = due[self.mark[due] - self.f[due] <= _CREEP * np.abs(self.f[due])]
+        for row in slow[self.violation[slow] <= FEASIBLE]:
+            self.ends[row] = self.ends[row] or End.CREEPING
+        self.mark[due], self.marked[due] = self.f[due], self.iterations[due]
+        if self.groups is not None:
+            self._leave(bool(solved.any()))
+        stays = np.array([self.ends[row] is None for row in rows])
+        if not stays.all():
+            self.going, self.model = rows[stays], self.model.take(stays)
+
+    def _leave(self, anew: bool) -> None:
+        """Leave rows that have met another of their group, or whose others agree."""
+        assert self.groups is not None
+        going = np.array([row for row in self.going if self.ends[row] is None], dtype=int)
+        for group in np.unique(self.groups[going]):
+            rows = going[self.groups[going] == group]
+            rows = rows[np.argsort(self.f[rows], kind="stable")]
+            for row in rows[1:]:
+                first = rows[0]
+                same = self.stage[row] == self.stage[first] > 0
+                near = np.abs(self.x[row] - self.x[first]).max() <= _MEETING
+                if same and near and self.f[row] <= self.f[first] * (1 + _MEETING):
+                    self.ends[row] = End.AGREED
+                    self.count[first] += self.count[row]
+            if not anew:
+                continue
+            own = np.flatnonzero(self.groups == group)
+            done = np.array([row for row in own if self.ends[row] is End.SOLVED], dtype=int)
+            least = self.f[done].min(initial=np.inf)
+            agree = self.count[done[self.f[done] <= least * (1 + _ALIKE)]].sum()
+            if agree >= max(2, len(own) / 2):
+                for row in rows:
+                    self.ends[row] = self.ends[row] or End.AGREED
+
+    def unfinished(self, row: Any, feasible: End = End.UNFINISHED, else_: End | None = None) -> End:
+        """How a row ended that is not solved."""
+        kept = self.violation[row] <= FEASIBLE
+        return feasible if kept else else_ or End.UNFINISHED
+
+    def _steps(self, which: Index, hessian: Array, c: Array, v: Array, relax: bool = True) -> _Step:
+        """Solve the quadratic programs of rows at these places, for these values of c and v."""
+        model, rows = self.model, self.going[which]
+        lower, upper = self.lower[rows] - v, self.upper[rows] - v
+        room = np.abs(model.by_v[which]).sum(axis=2) * self.radius[rows, None]
+        near = (upper <= room) | (-lower <= room)
+        n, (m, k) = self.x.shape[1], (c.shape[1], v.shape[1])
+        found = _Step(
+            np.zeros((len(rows), n)), np.zeros((len(rows), m)), np.zeros((len(rows), k)),
+            np.zeros(len(rows), dtype=bool),
+        )  # fmt: skip
+        for i, place in enumerate(which):
+            own = np.flatnonzero(near[i])
+            box = np.full(n, self.radius[rows[i]])
+            table = np.concatenate([model.by_c[place], model.by_v[place, own]])
+            most = np.concatenate([box, -c[i], upper[i, own]])
+            least = np.concatenate([-box, -c[i], lower[i, own]])
+            marks = np.zeros(len(most), dtype=np.int32)
+            marks[n : n + m] = _EQUALITY
+            one = hessian[place], model.gradient[place], table, most, least
+            d, _, flag, info = daqp.solve(*one, marks, **_EXACT)
+            if flag not in (_OPTIMUM, _EMPTY):  # it cycles: with a little more curvature it ends
+                stiffer = hessian[place] + _STIFFER * np.trace(hessian[place]) * np.eye(n)
+                d, _, flag, info = daqp.solve(stiffer, *one[1:], marks, **_LOOSER)
+            if flag == _OPTIMUM:
+                found.met[i], multipliers = True, info["lam"][n:]
+                found.of_c[i], found.of_v[i, own] = multipliers[:m], multipliers[m:]
+            elif relax:
+                hard = own >= k - self.linear
+                found.d[i] = _least_violation(table, most[n:], least[n:], box[0], m, hard)
+                continue
+            found.d[i] = d
+        return found
+
+
+def _least_violation(
+    table: Array, most: Array, least: Array, radius: float, m: int, hard: NDArray[np.bool_]
+) -> Array:
+    """The step in a box that makes the largest violation of linearised constraints least.
+
+    The violation t is one more unknown; hard constraints, the last ones, are kept.
+    """
+    n = table.shape[1]
+    give = np.concatenate([np.ones(m), (~hard).astype(float)])
+    above, below = np.isfinite(most), np.isfinite(least)
+    rows = np.block([
+        [table[above], -give[above, None]],
+        [table[below], give[below, None]],
+    ])  # fmt: skip
+    free = np.inf
+    upper = np.concatenate([np.full(n, radius), [free], most[above], np.full(below.sum(), free)])
+    lower = np.concatenate([np.full(n, -radius), [0.0], np.full(above.sum(), -free), least[below]])
+    hessian = np.diag([*[_TIE] * n, _TIE])
+    cost = np.append(np.zeros(n), 1.0)
+    marks = np.zeros(len(upper), dtype=np.int32)
+    d, *_ = daqp.solve(hessian, cost, rows, upper, lower, marks, **_EXACT)
+    return np.asarray(d)[:n]
+
+
+def _times(matrices: Array, d: Array) -> Array:
+    return np.einsum("rkn,rn->rk", matrices, d)
+
+
+def _farthest(c: Array, v: Array, lower: Array, upper: Array) -> Array:
+    """The largest distance from c = 0 and from the bounds of v."""
+    beyond = np.maximum(np.maximum(v - upper, lower - v), 0.0)
+    return np.maximum(np.abs(c).max(axis=1, initial=0.0), beyond.max(axis=1, initial=0.0))
+
+
+def _convex(model: Model) -> Array:
+    """Hessians with negative curvature along the linearised equalities counted as positive.
+
+    Across them the equalities settle the step, so that any curvature will do that keeps the whole
+    positive.
+    """
+    hessian = (model.hessian + model.hessian.transpose(0, 2, 1)) / 2
+    m, n = model.by_c.shape[1:]
+    if m >= n:
+        return np.repeat(np.eye(n)[None], len(hessian), axis=0)
+    basis = np.linalg.svd(model.by_c)[2].transpose(0, 2, 1) if m else np.eye(n)
+    hessian = basis.swapaxes(-1, -2) @ hessian @ basis
+    values, vectors = np.linalg.eigh(hessian[:, m:, m:])
+    values = np.abs(values)
+    values = np.maximum(values, 1e-8 * values.max(axis=1, keepdims=True) + 1e-12)
+    turned = vectors.swapaxes(-1, -2)
+    hessian[:, m:, m:] = (vectors * values[:, None, :]) @ turned
+    if m:
+        mixed = hessian[:, m:, :m]
+        inverse = (vectors / values[:, None, :]) @ turned
+        own = values.mean(axis=1)[:, None, None] * np.eye(m)
+        hessian[:, :m, :m] = mixed.swapaxes(-1, -2) @ inverse @ mixed + own
+    return np.ascontiguousarray(basis @ hessian @ basis.swapaxes(-1, -2))

@@ -1,0 +1,66 @@
+"""Points of a front by the solver that did not find them."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from front_moves import CASES
+from made_fronts import front as made_by_hand
+
+from ocp import CycloidPolynomial, cross_check, epsilon_front
+
+
+@pytest.fixture(scope="module", params=["sqp", "ipopt"])
+def front(request):
+    """Of the single link's first move."""
+    task, bound = CASES["single link"]
+    settings = {"bound": bound, "points": 4, "starts": 2, "solver": request.param}
+    return epsilon_front(task, CycloidPolynomial(4), **settings)
+
+
+def test_the_other_solver_finds_no_other_energy(front):
+    told = []
+    both = cross_check(front, 3, lambda done, total: told.append((done, total)))
+    assert {both.solver, front.settings["solver"]} == {"sqp", "ipopt"}
+    assert told == [(1, 3), (2, 3), (3, 3)]
+    residuals = [point.residual for point in both.points]
+    assert (residuals[0], residuals[-1]) == (front.residuals[0], front.residuals[-1])
+    if both.solver == "ipopt":
+        assert both.largest < 1e-6
+    assert min(point.difference for point in both.points) > -1e-6
+    for end in (both.points[0], both.points[-1]):
+        assert abs(end.difference) < 1e-6
+
+
+def test_a_point_that_is_too_dear_is_seen(front):
+    point = front.points[1]
+    moved = replace(point, coefficients=tuple(0.9 * np.array(point.coefficients)))
+    both = cross_check(replace(front, points=(moved,)), 2)
+    assert len(both.points) == 1
+    assert both.points[0].difference < -1e-3
+    assert both.largest == -both.points[0].difference
+
+
+def test_a_front_of_a_search_is_checked_by_ipopt(front):
+    searched = replace(front, settings={"bound": front.settings["bound"]}, points=front.points[-1:])
+    assert cross_check(searched).solver == "ipopt"
+
+
+def test_a_point_that_the_other_solver_does_not_find_has_no_difference():
+    # two terms and a torque limit of 0.01 N m, a fortieth of what made_fronts asks for
+    front = made_by_hand()
+    none = cross_check(replace(front, task=replace(front.task, torque_limit=0.01)), 2)
+    assert math.isnan(none.points[0].other)
+    assert math.isnan(none.largest)
+
+
+def test_an_empty_front_is_refused():
+    with pytest.raises(ValueError, match="the front has no point"):
+        cross_check(made_by_hand(()))
+
+
+@pytest.mark.parametrize("points", [1, 2.5])
+def test_a_number_of_points_out_of_range_is_refused(points):
+    with pytest.raises(ValueError, match=f"points is {points}; give a whole number from 2 up"):
+        cross_check(made_by_hand(), points)

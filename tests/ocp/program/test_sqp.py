@@ -1,0 +1,266 @@
+"""The sequential quadratic programs on small problems whose answers are known in closed form.
+
+"HS" are problems of Hock and Schittkowski, Test Examples for Nonlinear Programming Codes (1981),
+with their published minima.
+"""
+
+import signal
+from functools import partial
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from ocp.program.sqp import SHARP, End, Model, minimise
+
+INF = np.inf
+
+
+class Problem:
+    """min f(x) with c(x) = 0 and lower <= v(x) <= upper, by casadi's derivatives, in rows."""
+
+    def __init__(self, n, f, c=(), v=(), lower=(), upper=()):
+        self.lower, self.upper, self.calls = np.array(lower), np.array(upper), []
+        x = ca.SX.sym("x", n)
+        entries = ca.vertsplit(x)
+        f, c, v = (
+            f(*entries),
+            *(ca.vertcat(ca.SX(0, 1), *(g(*entries) for g in of)) for of in (c, v)),
+        )
+        of_c, of_v = ca.SX.sym("of_c", c.numel()), ca.SX.sym("of_v", v.numel())
+        second = ca.hessian(f + ca.dot(of_c, c) + ca.dot(of_v, v), x)[0]
+        results = [f, ca.gradient(f, x), c, ca.jacobian(c, x), v, ca.jacobian(v, x), second]
+        self.function = ca.Function("p", [x, of_c, of_v], [ca.densify(one) for one in results])
+
+    def evaluate(self, rows, x, of_c, of_v, width):
+        self.calls.append(rows.tolist())
+        none = np.zeros(self.function.size1_in(1))
+        found = [
+            [part.full() for part in self.function(x[i], of_c[i] if of_c.size else none, of_v[i])]
+            for i in range(len(rows))
+        ]
+        f, gradient, c, by_c, v, by_v, second = (
+            np.array(part) for part in zip(*found, strict=True)
+        )
+        return Model(f[:, 0, 0], gradient[..., 0], c[..., 0], by_c, v[..., 0], by_v, second)
+
+    def solved(self, starts, **settings):
+        starts = np.atleast_2d(np.array(starts, dtype=float))
+        lower, upper = (np.tile(side, (len(starts), 1)) for side in (self.lower, self.upper))
+        return minimise(self.evaluate, starts, lower, upper, **{"widths": SHARP} | settings)
+
+
+def _rosenbrock(x, y):
+    return 100 * (y - x**2) ** 2 + (1 - x) ** 2
+
+
+# Problem, start, where the minimum is, its f.
+KNOWN = {
+    # Stationary on the circle of radius sqrt(2), which holds the free minimum (1, 1).
+    "Rosenbrock's on a circle": (
+        partial(Problem, 2, _rosenbrock, [lambda x, y: x**2 + y**2 - 2]),
+        [0.3, 1.2], [1, 1], 0.0,
+    ),
+    "HS 1": (
+        partial(Problem, 2, _rosenbrock, [], [lambda x, y: y], [-1.5], [INF]),
+        [-2, 1], [1, 1], 0.0,
+    ),
+    "HS 6": (
+        partial(Problem, 2, lambda x, y: (1 - x) ** 2, [lambda x, y: 10 * (y - x**2)]),
+        [-1.2, 1], [1, 1], 0.0,
+    ),
+    "HS 7": (
+        partial(
+            Problem, 2, lambda x, y: ca.log(1 + x**2) - y, [lambda x, y: (1 + x**2) ** 2 + y**2 - 4]
+        ),
+        [2, 2], [0, np.sqrt(3)], -np.sqrt(3),
+    ),
+    "HS 26": (
+        partial(
+            Problem, 3, lambda x, y, z: 1 + (x - y) ** 2 + (y - z) ** 4,  # the 1 is added
+            [lambda x, y, z: (1 + y**2) * x + z**4 - 3],
+        ),
+        [-2.6, 2, 2], None, 1.0,
+    ),
+    "HS 71": (
+        partial(
+            Problem, 4, lambda x, y, z, w: x * w * (x + y + z) + z,
+            [lambda x, y, z, w: x**2 + y**2 + z**2 + w**2 - 40],
+            [lambda x, y, z, w: x * y * z * w, *(lambda *x, i=i: x[i] for i in range(4))],
+            [25, 1, 1, 1, 1], [INF, 5, 5, 5, 5],
+        ),
+        [1, 5, 5, 1], [1, 4.7429994, 3.8211503, 1.3794082], 17.0140173,
+    ),
+    # The point of the disc farthest along (3, 4).
+    "linear on a disc": (
+        partial(
+            Problem, 2, lambda x, y: -3 * x - 4 * y, [], [lambda x, y: x**2 + y**2], [-INF], [1]
+        ),
+        [0, 0], [0.6, 0.8], -5.0,
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(params=KNOWN)
+def known(request):
+    return KNOWN[request.param]
+
+
+def test_it_finds_the_published_minimum(known):
+    make, start, at, f = known
+    found = make().solved(start, reach=1.0)
+    assert found.ends == [End.SOLVED]
+    assert found.f[0] == pytest.approx(f, abs=1e-7)
+    assert found.violation[0] < 1e-9
+    if at is not None:  # HS 26 is flat around its own
+        assert found.x[0] == pytest.approx(np.array(at), abs=1e-4)
+
+
+@pytest.mark.parametrize("name", ["HS 1", "HS 7", "HS 71", "linear on a disc"])
+def test_multipliers_satisfy_stationarity(name):
+    make, start, *_ = KNOWN[name]
+    problem = make()
+    found = problem.solved(start, reach=1.0)
+    at = problem.evaluate(np.zeros(1, dtype=int), found.x, found.of_c, found.of_v, np.zeros(1))
+    lagrangian = at.gradient[0] + at.by_c[0].T @ found.of_c[0] + at.by_v[0].T @ found.of_v[0]
+    size = 1 + np.abs(at.gradient).max()
+    assert lagrangian == pytest.approx(np.zeros(len(start)), abs=1e-4 * size)
+    # Positive at an upper bound, negative at a lower one, none away from both.
+    above, below = problem.upper - at.v[0], at.v[0] - problem.lower
+    assert (found.of_v[0][above > 1e-4] <= 1e-9).all()
+    assert (found.of_v[0][below > 1e-4] >= -1e-9).all()
+
+
+def test_a_step_that_only_restores_feasibility_is_not_the_last():
+    # One step meets y = 2, which costs f more than the step gains along x: it is not done then.
+    problem = Problem(2, lambda x, y: ca.exp(x) - 2 * x + 10 * y + 50, [lambda x, y: y - 2])
+    found = problem.solved([3.0, 0.0], reach=1.0)
+    assert found.ends == [End.SOLVED]
+    assert found.x[0] == pytest.approx(np.array([np.log(2), 2.0]), abs=1e-4)
+
+
+def test_the_price_of_a_bound_is_its_multiplier():
+    # The least of -3x - 4y on a disc of radius r is -5r, and its price by r^2 is 5/(2r).
+    make, start, *_ = KNOWN["linear on a disc"]
+    assert make().solved(start, reach=1.0).of_v[0, 0] == pytest.approx(2.5, rel=1e-6)
+
+
+# -- where there is no motion --
+
+
+def test_what_cannot_be_met_ends_at_the_least_largest_violation():
+    # x^2 + y^2 <= 1 and x >= 3: at (x, 0) both are missed alike where x^2 - 1 = 3 - x.
+    problem = Problem(
+        2, lambda x, y: x + y, [], [lambda x, y: x**2 + y**2, lambda x, y: x], [-INF, 3], [1, INF]
+    )
+    found = problem.solved([0.5, 1.0])
+    x = (np.sqrt(17) - 1) / 2
+    assert found.ends == [End.INFEASIBLE]
+    assert found.violation[0] == pytest.approx(3 - x, abs=1e-5)
+    assert found.x[0] == pytest.approx(np.array([x, 0.0]), abs=1e-2)
+
+
+def test_linear_bounds_are_kept_from_the_start_on_where_others_are_not():
+    # y = 5 + x^2 cannot be met in the box; that is kept, and the equation missed by the least.
+    problem = Problem(
+        2, lambda x, y: x**2 + y**2, [lambda x, y: y - 5 - x**2],
+        [lambda x, y: x, lambda x, y: y], [-1, -1], [1, 1],
+    )  # fmt: skip
+    seen = []
+    evaluate = problem.evaluate
+
+    def noted(rows, x, *rest):
+        seen.append(np.abs(x).max())
+        return evaluate(rows, x, *rest)
+
+    problem.evaluate = noted
+    found = problem.solved([0.9, -0.9], linear=2)
+    assert found.ends == [End.INFEASIBLE]
+    assert max(seen) <= 1 + 1e-9
+    assert found.x[0] == pytest.approx(np.array([0.0, 1.0]), abs=1e-2)
+    assert found.violation[0] == pytest.approx(4.0, abs=1e-4)
+
+
+def test_it_says_that_the_iterations_ran_out():
+    make, start, *_ = KNOWN["HS 7"]
+    found = make().solved(start, most=2)
+    assert (found.ends, found.iterations.tolist()) == ([End.UNFINISHED], [2])
+
+
+# -- rows --
+
+
+def test_rows_end_independently():
+    make, *_ = KNOWN["HS 7"]
+    problem, starts = make(), [[2.0, 2.0], [0.0, 1.7], [-1.5, 0.5]]
+    together = problem.solved(starts)
+    assert together.ends == [End.SOLVED] * 3
+    assert len(set(together.iterations)) > 1
+    assert len(problem.calls[-1]) < 3  # those that have ended are not evaluated
+    for row, start in enumerate(starts):
+        alone = make().solved(start)
+        assert alone.x[0] == pytest.approx(together.x[row], abs=1e-12)
+        assert alone.iterations[0] == together.iterations[row]
+
+
+def _above_zero(x, y):
+    return 1 + _rosenbrock(x, y)
+
+
+def test_rows_of_a_group_are_left_once_half_of_them_agree():
+    starts, of_one = [[1.1, 1.2], [0.95, 0.9], [-1.2, 1.0], [-1.9, 2.0]], np.zeros(4, dtype=int)
+    alone = Problem(2, _above_zero).solved(starts)
+    assert alone.ends == [End.SOLVED] * 4
+    grouped = Problem(2, _above_zero).solved(starts, groups=of_one)
+    assert grouped.ends == [End.SOLVED, End.SOLVED, End.AGREED, End.AGREED]
+    assert grouped.f[:2] == pytest.approx(alone.f[:2], rel=1e-9)
+    # Rows of other groups are other programs, however alike.
+    apart = Problem(2, _above_zero).solved(starts, groups=np.arange(4))
+    assert apart.ends == alone.ends
+
+
+def test_rows_that_meet_past_the_first_stage_go_on_as_one():
+    starts, of_one = [[1.3, 1.6], [1.3, 1.6001]], np.zeros(2, dtype=int)
+    problem = Problem(2, _above_zero)
+    found = problem.solved(starts, groups=of_one, widths=(0.5, 0.15, 0.05, 0.0))
+    assert sorted(end.name for end in found.ends) == ["AGREED", "SOLVED"]
+    assert found.f.min() == pytest.approx(1.0, abs=1e-9)
+
+
+def test_the_width_shrinks_to_none_stage_by_stage():
+    # sqrt(x^2 + w^2) + (x - 1)^2 for w > 0; at w = 0 it is |x| + (x - 1)^2, least at 1/2.
+    seen = []
+
+    def evaluate(rows, x, of_c, of_v, width):
+        seen.append(width.tolist())
+        x, none = x[:, 0], np.zeros((len(x), 0))
+        root = np.sqrt(x**2 + width**2) + 1e-300
+        second = width**2 / root**3 + 2
+        return Model(
+            root + (x - 1) ** 2, (x / root + 2 * (x - 1))[:, None], none, none[..., None], none,
+            none[..., None], second[:, None, None],
+        )  # fmt: skip
+
+    none = np.zeros((1, 0))
+    found = minimise(evaluate, np.array([[-2.0]]), none, none, widths=(0.5, 0.1, 0.0))
+    assert found.ends == [End.SOLVED]
+    assert found.x[0, 0] == pytest.approx(0.5, abs=1e-6)
+    widths = [width for (width,) in seen]
+    assert widths == sorted(widths, reverse=True)
+    assert set(widths) == {0.5, 0.1, 0.0}
+
+
+def test_ctrl_c_leaves_the_rows_where_they_are():
+    make, start, *_ = KNOWN["HS 7"]
+    problem = make()
+    evaluate = problem.evaluate
+
+    def interrupted(*given):
+        if len(problem.calls) == 3:
+            signal.raise_signal(signal.SIGINT)
+        return evaluate(*given)
+
+    problem.evaluate = interrupted
+    found = problem.solved([start, [0.0, 1.7]])
+    assert End.STOPPED in found.ends
+    assert np.isfinite(found.x).all()
