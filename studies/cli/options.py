@@ -14,6 +14,7 @@ from models import Plant, load_plant_file
 from ocp.base.files import check_folder, check_writable
 from ocp.base.names import unknown
 from ocp.profiles.shapers import SHAPERS
+from ocp.program.solving import SOLVERS
 from ocp.task.quantities import QUANTITIES, Quantity
 from studies.cli.plants import parse_error, parse_plant, parse_setting
 from studies.cli.quantities import (
@@ -300,6 +301,11 @@ robust_option = click.option(
     "--robust", type=ERROR, multiple=True, metavar="NAME=SHARE",
     help="Count as the residual the largest one while the frequency, the damping or a parameter of "
     "the plant is wrong by up to this, as frequency=10%; may be repeated.",
+)  # fmt: skip
+solver_option = click.option(
+    "--solver", type=Named("solver", SOLVERS), default=SOLVERS[0], show_default=True,
+    help="The gradient's: sequential quadratic programs, all starts and points at once, or IPOPT, "
+    "one after another.",
 )  # fmt: skip
 quiet_option = click.option("--quiet", is_flag=True, help="Show no progress.")
 

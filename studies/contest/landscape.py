@@ -92,13 +92,14 @@ def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
     sweep, random = Sweep(problem.task, problem.profile, settings), np.random.default_rng(seed)
     box = problem.profile.box(problem.bound)
     starts = random.uniform(*box, (STARTS, problem.profile.size))
-    solved = [one for one in (sweep.solve(start, LEVEL) for start in starts) if one.status.solved]
+    found = sweep.solve([(start, sweep.ask(LEVEL)) for start in starts])
+    solved = [one for one in found if one.status.solved]
     if not solved:
         raise QuietarmError(f"none of {STARTS} random starts ended at a minimum")
     energies = np.array([one.energy for one in solved])
     places = np.array([one.coefficients for one in solved])
     lowest, width = energies.min(), box[1] - box[0]
-    cheapest = sweep.solve(places[energies.argmin()]).coefficients
+    cheapest = sweep.best([places[energies.argmin()]], sweep.ask()).coefficients
     drawn = random.uniform(*box, (CANDIDATES, problem.profile.size))
     costs = PopulationObjective(problem.task, problem.profile)(drawn).energy
     return Landscape(

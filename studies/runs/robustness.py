@@ -10,8 +10,8 @@ from pathlib import Path
 from rich.console import Console
 
 from ocp import Plan, Robustness, evaluate_robustness
-from ocp.robustness.plants import checked_ranges
 from ocp.robustness.uncertain import assumed_plant
+from ocp.simulation.errors import checked_ranges
 from studies.display.progress import count
 from studies.display.saving import finish, interruption
 from studies.runs.loading import load_plans

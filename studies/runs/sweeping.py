@@ -10,6 +10,7 @@ from ocp import (
     Front,
     PointToPoint,
     SolverFailedError,
+    cross_check,
 )
 from studies.display.progress import count
 from studies.display.saving import drawing, finish, interruption
@@ -19,6 +20,10 @@ from studies.runs.reports.sweep import failure_lines, print_sweep
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+_CHECKED = 7
+"""Points that the other solver finds again."""
 
 
 def run_sweep(
@@ -49,6 +54,7 @@ def run_sweep(
         When it was interrupted, after what was found is written; when nothing was found.
     """
     files.refuse_same()
+    check = options.pop("check", False)
     weights = options.get("weights", ())
     asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
     front = _swept(task, method, dict(options), quiet)
@@ -56,6 +62,14 @@ def run_sweep(
     if not front.points:
         reasons = (line.strip() for line in failure_lines(front, asked_for)[1:])
         raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
+
+    found, complete = None, front.complete
+    if check and complete:
+        try:
+            with count(_CHECKED, "checked points", Console(stderr=True), quiet=quiet) as report:
+                found = cross_check(front, _CHECKED, report)
+        except KeyboardInterrupt:  # the front is there
+            complete = False
 
     def picture() -> Figure:
         from studies.figures import sweep_figure
@@ -68,8 +82,8 @@ def run_sweep(
             (files.csv, front.save_csv),
             (files.figure, drawing(picture)),
         ],
-        lambda console: print_sweep(console, front, asked_for),
-        trouble=None if front.complete else interruption(),
+        lambda console: print_sweep(console, front, asked_for, found),
+        trouble=None if complete else interruption(),
     )
 
 

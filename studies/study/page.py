@@ -120,11 +120,12 @@ def method_lines(settings: StudySettings) -> list[str]:
     searches = [_search_line(method, settings, of_seeds) for method in settings.searches]
     return [
         "epsilon constraint: the least energy at each of a series of residual limits, "
-        f"{levels} among them, by IPOPT.",
-        "weighted sum: the least weighted sum of residual and energy, by IPOPT, for a series of "
-        "weights.",
+        f"{levels} among them, by the gradient.",
+        "weighted sum: the least weighted sum of residual and energy, by the gradient, for a "
+        "series of weights.",
         *searches,
-        "polished: each point of the first seed's front improved by IPOPT at its own residual.",
+        "polished: each point of the first seed's front improved by the gradient at its own "
+        "residual.",
         "floor: the least energy of any joint motion at all that arrives at rest, on a grid "
         "refined until its energy no longer changes.",
     ]

@@ -71,8 +71,8 @@ def _of_the_gradient(methods: Sequence[str]) -> str:
     words = list[str]()
     if any(helped is not Help.NONE or search == MULTISTART for search, helped in parts):
         words.append(
-            "An iteration of IPOPT counts as the 1 + n + n (n + 1) / 2 evaluations that "
-            "differences would take for its first and second derivatives of n coefficients. "
+            "An iteration of the gradient's solver counts as the 1 + n + n (n + 1) / 2 evaluations "
+            "that differences would take for its first and second derivatives of n coefficients. "
         )
     if any(helped is Help.POLISH for _, helped in parts):
         words.append("What is polished is searched with half of the evaluations first. ")

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from metaheuristics.ensemble import energy_at
 from ocp import Floor, Front, Motion, Plan, evaluate_coefficients, shaped_cycloid, with_errors
 from ocp.profiles.shapers import SHAPERS
-from ocp.robustness.plants import FREQUENCY
+from ocp.simulation.errors import FREQUENCY
 from ocp.simulation.piecewise import PiecewiseMotion
 from ocp.simulation.resimulation import resimulated
 from studies.display.words import millimetres

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 
 from metaheuristics.ensemble import energy_at
-from ocp import FailedPoint, Front, UncertainPlant
+from ocp import CrossCheck, FailedPoint, Front, UncertainPlant
 from ocp.front.checking import RESIDUAL_LIMIT
 from ocp.front.points import LEVELS
 from ocp.front.robust import EXCESS
@@ -13,7 +13,9 @@ from studies.display.words import counted, millimetres, print_lines
 from studies.runs.reports.worst import point_in_words
 
 
-def print_sweep(console: Console, front: Front, asked_for: int) -> None:
+def print_sweep(
+    console: Console, front: Front, asked_for: int, check: CrossCheck | None = None
+) -> None:
     """Print a front: how it was found, its ends and knee, energies, what could not be found.
 
     Parameters
@@ -24,6 +26,8 @@ def print_sweep(console: Console, front: Front, asked_for: int) -> None:
         The front, with a point at least.
     asked_for : int
         How many points were asked for.
+    check : CrossCheck, optional
+        Points by the other solver.
     """
     state = "" if front.complete else " (interrupted: what was found until then)"
     print_lines(
@@ -33,6 +37,7 @@ def print_sweep(console: Console, front: Front, asked_for: int) -> None:
         f"in {front.seconds:.1f} s{state}",
         *point_lines(front),
         *excess_lines(front),
+        *check_lines(check),
         *failure_lines(front, asked_for),
         *gap_lines(front),
     )
@@ -64,6 +69,20 @@ def excess_lines(front: Front) -> list[str]:
     more = f"at most {100 * excess:.2g} % more" if excess > 0 else "no more"
     return [
         f"residuals hold for any {errors}: between the samples CVODES finds {more} at any point"
+    ]
+
+
+def check_lines(check: CrossCheck | None) -> list[str]:
+    """By how much the other solver's energies differ."""
+    if check is None:
+        return []
+    count, names = len(check.points), {"sqp": "sequential quadratic programs", "ipopt": "IPOPT"}
+    found = [point for point in check.points if point.other == point.other]  # not NaN
+    lost = f"; {count - len(found)} it did not find" if len(found) < count else ""
+    largest = max((abs(point.difference) for point in found), default=float("nan"))
+    return [
+        f"checked by {names[check.solver]}, {counted(count, 'point')} from the plain cycloid: "
+        f"energies differ by at most {largest:.1g} of their size{lost}"
     ]
 
 

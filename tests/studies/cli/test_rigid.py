@@ -47,6 +47,6 @@ def test_a_share_of_nothing_is_no_limit(call):
     line = f"plan {RIGID} --terms 2 --starts 1 --robust frequency=5%"
     code, _, err = call(line)
     assert code == 2
-    assert err.startswith("quietarm: the plain cycloid leaves no residual on this plant")
+    assert err.startswith("quietarm: the plain cycloid does not bend this plant")
     assert err.endswith("give a residual limit above 0\n")
     assert call(f"{line} --residual-limit 1mm")[0] == 0

@@ -23,6 +23,7 @@ from studies.cli.options import (
     quiet_option,
     robust_option,
     settings_of_one,
+    solver_option,
     task_options,
     terms_option,
     workers_options,
@@ -40,6 +41,8 @@ _OF_SEARCHES: dict[str, list[str]] = dict.fromkeys(
 _ONLY_FOR = {
     "points": GRADIENT,
     "starts": GRADIENT,
+    "solver": GRADIENT,
+    "check": GRADIENT,
     "weights": [WEIGHTED.name],
     "checkpoint": RESUMABLE,
     "resume": RESUMABLE,
@@ -66,6 +69,12 @@ _ONLY_FOR = {
 @click.option(
     "--starts", type=WHOLE, default=4, show_default=True, help="Gradient: starts of its ends."
 )
+@solver_option
+@click.option(
+    "--check", is_flag=True,
+    help="Gradient: solve seven points, both ends among them, by the other solver as well, from "
+    "the plain cycloid, and say by how much the two differ at most.",
+)  # fmt: skip
 @click.option(
     "--weights", type=WEIGHTS, multiple=True, metavar="R:E",
     help="weighted: weights of residual and energy, both scaled to the ends of the front, in "

@@ -8,6 +8,7 @@ import click
 from rich.console import Console
 
 from ocp import plan_move
+from ocp.program.solving import Solver
 from studies.cli.arguments import plan_files, refuse_idle, split_options
 from studies.cli.options import (
     LENGTH,
@@ -20,6 +21,7 @@ from studies.cli.options import (
     quiet_option,
     robust_option,
     settings_of_one,
+    solver_option,
     task_options,
     terms_option,
 )
@@ -30,7 +32,7 @@ from studies.registry.methods import METHODS, Kind, methods_of
 from studies.registry.profiles import FAMILIES, profile_of
 from studies.runs.reports.plan import print_plan
 
-IPOPT = "ipopt"
+GRADIENT = "gradient"
 OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "setting", "polish")
 """Options that need a profile with coefficients."""
 SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
@@ -44,12 +46,13 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @click.option(
     "--residual-limit", type=LENGTH,
     help="Largest tip displacement after arrival; 0, the default, is at rest. With --robust the "
-    "default is 5 % of what the plain cycloid leaves.",
+    "default is 5 % of how far the plain cycloid bends the tip on its way.",
 )  # fmt: skip
 @click.option("--starts", type=WHOLE, default=4, show_default=True, help="Starts of the solver.")
 @click.option("--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random starts.")
+@solver_option
 @click.option(
-    "--method", type=Named("method", [IPOPT, *SEARCHES]), default=IPOPT, show_default=True,
+    "--method", type=Named("method", [GRADIENT, *SEARCHES]), default=GRADIENT, show_default=True,
     help="The gradient, or the cheapest point of a metaheuristic's front within the residual "
     "limit (1mm where that is 0).",
 )  # fmt: skip
@@ -67,6 +70,7 @@ def plan(
     residual_limit: float | None,
     starts: int,
     seed: int,
+    solver: Solver,
     method: str,
     setting: tuple[tuple[str, str], ...],
     polish: bool,
@@ -88,16 +92,17 @@ def plan(
     """  # noqa: D301  # \b is click's: do not rewrap
     task, outputs = split_options(rest)
     refuse_idle(context, profile, {name: list(FAMILIES) for name in OF_FAMILIES})
-    refuse_idle(context, method, {"starts": [IPOPT]})
+    refuse_idle(context, method, {"starts": [GRADIENT], "solver": [GRADIENT]})
     refuse_idle(context, method, {"setting": SEARCHES}, "a metaheuristic")
-    if method == IPOPT and polish:
+    if method == GRADIENT and polish:
         raise ValueError("--polish is for a metaheuristic's point; give --method nsga2 or another")
     motions = profile_of(profile, task, terms)
-    if method == IPOPT:
+    if method == GRADIENT:
         with working("solving", Console(stderr=True), quiet=quiet):
             found = plan_move(
-                task, motions, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed
-            )
+                task, motions, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed,
+                solver=solver,
+            )  # fmt: skip
     else:
         from studies.runs.searching import plan_by_search
 
@@ -109,7 +114,7 @@ def plan(
     def show(console: Console) -> None:
         print_plan(console, found)
         at_rest = not residual_limit and found.worst is None
-        if method != IPOPT and at_rest and not polish:
+        if method != GRADIENT and at_rest and not polish:
             print_lines(
                 console,
                 "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; "

@@ -105,7 +105,10 @@ def test_other_tasks_are_refused_in_a_line(call, files, front_of):
             "its format is 'quietarm-plan'; give a front file",
         ),
         ('{"format": "quietarm-front", "version": 3}', "is not a whole front"),
-        ('{"format": "quietarm-front", "version": 1}', "reads 2 to 3; find the front again"),
+        (
+            '{"format": "quietarm-front", "version": 2}',
+            "this quietarm reads 3; find the front again",
+        ),
     ],
 )
 def test_what_is_no_front_is_refused_in_a_line(call, files, content, words):

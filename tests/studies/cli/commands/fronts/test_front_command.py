@@ -217,7 +217,7 @@ def test_a_checkpoint_that_is_lost_on_the_way_is_told_at_the_end(call, folder, m
         (f"plan {MOVE} --output a --csv a", "--output and --csv are both a; give two files"),
         (f"plan {MOVE} --figure a.png --csv ./a.png", "--csv and --figure are both a.png"),
         (f"plan {MOVE} --polish", "--polish is for a metaheuristic's point; give --method"),
-        (f"plan {MOVE} --method vepso --starts 4", "--starts is for ipopt, not for vepso"),
+        (f"plan {MOVE} --method vepso --starts 4", "--starts is for gradient, not for vepso"),
     ],
 )
 def test_what_would_be_lost_or_ignored_is_refused(refused, line, words):

@@ -91,7 +91,7 @@ def test_a_study_of_the_methods_that_are_asked_for(call, monkeypatch):
         (f"{FRONT} --method rvea --setting alpha=x", "alpha is 'x'; give a number"),
         (f"{FRONT} --method rvea --setting alpha=1 --setting alpha=2", "alpha is given twice"),
         (f"{FRONT} --method epsilon --setting alpha=1", "--setting is for a metaheuristic, not"),
-        (f"plan {MOVE} --setting alpha=1", "--setting is for a metaheuristic, not for ipopt"),
+        (f"plan {MOVE} --setting alpha=1", "--setting is for a metaheuristic, not for gradient"),
         (f"plan {MOVE} --profile zv --setting alpha=1", "--setting is for "),
         ("study --setting mutation=1", "begin it with one of these and a dot: nsga2"),
         ("study --setting rvea.alpha=1", "begin it with one of these and a dot: nsga2"),

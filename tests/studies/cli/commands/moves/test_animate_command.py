@@ -87,7 +87,7 @@ def test_an_mp4_without_ffmpeg_is_refused_before_anything_is_drawn(refused, monk
 
 def test_what_is_no_plan_is_refused(refused, folder):
     (folder / "text.json").write_text("no plan")
-    (folder / "odd.json").write_text((folder / "plan.json").read_text().replace("ipopt", "\x1b[2J"))
+    (folder / "odd.json").write_text((folder / "plan.json").read_text().replace("sqp", "\x1b[2J"))
     for name in ("text.json", "odd.json"):
         assert refused(f"animate {name} --output m.gif").strip().isprintable()
 

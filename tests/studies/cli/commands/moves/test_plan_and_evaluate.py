@@ -78,7 +78,7 @@ def test_every_quantity_of_the_table_has_an_option(call, command):
 
 def test_the_json_file_holds_the_plan_in_si_units(planned):
     document = json.loads((planned[0] / "plan.json").read_text())
-    assert (document["format"], document["version"]) == ("quietarm-plan", 2)
+    assert (document["format"], document["version"]) == ("quietarm-plan", 3)
     task = document["task"]
     assert task["plant"]["name"] == "arm-on-flexible-link"
     assert (task["start"], task["target"]) == (-math.pi / 2, math.pi / 4)
@@ -91,7 +91,7 @@ def test_the_json_file_holds_the_plan_in_si_units(planned):
     )  # above the least without a limit, 0.136 J in docs/physics.md
     assert document["motion"]["peak_torque"] <= 0.4 * 1.001
     settings = document["provenance"]["settings"]
-    assert (settings["starts"], settings["seed"]) == (2, 3)
+    assert (settings["starts"], settings["seed"], settings["solver"]) == (2, 3, "sqp")
 
 
 def test_the_csv_file_drives_a_joint_at_the_rate_asked_for(planned):
@@ -157,14 +157,16 @@ def test_every_limit_reaches_the_solver(monkeypatch, call):
     call(
         f"plan {MOVE} --torque-limit 0.2 --speed-limit 1.5 --acceleration-limit 9 "
         "--jerk-limit 700 --deflection-limit 80mm --residual-window 500ms --residual-limit 1mm "
-        "--bound 0.3 --terms 5 --starts 7 --seed 11"
+        "--bound 0.3 --terms 5 --starts 7 --seed 11 --solver ipopt"
     )
     assert asked["task"].limits == {
         "torque": 0.2, "speed": 1.5, "acceleration": 9.0, "jerk": 700.0, "deflection": 0.08
     }  # fmt: skip
     assert asked["task"].residual_window == 0.5
     assert asked["profile"].terms == 5
-    assert asked["settings"] == {"residual_limit": 1e-3, "bound": 0.3, "starts": 7, "seed": 11}
+    assert asked["settings"] == {
+        "residual_limit": 1e-3, "bound": 0.3, "starts": 7, "seed": 11, "solver": "ipopt"
+    }  # fmt: skip
 
 
 def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call):
