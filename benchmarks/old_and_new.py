@@ -5,7 +5,8 @@
 The old version is taken from this repository's history into a temporary folder; nothing needs to be
 installed for it. Each version runs in a process of its own, the two in turn, so that other load on
 the machine affects both alike. Only functions that both have are called: `plan_move`,
-`epsilon_front`, `energy_floor`, `search`, `PopulationObjective`. Times are the processor's. Printed
+`epsilon_front`, `energy_floor`, `search`, `PopulationObjective`; the new version's `plan_moves` is
+held against a loop of the old one's `plan_move`. Times are the processor's. Printed
 are medians, the ratio old / new, and how much higher (+) or lower (-) the new energies are, all by
 each version's own CVODES figures.
 
@@ -17,6 +18,11 @@ each version's own CVODES figures.
 - floors: two conditions of the link and three of the arm, free accelerations and smooth.
 - searches: NSGA-II with 200 candidates and VEPSO with 2 x 100, for 60 generations.
 - population: 100 calls with 200 candidates, functions built before, on the paper's six conditions.
+- robust: plans of 60 random machines (three plants, 1.5 to 4.5 Hz, 0.55 to 1 s, frequency 5 to 10 %
+  wrong, every second one with limits of torque and acceleration), at most 5 % of how far the plain
+  cycloid bends the tip; first plan of its shape.
+- moves: 400 moves of each plant at rest on arrival, all at once, against as many plans (the old
+  version plans 40 of them; its time is that times ten).
 - starts, only if asked for: in how many of 40 seeds (of the old version: 4) the default four starts
   find the best plan; the paper's six conditions and ten others, 6 and 10 terms, with and without a
   box.
@@ -39,9 +45,9 @@ from statistics import median
 from typing import ClassVar
 
 ROOT = Path(__file__).resolve().parents[1]
-GROUPS = ("plans", "fronts", "hard", "modes", "floors", "searches", "population")
-BEFORE = "a41b84d"
-"""The last commit before the program was condensed."""
+GROUPS = ("plans", "fronts", "hard", "modes", "robust", "moves", "floors", "searches", "population")
+BEFORE = "2dd0121"
+"""The last commit before all rows were solved together."""
 
 
 def main() -> None:
@@ -61,7 +67,7 @@ def main() -> None:
         unpack(options.old, Path(folder))
         versions = [Version(Path(folder), options.old_seeds), Version(ROOT, options.seeds)]
         for group in options.only:
-            once = group in ("modes", "starts")
+            once = group in ("modes", "robust", "moves", "starts")
             compare(group, versions, 1 if once else options.repetitions)
 
 
@@ -126,7 +132,7 @@ def serve(seeds: int) -> None:
     """Answer a line with a line, until there are no more."""
     work = {"plans": plans(), "fronts": fronts(), "hard": hard(), "modes": modes()}
     work |= {"floors": floors(), "searches": searches(), "population": population()}
-    work["starts"] = starts(seeds)
+    work |= {"starts": starts(seeds), "robust": robust(), "moves": moves()}
     for line in sys.stdin:
         group, name = json.loads(line)
         answer = list(work[group]) if not name else work[group][name]()
@@ -233,6 +239,81 @@ def modes() -> dict:
         )
         for count in (1, 2, 4, 6, 8, 10, 12)
     }
+
+
+def robust() -> dict:
+    """Random machines whose frequency is uncertain."""
+    import numpy as np
+
+    from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+    from ocp import CycloidPolynomial, PointToPoint, QuietarmError, UncertainPlant, plan_move
+    from ocp import evaluate_coefficients as evaluate
+
+    plants = (
+        lambda omega: SingleLinkManipulator(omega=omega),
+        lambda omega: ArmOnFlexibleLink(omega=omega),
+        lambda omega: DualLinkManipulator(omega1=omega, omega2=0.845 * omega),
+    )
+    random, found = np.random.default_rng(2026), {}
+
+    def machine(plant, error, target, duration, shares) -> dict:
+        plain = evaluate(
+            PointToPoint(plant, target, duration), np.zeros(6), profile=CycloidPolynomial(6)
+        ).motion
+        limits = {}
+        if shares is not None:
+            limits["acceleration_limit"] = shares[0] * plain.peak_acceleration
+            limits["torque_limit"] = shares[1] * plain.peak_torque
+        uncertain = UncertainPlant(plant, {"frequency": error})
+        task, most = (
+            PointToPoint(uncertain, target, duration, **limits),
+            0.05 * plain.peak_deflection,
+        )
+        began = time.process_time()
+        try:
+            plan = plan_move(task, residual_limit=most)
+        except QuietarmError as error_:
+            seconds, words = time.process_time() - began, " ".join(str(error_).split()[:8])
+            return {"seconds": seconds, "energy": None, "note": words}
+        note = f"{plan.worst.residual / most:.3f} of the limit"
+        return {"seconds": time.process_time() - began, "energy": plan.energy, "note": note}
+
+    for i in range(60):
+        hertz, duration = random.uniform(1.5, 4.5), random.uniform(0.55, 1.0)
+        error, degrees = random.uniform(0.05, 0.10), random.uniform(25, 100)
+        limited, shares = random.random() < 0.5, random.uniform(2.5, 5, 2)
+        given = error, np.radians(degrees), duration, shares if limited else None
+        plant = plants[i % 3](2 * pi * hertz)
+        name = f"{plant.name}, {hertz:.2f} Hz, {degrees:.0f} deg in {duration:.2f} s"
+        found[name] = lambda plant=plant, given=given: machine(plant, *given)
+    return found
+
+
+def moves() -> dict:
+    """Many moves of one plant."""
+    import numpy as np
+
+    import ocp
+    from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+    from ocp import PointToPoint, plan_move
+
+    def many(plant) -> dict:
+        random = np.random.default_rng(1)
+        given = zip(random.uniform(0.4, 1.5, 400), random.uniform(0.8, 1.2, 400), strict=True)
+        tasks = [PointToPoint(plant, target, duration) for target, duration in given]
+        plan_move(tasks[0])  # the functions are built
+        began = time.process_time()
+        if hasattr(ocp, "plan_moves"):
+            found = ocp.plan_moves(tasks)
+            seconds, energies = time.process_time() - began, found.energy[::10]
+            note = f"{np.isfinite(found.energy).sum()} solved"
+        else:
+            energies = np.array([plan_move(task, starts=1).energy for task in tasks[::10]])
+            seconds, note = 10 * (time.process_time() - began), "40 solved"
+        return {"seconds": seconds, "energy": float(energies.mean()), "note": note}
+
+    plants = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
+    return {plant.name: lambda plant=plant: many(plant) for plant in plants}
 
 
 def floors() -> dict:

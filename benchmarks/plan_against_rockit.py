@@ -45,6 +45,8 @@ from time import process_time
 import casadi as ca
 import numpy as np
 import rockit
+from ocp.program.problem import Problem
+from ocp.program.task_program import TaskProgram
 from old_and_new import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.table import Table
@@ -52,9 +54,7 @@ from rockit.sampling_method import FunctionGrid
 
 from ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from ocp.program.ipopt import OPTIONS
-from ocp.program.problem import Problem
 from ocp.program.solution import Solution
-from ocp.program.task_program import TaskProgram
 from ocp.simulation.collocation import NODES, mesh
 from ocp.simulation.resimulation import resimulate
 

@@ -32,15 +32,15 @@ from statistics import median
 from time import process_time
 
 import numpy as np
+from ocp.program.problem import Problem
+from ocp.program.task_program import TaskProgram
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.progress import track
 from rich.table import Table
 
 from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
-from ocp.program.problem import Problem
 from ocp.program.solution import Solution
-from ocp.program.task_program import TaskProgram
 
 TASK = PointToPoint(ArmOnFlexibleLink(), target=pi / 2, duration=0.8)
 BOX = 0.5

@@ -51,8 +51,8 @@ from parts.population.rows import CANDIDATES, SHARE, Method, methods
 from rich.table import Table
 
 from metaheuristics import PopulationObjective
-from metaheuristics.objective.population import _compiled
 from ocp import PointToPoint
+from ocp.program.batch import batch
 
 SECOND_TASK = PointToPoint(PLANT, start=-pi / 2, target=pi / 4, duration=1.0)
 BOX, MANY = 0.5, 10_000
@@ -129,12 +129,11 @@ def tasks_table(population: NDArray[np.float64]) -> Table:
         return timed(lambda: PopulationObjective(task, PROFILE)(population))[0]
 
     forget_compiled()
-    _compiled.cache_clear()
     first, second = values(TASK), values(SECOND_TASK)
     table = Table(title=f"objective and {CANDIDATES} candidates, wall time")
     for name in ("first task", "second task", "first / second", "functions built"):
         table.add_column(name, justify="right")
-    built = str(_compiled.cache_info().misses)
+    built = str(batch.cache_info().misses)
     table.add_row(f"{1e3 * first:.0f} ms", f"{1e3 * second:.1f} ms", f"{first / second:.0f}", built)
     return table
 
