@@ -45,8 +45,6 @@ from time import process_time
 import casadi as ca
 import numpy as np
 import rockit
-from ocp.program.problem import Problem
-from ocp.program.task_program import TaskProgram
 from old_and_new import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.table import Table
@@ -54,7 +52,9 @@ from rockit.sampling_method import FunctionGrid
 
 from ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from ocp.program.ipopt import OPTIONS
-from ocp.program.solution import Solution
+from ocp.program.program import Program
+from ocp.program.solution import ENERGY, RESIDUAL, Ask, Solution
+from ocp.program.solving import Row, solve
 from ocp.simulation.collocation import NODES, mesh
 from ocp.simulation.resimulation import resimulate
 
@@ -78,7 +78,8 @@ class Move:
     def of(cls, title: str, task: PointToPoint, bound: float | None) -> Move:
         """The move with what is known of it before."""
         best = plan_move(task, PROFILE, bound=bound, steps=STEPS[-1])
-        scale = TaskProgram(task, PROFILE, STEPS[-1]).scale
+        program = Program(task, PROFILE, STEPS[-1])
+        scale = np.append(program.scale, program.scale_of(ENERGY) / task.duration)
         return cls(title, task, bound, scale, best.energy)
 
     def above(self, coefficients: np.ndarray) -> float:
@@ -91,8 +92,10 @@ class Move:
 
     def solve(self, steps: int) -> Solution:
         """Solve by quietarm, without the verification."""
-        program = TaskProgram(self.task, PROFILE, steps)
-        return Problem(program, {"residual": 0.0}, self.bound).solve(np.zeros(PROFILE.size))
+        program = Program(self.task, PROFILE, steps)
+        asked = Ask({RESIDUAL: 0.0}, self.bound)
+        (solution,) = solve([Row(program, asked, PROFILE.plain)]).solutions
+        return solution
 
 
 class RockitMove:

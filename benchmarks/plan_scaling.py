@@ -7,10 +7,9 @@ The arm on a flexible link, 0 to pi/2 in 0.8 s, at rest on arrival, from one sta
 cycloid. Terms 2 to 28 at 100 steps, with the paper's box on the coefficients and without a box;
 then 100 to 1600 steps at six terms. Every repetition begins cold, with nothing built. Columns:
 
-- build: what a first solve takes longer than a second: making the solvers (states, their
-  derivatives by recursion, IPOPT's set-up) of the sampled and of the resolved energy;
-- solve: one call of `Problem.solve` with all built, how many iterations IPOPT took in it, and
-  the time of one of them;
+- build: what a first solve takes longer than a second: making the functions of the motion's
+  values and derivatives;
+- solve: one solve with all built, how many iterations it took, and the time of one of them;
 - plan: the whole of `plan_move`, cold: build, solve, verification by CVODES, and where that asks
   for them more steps and another solve. `steps used` is how many it ended with;
 - / first: plan time over that of the table's first row, the median of the ratios within a
@@ -32,15 +31,15 @@ from statistics import median
 from time import process_time
 
 import numpy as np
-from ocp.program.problem import Problem
-from ocp.program.task_program import TaskProgram
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.progress import track
 from rich.table import Table
 
 from models import ArmOnFlexibleLink
 from ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
-from ocp.program.solution import Solution
+from ocp.program.program import Program
+from ocp.program.solution import RESIDUAL, Ask, Solution
+from ocp.program.solving import Row, solve
 
 TASK = PointToPoint(ArmOnFlexibleLink(), target=pi / 2, duration=0.8)
 BOX = 0.5
@@ -75,11 +74,12 @@ def measure(case: Case) -> Timing:
     forget_compiled()
 
     def solved() -> Solution:
-        program = TaskProgram(TASK, profile, case.steps)
-        return Problem(program, {"residual": 0.0}, case.bound).solve(guess)
+        program = Program(TASK, profile, case.steps)
+        (solution,) = solve([Row(program, Ask({RESIDUAL: 0.0}, case.bound), guess)]).solutions
+        return solution
 
     first, _ = timed(solved, process_time)
-    solve, solution = timed(solved, process_time)
+    again, solution = timed(solved, process_time)
     forget_compiled()
     try:
         plan, answer = timed(
@@ -87,9 +87,9 @@ def measure(case: Case) -> Timing:
             process_time,
         )
     except QuietarmError:
-        return Timing(first - solve, solve, solution.iterations, np.nan, "failed", np.nan)
+        return Timing(first - again, again, solution.iterations, np.nan, "failed", np.nan)
     used = str(answer.verification.steps)
-    return Timing(first - solve, solve, solution.iterations, plan, used, answer.energy)
+    return Timing(first - again, again, solution.iterations, plan, used, answer.energy)
 
 
 def scaling_table(title: str, cases: Sequence[Case], runs: Sequence[Sequence[Timing]]) -> Table:
@@ -100,16 +100,16 @@ def scaling_table(title: str, cases: Sequence[Case], runs: Sequence[Sequence[Tim
         table.add_column(name, justify="right")
     for column, case in enumerate(cases):
         timings = [run[column] for run in runs]
-        solve = median(timing.solve for timing in timings)
+        solve_time = median(timing.solve for timing in timings)
         last = timings[-1]
         ratio = median(run[column].plan / run[0].plan for run in runs)
         table.add_row(
             str(case.terms),
             str(case.steps),
             f"{median(timing.build for timing in timings):.3f} s",
-            f"{solve:.3f} s",
+            f"{solve_time:.3f} s",
             str(last.iterations),
-            f"{1e3 * solve / max(last.iterations, 1):.1f} ms",
+            f"{1e3 * solve_time / max(last.iterations, 1):.1f} ms",
             f"{median(timing.plan for timing in timings):.3f} s",
             f"{ratio:.1f}",
             last.steps_used,
