@@ -141,7 +141,7 @@ def _load_for_all_workers() -> None:
 def _end(cluster: LocalCluster) -> None:
     """End the workers at once, whatever they do: what they found has been handed over."""
     for nanny in cluster.workers.values():
-        nanny.auto_restart = False
+        nanny.close_gracefully()  # else it starts the worker again while the cluster ends
         if nanny.pid:
             os.kill(nanny.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
 
