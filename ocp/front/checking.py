@@ -11,20 +11,16 @@ from ocp.base.errors import SolverFailedError
 from ocp.base.interrupts import note_interrupts
 from ocp.front.points import FailedPoint, FrontPoint
 from ocp.front.sweep import Sweep
+from ocp.plan.finer import EVERY, SAME, finer_values
 from ocp.plan.verification import OF_A_PLAN, Care, Checked, verified
-from ocp.program.batch import batch
 from ocp.program.solution import RESIDUAL, STILL, Solution
 from ocp.robustness.uncertain import UncertainPlant
 from ocp.simulation.cvodes import residual_of
 from ocp.simulation.resimulation import resimulate
-from ocp.simulation.rollout import default_steps
 
 RESIDUAL_LIMIT = "residual_limit"
 _TIME_AFTER_CTRL_C = 0.6
 """How long [s] points are still checked after Ctrl-C."""
-_EVERY, _FINER, _SAME = 10, 3, 1e-6
-"""CVODES checks one point in so many; the others are checked on so many times the solver's steps;
-the share by which the two may differ."""
 SAMPLING = 1e-4
 """Share by which the residual between samples, or by CVODES, may pass that of the solver."""
 
@@ -126,22 +122,18 @@ def _by_finer_rule(sweep: Sweep, found: Sequence[Solution]) -> dict[int, FrontPo
     also have to hold between the nodes.
     """
     task, profile = sweep.task, sweep.profile
-    if len(found) < _EVERY or task.limits or isinstance(task.plant, UncertainPlant):
+    if len(found) < EVERY or task.limits or isinstance(task.plant, UncertainPlant):
         return {}
-    steps = max(default_steps(task), _FINER * sweep.steps)
     table = np.array([one.coefficients for one in found])
-    move, no_errors = np.repeat([task.move], len(table), axis=0), np.zeros((len(table), 0))
-    values = batch(task.plant, profile, steps).values(table, move, no_errors)
+    values = finer_values([sweep.program] * len(table), table)
     points = dict[int, FrontPoint]()
     for i, (one, energy) in enumerate(zip(found, values.energy.tolist(), strict=True)):
         if abs(one.energy - energy) <= care_of(sweep).agreement * energy:
             residual = residual_of(task, values.arrival[i])
             points[i] = FrontPoint(profile.checked(one.coefficients), residual, energy)
-    for i in list(points)[::_EVERY]:
+    for i in list(points)[::EVERY]:
         exact, point = resimulate(task, profile, points[i].coefficients), points[i]
-        least = _SAME * exact.residual + STILL
-        if abs(exact.energy - point.energy) > _SAME * exact.energy:
-            return {}
-        if abs(exact.residual - point.residual) > least:
+        energy, residual = exact.energy - point.energy, exact.residual - point.residual
+        if abs(energy) > SAME * exact.energy or abs(residual) > SAME * exact.residual + STILL:
             return {}
     return points

@@ -13,12 +13,13 @@ from ocp.answers.provenance import SolveSettings
 from ocp.base.errors import SolverFailedError
 from ocp.base.status import SolveStatus
 from ocp.base.threads import one_at_a_time
+from ocp.plan.finer import EVERY, SAME, finer_values
 from ocp.plan.starts import first_steps, start_coefficients
 from ocp.plan.verification import OF_A_PLAN, verified
 from ocp.profiles.joint_profile import JointProfile
 from ocp.profiles.kinds import refuse_other_kinds
 from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.program.batch import Values, batch
+from ocp.program.batch import Values
 from ocp.program.program import Program, programs_of
 from ocp.program.solution import RESIDUAL, STILL, Ask, Solution
 from ocp.program.solving import Row, Solver, solve
@@ -28,9 +29,6 @@ from ocp.simulation.resimulation import resimulate
 from ocp.task.point_to_point import PointToPoint
 
 Array = NDArray[np.float64]
-_FINER, _EVERY, _SAME = 3, 10, 1e-6
-"""Figures are by so many times the solver's steps; CVODES checks one move in so many; the share by
-which energies may then differ."""
 _ROUNDS, _AT_REST = 4, 0.3
 """Most corrections of the state on arrival, until a residual is below this share of `STILL`."""
 
@@ -193,7 +191,7 @@ def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int =
     """
     one, places = rows[0].program, [row.place for row in rows]
     table = np.array([row.solution.coefficients for row in rows])
-    values = _finer(rows, table)
+    values = finer_values([row.program for row in rows], table)
     energy = np.array([row.solution.energy for row in rows])
     rough = np.abs(energy - values.energy) > OF_A_PLAN.agreement * values.energy
     doubtful = set[int]()
@@ -211,9 +209,9 @@ def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int =
     moves.coefficients[places], moves.energy[places] = table, values.energy
     moves.residual[places] = residual
     doubtful |= {places[k] for k in np.flatnonzero(residual > STILL)}
-    for k in range(0, len(rows), _EVERY):
+    for k in range(0, len(rows), EVERY):
         exact = resimulate(rows[k].program.task, one.profile, table[k])
-        differs = abs(exact.energy - values.energy[k]) > _SAME * exact.energy
+        differs = abs(exact.energy - values.energy[k]) > SAME * exact.energy
         if differs or exact.residual > STILL:
             return doubtful | set(places)
         moves.by_cvodes[places[k]] = True
@@ -234,31 +232,23 @@ def _on_twice_the_steps(rows: list[_Found], solver: Solver) -> list[_Found]:
     ]
 
 
-def _finer(rows: list[_Found], table: Array) -> Values:
-    """Figures of coefficients on many more steps."""
-    one = rows[0].program
-    fine = batch(one.plant, one.profile, _FINER * one.steps)
-    move = np.array([row.program.task.move for row in rows])
-    return fine.values(table, move, np.zeros((len(rows), 0)))
-
-
 def _corrected(rows: list[_Found], table: Array, solver: Solver) -> tuple[Array, Values, Array]:
     """Coefficients, figures and residuals, corrected by what the steps miss on arrival."""
-    targets = np.array([row.program.task.target for row in rows])
+    programs = [row.program for row in rows]
+    targets = np.array([program.task.target for program in programs])
     by_steps = np.array([row.solution.arrival[0] for row in rows])
-    for correction in range(_ROUNDS + 1):
-        values = _finer(rows, table)
-        residual = residuals_at_rest(rows[0].program.task, targets, values.arrival)
+    rounds = 0
+    while True:
+        values = finer_values(programs, table)
+        residual = residuals_at_rest(programs[0].task, targets, values.arrival)
         again = np.flatnonzero(residual > _AT_REST * STILL)
-        if not again.size or correction == _ROUNDS:
+        if not again.size or rounds == _ROUNDS:
             return table, values, residual
+        rounds += 1
         offset = values.arrival - by_steps
-        given = [
-            Row(rows[k].program, rows[k].ask._replace(offset=offset[k]), table[k]) for k in again
-        ]
+        given = [Row(programs[k], rows[k].ask._replace(offset=offset[k]), table[k]) for k in again]
         for k, found in zip(again, solve(given, solver, warm=True).solutions, strict=True):
             table[k], by_steps[k] = found.coefficients, found.arrival[0] - offset[k]
-    raise AssertionError  # the last round returns
 
 
 def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:

@@ -164,7 +164,7 @@ class Checked(WithPeaks):
     def __init__(self, program: Program, found: Solution) -> None:
         task = on_assumed(program.task)
         joint = PiecewiseMotion.of_profile(task, program.profile, found.coefficients)
-        names = program.batch.errors
+        names = program.batch.kind.errors
         wrong = [tuple(zip(names, errors.tolist(), strict=True)) for errors in program.errors[1:]]
         self._all = [resimulated(task, joint), *(resimulated(task, joint, one) for one in wrong)]
         self.energy = self._all[0].energy

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from models import Plant
 from ocp.base.interrupts import keep_interrupts
 from ocp.profiles.joint_profile import JointProfile
-from ocp.program.expressions import differentiated, evaluated
+from ocp.program.expressions import Kind, function_of_derivatives, function_of_values
 from ocp.program.node import PathFunctions
 from ocp.simulation.buffered import BufferedFunction
 from ocp.simulation.collocation import NODES
@@ -31,6 +31,8 @@ from ocp.task.quantities import QUANTITIES
 Array = NDArray[np.float64]
 _BLOCKS, _MANY = (1, 2, 4, 8), 100
 """Rows of a compiled call with derivatives, where more rows take several; of one for values."""
+_LEAST_STRETCH = 1e-5
+"""Share of the joint's largest response below which a direction in a box counts as this share."""
 _PADDED = 200
 """A function for more rows than are needed serves so many times, before one is built that fits."""
 
@@ -76,55 +78,49 @@ class Derivatives(Values):
     curvature: Array
 
 
-@dataclass(frozen=True, eq=False)
 class Batch:
     """A plant's motion along a profile in a number of steps, for many candidates at once.
 
-    Attributes
+    Parameters
     ----------
-    plant : Plant
-        What moves.
-    profile : JointProfile
-        How the joint moves.
-    steps : int
-        Number of steps.
-    quantities : tuple of str
-        Limited quantities.
-    errors : tuple of str
-        What may differ from the plant in a row, as by `with_errors`.
+    kind : Kind
+        What the candidates have in common.
     """
 
-    plant: Plant
-    profile: JointProfile
-    steps: int
-    quantities: tuple[str, ...] = ()
-    errors: tuple[str, ...] = ()
+    def __init__(self, kind: Kind) -> None:
+        self.kind = kind
+        self._built: dict[int, BufferedFunction] = {}
+        self._lent = dict.fromkeys(_BLOCKS, 0)
+        self._idle: list[BufferedFunction] = []
 
-    @cached_property
-    def even_axes(self) -> Array:
+    def even_axes(self, boxed: bool = False) -> Array:
         """Axes along which the first value of `inner` moves alike and independently.
 
         The powers of T of a polynomial are nearly the same function from about ten terms on.
         Coefficients are these axes times the unknowns of a program; the identity where the
-        coefficients enter nonlinearly.
+        coefficients enter nonlinearly. With a box on the coefficients directions that hardly move
+        the joint are stretched less: else the box is so thin along these axes that a quadratic
+        program loses it to rounding.
         """
-        path = PathFunctions(self.profile, self.steps, jerk=False)
-        if not path.linear:
-            return np.eye(self.profile.size)
-        times, length = node_times(self.steps)
-        at_nodes = [[np.array(slope[0]).ravel() for slope in path.slopes(at)] for at in times]
-        slopes = np.array(at_nodes) * np.sqrt(np.array(length).ravel())
-        columns = slopes.transpose(0, 2, 1).reshape(-1, self.profile.size)
+        columns = self._slopes
+        if columns is None:
+            return np.eye(self.kind.profile.size)
+        if boxed:
+            least = _LEAST_STRETCH * np.linalg.norm(columns, 2)
+            columns = np.concatenate([columns, least * np.eye(self.kind.profile.size)])
         triangle: Any = np.linalg.qr(columns, mode="r")
         return np.linalg.inv(triangle) * triangle[0, 0]
 
     @cached_property
-    def _built(self) -> dict[int, BufferedFunction]:
-        return {}
-
-    @cached_property
-    def _lent(self) -> dict[int, int]:
-        return dict.fromkeys(_BLOCKS, 0)
+    def _slopes(self) -> Array | None:
+        """By each coefficient the first value of `inner` at the nodes; None if not linear."""
+        path = PathFunctions(self.kind.profile, self.kind.steps, jerk=False)
+        if not path.linear:
+            return None
+        times, length = node_times(self.kind.steps)
+        at_nodes = [[np.array(slope[0]).ravel() for slope in path.slopes(at)] for at in times]
+        slopes = np.array(at_nodes) * np.sqrt(np.array(length).ravel())
+        return slopes.transpose(0, 2, 1).reshape(-1, self.kind.profile.size)
 
     def _function(self, rows: int) -> tuple[int, BufferedFunction]:
         """One for so many rows or more: to build one takes as long as hundreds of its calls."""
@@ -134,28 +130,22 @@ class Batch:
             self._lent[fitting] += 1
             fitting = min(larger)
         if fitting not in self._built:
-            parts = self.plant, self.profile, self.steps, self.quantities, self.errors
-            self._built[fitting] = BufferedFunction(differentiated(*parts, fitting))
+            self._built[fitting] = BufferedFunction(function_of_derivatives(self.kind, fitting))
         return fitting, self._built[fitting]
 
     @property
     def parts(self) -> list[tuple[str, slice]]:
         """Where the values of each limited quantity stand among all."""
         found = list[tuple[str, slice]]()
-        for name in self.quantities:
+        for name in self.kind.quantities:
             first = found[-1][1].stop if found else 0
-            count = QUANTITIES[name].rows(self.plant) * NODES * self.steps
+            count = QUANTITIES[name].rows(self.kind.plant) * NODES * self.kind.steps
             found.append((name, slice(first, first + count)))
         return found
 
     @cached_property
-    def _idle(self) -> list[BufferedFunction]:
-        return []
-
-    @cached_property
     def _valued(self) -> ca.Function:
-        parts = self.plant, self.profile, self.steps, self.quantities, self.errors
-        return evaluated(*parts, _MANY)
+        return function_of_values(self.kind, _MANY)
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:
@@ -180,7 +170,9 @@ class Batch:
             parts = [self._values(block) for block in blocks]
         if not parts:
             values = self.parts[-1][1].stop if self.parts else 0
-            return Values(np.zeros(0), np.zeros((0, 2 * self.plant.modes)), np.zeros((0, values)))
+            return Values(
+                np.zeros(0), np.zeros((0, 2 * self.kind.plant.modes)), np.zeros((0, values))
+            )
         energy, arrival, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
         return Values(energy[:, 0], arrival, limited)
 
@@ -230,11 +222,11 @@ class Batch:
 
     def _block(self, inputs: list[Array], rows: int) -> tuple[Array, ...]:
         fitting, function = self._function(rows)
-        size, raw = self.profile.size, function(*(_filled(one, fitting).T for one in inputs))
+        size, raw = self.kind.profile.size, function(*(_filled(one, fitting).T for one in inputs))
 
         def by_coefficient(one: Array) -> Array:
             """From (values, coefficients, steps; rows) to (rows; coefficients; values, steps)."""
-            apart = one.reshape(-1, size, self.steps, fitting)[..., :rows]
+            apart = one.reshape(-1, size, self.kind.steps, fitting)[..., :rows]
             return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
 
         # copies: the next call overwrites the function's own
@@ -270,4 +262,4 @@ def batch(
     errors: tuple[str, ...] = (),
 ) -> Batch:
     """The compiled functions of a plant, a profile and a number of steps."""
-    return Batch(plant, profile, steps, quantities, errors)
+    return Batch(Kind(plant, profile, steps, quantities, errors))

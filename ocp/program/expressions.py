@@ -7,7 +7,7 @@ of all steps stand once for each coefficient.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -30,20 +30,37 @@ _STEPS_OF_CSE = 48
 grows with the square of the steps."""
 
 
-def evaluated(
-    plant: Plant,
-    profile: JointProfile,
-    steps: int,
-    quantities: tuple[str, ...],
-    names: tuple[str, ...],
-    rows: int,
-) -> ca.Function:
+class Kind(NamedTuple):
+    """What rows have in common.
+
+    Attributes
+    ----------
+    plant : Plant
+        What moves.
+    profile : JointProfile
+        How the joint moves.
+    steps : int
+        Number of steps.
+    quantities : tuple of str
+        Limited quantities.
+    errors : tuple of str
+        What may differ from the plant in a row, as by `with_errors`.
+    """
+
+    plant: Plant
+    profile: JointProfile
+    steps: int
+    quantities: tuple[str, ...]
+    errors: tuple[str, ...]
+
+
+def function_of_values(kind: Kind, rows: int) -> ca.Function:
     """Compile the values of candidates.
 
     Parameters
     ----------
-    plant, profile, steps, quantities, names
-        As the attributes of `Batch`.
+    kind : Kind
+        Of the rows.
     rows : int
         Number of candidates.
 
@@ -52,6 +69,7 @@ def evaluated(
     Function
         (coefficients, moves, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
+    plant, profile, steps, quantities, names = kind
     inputs = [ca.MX.sym("x", rows, count) for count in (profile.size, 3, len(names))]
     a, move, errors = (_wide(one, steps) for one in inputs)
     moving = with_errors(plant, dict(zip(names, errors, strict=True)))
@@ -69,15 +87,8 @@ def evaluated(
     return ca.Function("values", inputs, [_beside(one, rows) for one in found], options)
 
 
-def differentiated(
-    plant: Plant,
-    profile: JointProfile,
-    steps: int,
-    quantities: tuple[str, ...],
-    names: tuple[str, ...],
-    rows: int,
-) -> ca.Function:
-    """Compile the values of candidates with their derivatives; arguments as for `evaluated`.
+def function_of_derivatives(kind: Kind, rows: int) -> ca.Function:
+    """Compile the values of candidates with their derivatives; arguments as for the values alone.
 
     Returns
     -------
@@ -87,21 +98,14 @@ def differentiated(
         the coefficients, limited quantities by them, two factors whose product is the curvature of
         the weighted sum, and what the path's own curvature adds where it is not linear.
     """
-    return _Differentiated(plant, profile, steps, quantities, names, rows).function()
+    return _Differentiated(kind, rows).function()
 
 
 class _Differentiated:
-    """The expressions of `differentiated`, from the motion to its curvature."""
+    """The expressions of `function_of_derivatives`, from the motion to its curvature."""
 
-    def __init__(
-        self,
-        plant: Plant,
-        profile: JointProfile,
-        steps: int,
-        quantities: tuple[str, ...],
-        names: tuple[str, ...],
-        rows: int,
-    ) -> None:
+    def __init__(self, kind: Kind, rows: int) -> None:
+        plant, profile, steps, quantities, names = kind
         self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
         self.path = PathFunctions(profile, steps, ask_for_jerk(quantities))
         self.node = NodeFunctions(plant, self.path, quantities, names)

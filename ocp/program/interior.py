@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from ocp.base.interrupts import note_interrupts
 from ocp.program.ipopt import OPTIONS, Point, ipopt_of_functions, run_ipopt
-from ocp.program.sqp import FEASIBLE, End, Model, Rows
+from ocp.program.quadratic import Model
+from ocp.program.sqp import FEASIBLE, End, Rows
 from ocp.program.stack import Stack
 
 Array = NDArray[np.float64]

@@ -111,10 +111,7 @@ def ipopt(
     if gradient is not None:
         names = ["x", "p"], ["f", "grad_f_x"]
         functions["grad_f"] = ca.Function("nlp_grad_f", [x, p], [f, gradient], *names)
-    chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
-    everything = {**functions, **chosen, "ipopt": dict(options)}
-    with _on_one_thread():
-        return ca.nlpsol("program", "ipopt", dict(problem), everything)
+    return _compiled(problem, functions, options)
 
 
 def ipopt_of_functions(
@@ -147,13 +144,17 @@ def ipopt_of_functions(
         The solver.
     """
     x, p = ca.MX.sym("x", unknowns), ca.MX.sym("p")
-    given = {"grad_f": gradient, "jac_g": jacobian, "hess_lag": hessian}
+    functions = {"grad_f": gradient, "jac_g": jacobian, "hess_lag": hessian}
+    return _compiled({"x": x, "p": p, "f": f(x, p), "g": g(x, p)}, functions, options)
+
+
+def _compiled(
+    problem: Mapping[str, ca.MX], functions: Mapping[str, ca.Function], options: Options
+) -> ca.Function:
     chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
-    everything = {**given, **chosen, "ipopt": dict(options)}
+    everything = {**functions, **chosen, "ipopt": dict(options)}
     with _on_one_thread():
-        return ca.nlpsol(
-            "program", "ipopt", {"x": x, "p": p, "f": f(x, p), "g": g(x, p)}, everything
-        )
+        return ca.nlpsol("program", "ipopt", dict(problem), everything)
 
 
 @contextmanager

@@ -56,7 +56,7 @@ class Program:
     @cached_property
     def rests(self) -> list[Array]:
         """What makes each plant's tip displacements of its state on arrival, a row a time."""
-        names = self.batch.errors
+        names = self.batch.kind.errors
         named = [dict(zip(names, errors.tolist(), strict=True)) for errors in self.errors]
         return [residual_rows(self.task, with_errors(self.plant, one)) for one in named]
 

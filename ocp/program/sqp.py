@@ -1,8 +1,7 @@
 """Sequential quadratic programming: many small nonlinear programs, a row each, side by side.
 
 Every row minimises f(x) with c(x) = 0 and lower <= v(x) <= upper. In an iteration all rows are
-evaluated in one call; each solves a quadratic program of its own within a trust region, by DAQP, a
-dual active-set method (Arnstrom, Bemporad and Axehill, IEEE Trans. Automatic Control 67, 2022).
+evaluated in one call; each solves a quadratic program of its own within a trust region.
 
 - Curvature is exact. Along the linearised equalities, where it has to be positive, negative
   curvature counts as positive.
@@ -12,7 +11,6 @@ dual active-set method (Arnstrom, Bemporad and Axehill, IEEE Trans. Automatic Co
   has no weight that could be too large to see the objective, or too small to see 1e-9 m.
 - A step that is not accepted for the curvature of the constraints is corrected to second order
   (Nocedal and Wright, Numerical Optimization, 2nd ed., section 18.3).
-- Where the linearised constraints cannot be met, the step makes their violation least.
 - The objective has kinks that a quadratic model does not see before it is beyond them: where the
   power, hardly away from zero, changes its sign. So it is rounded off over a width that shrinks
   from stage to stage, as the barrier does it for an interior-point method; the last stage has none.
@@ -23,13 +21,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, NamedTuple
+from typing import Any
 
-import daqp
 import numpy as np
 from numpy.typing import NDArray
 
 from ocp.base.interrupts import note_interrupts
+from ocp.program.quadratic import Model, Steps, convex, least_steps
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -55,51 +53,8 @@ _PATIENCE, _CREEP = 40, 1e-5
 """A row creeps where in so many iterations f falls by less than this share."""
 _ALIKE = 1e-6
 """Rows whose f differ by no more than this share agree."""
-_EXACT = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 300}
-_LOOSER, _STIFFER = {"primal_tol": 1e-9, "dual_tol": 1e-9}, 1e-6
-"""Settings of the quadratic programs, and where these fail."""
-_TIE = 1e-3
-"""Curvature that settles which of the steps of least violation is taken: a short one."""
 _MEETING = 2e-3
 """Rows whose points are no farther apart in the same stage, past the first, go on as one."""
-_EQUALITY, _OPTIMUM, _EMPTY = 5, 1, -1
-"""DAQP's mark of one; its words for a solution, and for constraints that cannot be met."""
-
-
-class Model(NamedTuple):
-    """Rows of programs at their points: values, derivatives, Hessian of the Lagrangian.
-
-    Attributes
-    ----------
-    f : ndarray, shape (rows,)
-        Objective.
-    gradient : ndarray, shape (rows, n)
-        Its derivatives.
-    c, v : ndarray, shapes (rows, m) and (rows, k)
-        Equalities, and what is bounded.
-    by_c, by_v : ndarray, shapes (rows, m, n) and (rows, k, n)
-        Their derivatives.
-    hessian : ndarray, shape (rows, n, n)
-        Of the Lagrangian.
-    """
-
-    f: Array
-    gradient: Array
-    c: Array
-    by_c: Array
-    v: Array
-    by_v: Array
-    hessian: Array
-
-    def put(self, rows: Index, other: Model) -> None:
-        """Replace rows."""
-        for part, new in zip(self, other, strict=True):
-            part[rows] = new
-
-    def take(self, rows: Index | NDArray[np.bool_]) -> Model:
-        """Some rows."""
-        return Model(*(part[rows] for part in self))
-
 
 Evaluate = Callable[[Index, Array, Array, Array, Array], Model]
 """(rows, points, multipliers of c, of v, widths) -> model at these points."""
@@ -198,15 +153,6 @@ def minimise(
     return Rows(*found, stopped=bool(came))
 
 
-class _Step(NamedTuple):
-    """Steps d with multipliers; whether the linearised constraints are met."""
-
-    d: Array
-    of_c: Array
-    of_v: Array
-    met: NDArray[np.bool_]
-
-
 class _Run:
     """The rows on their way. Arrays by row; `model` has those of the rows still `going`."""
 
@@ -245,9 +191,9 @@ class _Run:
         """One iteration of all rows that are going."""
         rows, model = self.going, self.model
         self.iterations[rows] += 1
-        hessian = _convex(model)
+        hessian = convex(model)
         every = np.arange(len(rows))
-        step = self._steps(every, hessian, model.c, model.v)
+        step = self._steps(rows, model._replace(hessian=hessian))
         promised = -np.einsum("rn,rn->r", model.gradient, step.d)
         promised -= 0.5 * np.einsum("rn,rnm,rm->r", step.d, hessian, step.d)
         sharper = self._sharper(step, promised)
@@ -268,7 +214,7 @@ class _Run:
         small = (np.abs(promised) <= _OPTIMAL * np.abs(model.f)) & ~bound & step.met
         self._end(small & ~sharper & (self.violation[rows] <= _MET) & (width == 0))
 
-    def _sharper(self, step: _Step, promised: Array) -> NDArray[np.bool_]:
+    def _sharper(self, step: Steps, promised: Array) -> NDArray[np.bool_]:
         """Which rows go on to the next stage with this step."""
         rows = self.going
         width = self.width(rows)
@@ -279,7 +225,7 @@ class _Run:
         return _farthest(model.c, model.v, self.lower[rows], self.upper[rows])
 
     def _accepted(
-        self, which: Index, step: _Step, d: Array, promised: Array, trial: Model
+        self, which: Index, step: Steps, d: Array, promised: Array, trial: Model
     ) -> NDArray[np.bool_]:
         """Whether the rows at these places of the model accept their steps d."""
         rows, model = self.going[which], self.model.take(which)
@@ -303,7 +249,7 @@ class _Run:
     def _correct(
         self,
         hessian: Array,
-        step: _Step,
+        step: Steps,
         promised: Array,
         trial: Model,
         good: NDArray[np.bool_],
@@ -313,10 +259,11 @@ class _Run:
         again = np.flatnonzero(~good & step.met & missed & np.isfinite(trial.f))
         if not again.size:
             return
-        rows, d = self.going[again], step.d[again]
-        c = trial.c[again] - _times(self.model.by_c[again], d)
-        v = trial.v[again] - _times(self.model.by_v[again], d)
-        corrected = self._steps(again, hessian, c, v, relax=False)
+        rows, d, model = self.going[again], step.d[again], self.model.take(again)
+        c = trial.c[again] - _times(model.by_c, d)
+        v = trial.v[again] - _times(model.by_v, d)
+        bent = model._replace(c=c, v=v, hessian=hessian[again])
+        corrected = self._steps(rows, bent, relax=False)
         of_c, of_v = step.of_c[again], step.of_v[again]
         second = self.evaluate(rows, self.x[rows] + corrected.d, of_c, of_v, self.width(rows))
         better = self._accepted(again, step, corrected.d, promised[again], second)
@@ -345,7 +292,7 @@ class _Run:
         self.radius[self.going] = np.where(good, kept, np.minimum(shrunk, radius))
 
     def _move(
-        self, good: NDArray[np.bool_], for_f: NDArray[np.bool_], step: _Step, trial: Model
+        self, good: NDArray[np.bool_], for_f: NDArray[np.bool_], step: Steps, trial: Model
     ) -> None:
         rows = self.going
         self.of_c[rows], self.of_v[rows] = step.of_c, step.of_v
@@ -404,63 +351,10 @@ class _Run:
         kept = self.violation[row] <= FEASIBLE
         return feasible if kept else else_ or End.UNFINISHED
 
-    def _steps(self, which: Index, hessian: Array, c: Array, v: Array, relax: bool = True) -> _Step:
-        """Solve the quadratic programs of rows at these places, for these values of c and v."""
-        model, rows = self.model, self.going[which]
-        lower, upper = self.lower[rows] - v, self.upper[rows] - v
-        room = np.abs(model.by_v[which]).sum(axis=2) * self.radius[rows, None]
-        near = (upper <= room) | (-lower <= room)
-        n, (m, k) = self.x.shape[1], (c.shape[1], v.shape[1])
-        found = _Step(
-            np.zeros((len(rows), n)), np.zeros((len(rows), m)), np.zeros((len(rows), k)),
-            np.zeros(len(rows), dtype=bool),
-        )  # fmt: skip
-        for i, place in enumerate(which):
-            own = np.flatnonzero(near[i])
-            box = np.full(n, self.radius[rows[i]])
-            table = np.concatenate([model.by_c[place], model.by_v[place, own]])
-            most = np.concatenate([box, -c[i], upper[i, own]])
-            least = np.concatenate([-box, -c[i], lower[i, own]])
-            marks = np.zeros(len(most), dtype=np.int32)
-            marks[n : n + m] = _EQUALITY
-            one = hessian[place], model.gradient[place], table, most, least
-            d, _, flag, info = daqp.solve(*one, marks, **_EXACT)
-            if flag not in (_OPTIMUM, _EMPTY):  # it cycles: with a little more curvature it ends
-                stiffer = hessian[place] + _STIFFER * np.trace(hessian[place]) * np.eye(n)
-                d, _, flag, info = daqp.solve(stiffer, *one[1:], marks, **_LOOSER)
-            if flag == _OPTIMUM:
-                found.met[i], multipliers = True, info["lam"][n:]
-                found.of_c[i], found.of_v[i, own] = multipliers[:m], multipliers[m:]
-            elif relax:
-                hard = own >= k - self.linear
-                found.d[i] = _least_violation(table, most[n:], least[n:], box[0], m, hard)
-                continue
-            found.d[i] = d
-        return found
-
-
-def _least_violation(
-    table: Array, most: Array, least: Array, radius: float, m: int, hard: NDArray[np.bool_]
-) -> Array:
-    """The step in a box that makes the largest violation of linearised constraints least.
-
-    The violation t is one more unknown; hard constraints, the last ones, are kept.
-    """
-    n = table.shape[1]
-    give = np.concatenate([np.ones(m), (~hard).astype(float)])
-    above, below = np.isfinite(most), np.isfinite(least)
-    rows = np.block([
-        [table[above], -give[above, None]],
-        [table[below], give[below, None]],
-    ])  # fmt: skip
-    free = np.inf
-    upper = np.concatenate([np.full(n, radius), [free], most[above], np.full(below.sum(), free)])
-    lower = np.concatenate([np.full(n, -radius), [0.0], np.full(above.sum(), -free), least[below]])
-    hessian = np.diag([*[_TIE] * n, _TIE])
-    cost = np.append(np.zeros(n), 1.0)
-    marks = np.zeros(len(upper), dtype=np.int32)
-    d, *_ = daqp.solve(hessian, cost, rows, upper, lower, marks, **_EXACT)
-    return np.asarray(d)[:n]
+    def _steps(self, rows: Index, model: Model, relax: bool = True) -> Steps:
+        """Solve the quadratic programs of rows whose models these are."""
+        bounds = self.lower[rows], self.upper[rows]
+        return least_steps(model, *bounds, self.radius[rows], self.linear, relax)
 
 
 def _times(matrices: Array, d: Array) -> Array:
@@ -471,28 +365,3 @@ def _farthest(c: Array, v: Array, lower: Array, upper: Array) -> Array:
     """The largest distance from c = 0 and from the bounds of v."""
     beyond = np.maximum(np.maximum(v - upper, lower - v), 0.0)
     return np.maximum(np.abs(c).max(axis=1, initial=0.0), beyond.max(axis=1, initial=0.0))
-
-
-def _convex(model: Model) -> Array:
-    """Hessians with negative curvature along the linearised equalities counted as positive.
-
-    Across them the equalities settle the step, so that any curvature will do that keeps the whole
-    positive.
-    """
-    hessian = (model.hessian + model.hessian.transpose(0, 2, 1)) / 2
-    m, n = model.by_c.shape[1:]
-    if m >= n:
-        return np.repeat(np.eye(n)[None], len(hessian), axis=0)
-    basis = np.linalg.svd(model.by_c)[2].transpose(0, 2, 1) if m else np.eye(n)
-    hessian = basis.swapaxes(-1, -2) @ hessian @ basis
-    values, vectors = np.linalg.eigh(hessian[:, m:, m:])
-    values = np.abs(values)
-    values = np.maximum(values, 1e-8 * values.max(axis=1, keepdims=True) + 1e-12)
-    turned = vectors.swapaxes(-1, -2)
-    hessian[:, m:, m:] = (vectors * values[:, None, :]) @ turned
-    if m:
-        mixed = hessian[:, m:, :m]
-        inverse = (vectors / values[:, None, :]) @ turned
-        own = values.mean(axis=1)[:, None, None] * np.eye(m)
-        hessian[:, :m, :m] = mixed.swapaxes(-1, -2) @ inverse @ mixed + own
-    return np.ascontiguousarray(basis @ hessian @ basis.swapaxes(-1, -2))

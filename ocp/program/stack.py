@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ocp.program.batch import Derivatives
 from ocp.program.program import Program
+from ocp.program.quadratic import Model
 from ocp.program.solution import ENERGY, RESIDUAL, Ask
-from ocp.program.sqp import Model
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -47,7 +47,7 @@ class Stack:
 
     def __init__(self, programs: Sequence[Program], asks: Sequence[Ask]) -> None:
         one, ask = programs[0], asks[0]
-        self.batch, self.axes, self.size = one.batch, one.batch.even_axes, one.profile.size
+        self.batch, self.size = one.batch, one.profile.size
         self.least, self.at_rest, self.quantities = ask.least, ask.at_rest, one.parts
         self.unknowns = self.size + (ask.least is not None)
         self.equalities = one.scale.size if ask.at_rest else 0
@@ -106,6 +106,7 @@ class Stack:
         boxes = np.array([programs[0].profile.box(ask.bound) for ask in asks])
         self._boxed = np.flatnonzero(np.isfinite(boxes).any(axis=(0, 1)))
         self.linear = len(self._boxed)
+        self.axes = self.batch.even_axes(boxed=self.linear > 0)
         self.lower = np.concatenate([lower, twice, boxes[:, 0, self._boxed]], axis=1)
         self.upper = np.concatenate([upper, twice + np.inf, boxes[:, 1, self._boxed]], axis=1)
 

@@ -151,7 +151,7 @@ def test_derivatives_are_the_limit_of_differences(plants, profile, name):
     made = batch(plants[name], profile, 6, ("torque", "jerk"))
     random, h, count = np.random.default_rng(3), 1e-5, made.parts[-1][1].stop
     move, none, sharp = np.array([[-0.4, 1.1, 0.7]]), np.zeros((1, 0)), np.zeros(1)
-    of_states, of_values = (random.normal(size=(1, n)) for n in (2 * made.plant.modes, count))
+    of_states, of_values = (random.normal(size=(1, n)) for n in (2 * made.kind.plant.modes, count))
     at = _coefficients(profile)
 
     def found(away):

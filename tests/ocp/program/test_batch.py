@@ -42,7 +42,7 @@ def _weights(made, rows, energy=1.0, seed=1):
     random, values = np.random.default_rng(seed), made.parts[-1][1].stop if made.parts else 0
     return (
         np.full(rows, energy),
-        random.normal(size=(rows, 2 * made.plant.modes)),
+        random.normal(size=(rows, 2 * made.kind.plant.modes)),
         random.normal(size=(rows, values)),
     )
 
@@ -81,7 +81,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
 def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
     profile = CycloidPolynomial(4)
     made = batch(plants["arm"], profile, 12, ("torque",), ("frequency",))
-    candidates = _candidates(rows, profile, made.errors)
+    candidates = _candidates(rows, profile, made.kind.errors)
     weights = _weights(made, rows)
     together = _derivatives(made, candidates, 0.1, weights)
     valued = made.values(*candidates, threads=threads)
@@ -99,7 +99,7 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
 
 def test_more_rows_than_a_call_takes(plants):
     made = batch(plants["single link"], CycloidPolynomial(2), 12)
-    candidates = _candidates(250, made.profile)
+    candidates = _candidates(250, made.kind.profile)
     found = made.values(*candidates, threads=2)
     for row in (0, 99, 100, 249):
         alone = made.values(*(one[row : row + 1] for one in candidates))
@@ -125,7 +125,7 @@ CASES = [
 def case(request, plants):
     name, family, quantities, errors = request.param
     made = batch(plants[name], PROFILES[family], 12, quantities, errors)
-    return made, _candidates(2, made.profile, errors)
+    return made, _candidates(2, made.kind.profile, errors)
 
 
 def _differences(made, candidates, width, of, h=1e-5):
@@ -177,8 +177,8 @@ def test_curvature_is_the_limit_of_differences_of_the_lagrangians_gradient(case,
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
 def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants, name):
     made = batch(plants[name], CycloidPolynomial(3), 30)
-    candidates = _candidates(2, made.profile, seed=5)
-    weights = np.ones(2), np.zeros((2, 2 * made.plant.modes)), np.zeros((2, 0))
+    candidates = _candidates(2, made.kind.profile, seed=5)
+    weights = np.ones(2), np.zeros((2, 2 * made.kind.plant.modes)), np.zeros((2, 0))
     found = _derivatives(made, candidates, 0.0, weights).curvature
     expected = _differences(made, candidates, 0.0, lambda at: at.gradient, h=1e-6)
     assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
@@ -187,7 +187,7 @@ def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants,
 def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
     # Rounded off, |power| is seen at the nodes only: of 80 steps they miss less than 2e-3 of it.
     made = batch(task.plant, CycloidPolynomial(4), 80)
-    candidates = _candidates(4, made.profile)
+    candidates = _candidates(4, made.kind.profile)
     sharp = _derivatives(made, candidates).energy
     shares = []
     for width in WIDTHS[:-1]:  # as shares of the mean power
@@ -204,7 +204,7 @@ def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
 def test_along_even_axes_the_input_moves_alike_and_independently(plants, terms):
     # U at the nodes moves by (1 - T^2) T^n along coefficient n, n from 0; its Gram matrix is that
     # of the integrals over the move. That of 1 - T^2 is 16/15.
-    axes = batch(plants["arm"], CycloidPolynomial(terms), 80).even_axes
+    axes = batch(plants["arm"], CycloidPolynomial(terms), 80).even_axes()
     T, weights = np.polynomial.legendre.leggauss(40)
     moves = ((1 - T**2) * T ** np.arange(terms)[:, None]).T @ axes
     gram = (moves * weights[:, None]).T @ moves
@@ -213,4 +213,4 @@ def test_along_even_axes_the_input_moves_alike_and_independently(plants, terms):
 
 def test_axes_of_coefficients_that_enter_nonlinearly_are_their_own(plants):
     made = batch(plants["arm"], PROFILES["network"], 12)
-    assert made.even_axes.tolist() == np.eye(made.profile.size).tolist()
+    assert made.even_axes().tolist() == np.eye(made.kind.profile.size).tolist()

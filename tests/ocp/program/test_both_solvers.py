@@ -192,3 +192,14 @@ def test_energies_are_those_of_the_table(plant, start, target, duration, in_box,
         digit = 10.0 ** -len(printed.split(".")[1])
         found = _solved(program, Ask(AT_REST, bound))
         assert found.energy == pytest.approx(float(printed), abs=0.51 * digit)
+
+
+def test_in_a_box_more_terms_are_never_dearer(tasks, program):
+    # the polynomials of fewer terms are among those of more
+    found = [
+        _solved(program(tasks["arm"], terms=terms), Ask(AT_REST, 0.5), start=np.zeros(terms))
+        for terms in (12, 20, 28)
+    ]
+    energies = [one.energy for one in found]
+    assert all(one.status is SolveStatus.OPTIMAL for one in found)
+    assert energies == sorted(energies, reverse=True)

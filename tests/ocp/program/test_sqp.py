@@ -11,7 +11,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from ocp.program.sqp import SHARP, End, Model, minimise
+from ocp.program.quadratic import Model
+from ocp.program.sqp import SHARP, End, minimise
 
 INF = np.inf
 
