@@ -22,13 +22,15 @@ from ocp.profiles.polynomial import CycloidPolynomial
 from ocp.program.batch import Values
 from ocp.program.program import Program, programs_of
 from ocp.program.solution import RESIDUAL, STILL, Ask, Solution
-from ocp.program.solving import Row, Solver, solve
+from ocp.program.solving import STOPPED, Row, Solved, Solver, solve
 from ocp.robustness.uncertain import UncertainPlant
 from ocp.simulation.residual import residuals_at_rest, state_matrices
 from ocp.simulation.resimulation import resimulate
 from ocp.task.point_to_point import PointToPoint
 
 Array = NDArray[np.float64]
+_PILOTS, _SAME_MOVE = 8, 1e-9
+"""One move in so many is solved first; moves that differ by no more than this share are one."""
 _ROUNDS, _AT_REST = 4, 0.3
 """Most corrections of the state on arrival, until a residual is below this share of `STILL`."""
 
@@ -89,8 +91,9 @@ def plan_moves(
     tasks : sequence of PointToPoint
         Moves of one plant, none of them uncertain, with the same quantities limited.
     profile, residual_limit, bound, starts, seed, solver
-        As for `plan_move`; a move that no start solves is tried from three random ones, then by
-        IPOPT.
+        As for `plan_move`. With one start, the default, every eighth move starts from the plain
+        cycloid and the others from the nearest of these. A move that is not solved is tried from
+        the plain cycloid, from three random starts, then by IPOPT.
 
     Returns
     -------
@@ -113,6 +116,9 @@ def plan_moves(
     random = start_coefficients(profile, replace(settings, starts=4))[1:]
     best: list[Solution | None] = [None] * len(tasks)
     complete = True
+    if starts == 1:
+        found, complete = _from_neighbours(programs, asks, first[0], settings)
+        best = [*found]
     attempts: list[tuple[Solver, list[Array]]]
     attempts = [(solver, first), (solver, random), ("ipopt", first[:1])]
     for by, guesses in attempts:
@@ -121,12 +127,35 @@ def plan_moves(
         if not rows or not complete:
             break
         groups = np.repeat(left, len(guesses)).tolist()
-        found, complete = solve(rows, by, groups=groups)
+        found, complete = solve(rows, by, groups=groups if len(guesses) > 1 else None)
         for i, one in zip(groups, found, strict=True):
             held = best[i]
             if held is None or _preferred(one) < _preferred(held):
                 best[i] = one
     return _certified(programs, asks, [one for one in best if one], settings, complete)
+
+
+def _from_neighbours(
+    programs: Sequence[Program], asks: Sequence[Ask], start: Array, settings: SolveSettings
+) -> Solved:
+    """Solve a share of the moves from one start, then all of them from the nearest of these."""
+    count, by = len(programs), settings.solver
+    pilots = np.random.default_rng(settings.seed).permutation(count)[: -(-count // _PILOTS)]
+    found, complete = solve([Row(programs[i], asks[i], start) for i in pilots], by)
+    solved = [k for k, one in enumerate(found) if one.status.solved]
+    starts = np.repeat(start[None], count, axis=0)
+    if solved:
+        moves = np.array([program.task.move for program in programs])
+        moves /= np.ptp(moves, axis=0) + _SAME_MOVE
+        known = moves[pilots[solved]]
+        nearest = [int(np.argmin(np.abs(known - move).sum(axis=1))) for move in moves]
+        starts = np.array([found[solved[k]].coefficients for k in nearest])
+    if not complete:
+        none = replace(found[0], status=SolveStatus.ITERATION_LIMIT, reason=STOPPED, iterations=0)
+        by_place = dict(zip(pilots.tolist(), found, strict=True))
+        return Solved([by_place.get(i, none) for i in range(count)], False)
+    rows = [Row(*one) for one in zip(programs, asks, starts, strict=True)]
+    return solve(rows, by, warm=bool(solved))
 
 
 def _steps(tasks: Sequence[PointToPoint], profile: JointProfile, settings: SolveSettings) -> int:

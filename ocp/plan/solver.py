@@ -60,6 +60,7 @@ def plan_move(
     starts : int
         How many starts: the guess or the plain cycloid first, then random ones; all at once. Once
         half of them, and more than one, have ended at the least energy found, the others are left.
+        Gaussians and networks take four random starts for each: they have many minima.
     seed : int
         Seed of the random starts.
     steps : int, optional

@@ -61,7 +61,8 @@ def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[N
     """Coefficients to start from: the guess or the plain cycloid, then random ones of the seed."""
     random = np.random.default_rng(settings.seed)
     within = profile.start_box(settings.bound)
-    others = [random.uniform(*within) for _ in range(settings.starts - 1)]
+    count = (settings.starts - 1) * profile.random_starts
+    others = [random.uniform(*within) for _ in range(count)]
     first = profile.plain if settings.guess is None else np.array(settings.guess)
     return [first, *others]
 

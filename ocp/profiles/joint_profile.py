@@ -59,6 +59,9 @@ class JointProfile(ABC):
         """The shortest duration for which the profile has a motion [s]; 0 where any will do."""
         return 0.0
 
+    random_starts: ClassVar[int] = 1
+    """The gradient's random starts for each that is asked for: several where minima are many."""
+
     # Where coefficients are looked for, in this one place: for coefficients that are not all of one
     # kind, such as weights and widths, a family says its own.
 

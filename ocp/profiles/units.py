@@ -58,6 +58,7 @@ class CycloidOfUnits(Cycloid):
 
     default_bound: ClassVar[float | None] = 0.5
     sharp: ClassVar[bool] = True
+    random_starts: ClassVar[int] = 4
     sharpness: ClassVar[str]
     """What y is called in a message."""
 

@@ -31,8 +31,8 @@ from ocp.task.quantities import QUANTITIES
 Array = NDArray[np.float64]
 _BLOCKS, _MANY = (1, 2, 4, 8), 100
 """Rows of a compiled call with derivatives, where more rows take several; of one for values."""
-_LEAST_STRETCH = 1e-5
-"""Share of the joint's largest response below which a direction in a box counts as this share."""
+_LEAST_STRETCH = 1e-3
+"""Share of the largest speed below which a direction in a box counts as this share."""
 _PADDED = 200
 """A function for more rows than are needed serves so many times, before one is built that fits."""
 
@@ -94,15 +94,16 @@ class Batch:
         self._idle: list[BufferedFunction] = []
 
     def even_axes(self, boxed: bool = False) -> Array:
-        """Axes along which the first value of `inner` moves alike and independently.
+        """Axes along which the path's speed changes alike and independently.
 
         The powers of T of a polynomial are nearly the same function from about ten terms on.
         Coefficients are these axes times the unknowns of a program; the identity where the
-        coefficients enter nonlinearly. With a box on the coefficients directions that hardly move
-        the joint are stretched less: else the box is so thin along these axes that a quadratic
-        program loses it to rounding.
+        coefficients enter nonlinearly. Speeds, since with positions a step along an axis that
+        wriggles often would bend the constraints far more than along one that does not: plants of
+        8 modes took ten times the iterations. With a box on the coefficients directions that
+        hardly matter are stretched less: else the box is so thin along them that rounding loses it.
         """
-        columns = self._slopes
+        columns = self._speeds
         if columns is None:
             return np.eye(self.kind.profile.size)
         if boxed:
@@ -112,15 +113,15 @@ class Batch:
         return np.linalg.inv(triangle) * triangle[0, 0]
 
     @cached_property
-    def _slopes(self) -> Array | None:
-        """By each coefficient the first value of `inner` at the nodes; None if not linear."""
+    def _speeds(self) -> Array | None:
+        """By each coefficient the path's speed at the nodes; None if not linear."""
         path = PathFunctions(self.kind.profile, self.kind.steps, jerk=False)
         if not path.linear:
             return None
         times, length = node_times(self.kind.steps)
-        at_nodes = [[np.array(slope[0]).ravel() for slope in path.slopes(at)] for at in times]
-        slopes = np.array(at_nodes) * np.sqrt(np.array(length).ravel())
-        return slopes.transpose(0, 2, 1).reshape(-1, self.kind.profile.size)
+        at_nodes = [[np.array(slope[1]).ravel() for slope in path.slopes(at)] for at in times]
+        speeds = np.array(at_nodes) * np.sqrt(np.array(length).ravel())
+        return speeds.transpose(0, 2, 1).reshape(-1, self.kind.profile.size)
 
     def _function(self, rows: int) -> tuple[int, BufferedFunction]:
         """One for so many rows or more: to build one takes as long as hundreds of its calls."""

@@ -68,10 +68,10 @@ class Steps(NamedTuple):
     met: NDArray[np.bool_]
 
 
-def least_steps(
-    model: Model, lower: Array, upper: Array, radius: Array, linear: int, relax: bool = True
-) -> Steps:
+def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear: int) -> Steps:
     """Steps that make the quadratic models least within the linearised constraints and in a box.
+
+    Where these constraints cannot be met, the step makes their violation least.
 
     Parameters
     ----------
@@ -83,8 +83,6 @@ def least_steps(
         Half the sides of the boxes.
     linear : int
         How many entries of v, the last, are kept whatever else cannot be.
-    relax : bool
-        Whether a row whose constraints cannot be met takes the step of least violation; else none.
 
     Returns
     -------
@@ -115,7 +113,7 @@ def least_steps(
         if flag == _OPTIMUM:
             found.met[i], multipliers = True, info["lam"][n:]
             found.of_c[i], found.of_v[i, own] = multipliers[:m], multipliers[m:]
-        elif relax:
+        else:
             d = _least_violation(table, most[n:], least[n:], radius[i], m, own >= k - linear)
         found.d[i] = d
     return found

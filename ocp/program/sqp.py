@@ -256,18 +256,18 @@ class _Run:
     ) -> None:
         """Second-order corrections of the steps that are not good."""
         missed = self._violation(self.going, trial) > _MET
-        again = np.flatnonzero(~good & step.met & missed & np.isfinite(trial.f))
+        again = np.flatnonzero(~good & missed & np.isfinite(trial.f))
         if not again.size:
             return
         rows, d, model = self.going[again], step.d[again], self.model.take(again)
         c = trial.c[again] - _times(model.by_c, d)
         v = trial.v[again] - _times(model.by_v, d)
         bent = model._replace(c=c, v=v, hessian=hessian[again])
-        corrected = self._steps(rows, bent, relax=False)
+        corrected = self._steps(rows, bent)
         of_c, of_v = step.of_c[again], step.of_v[again]
         second = self.evaluate(rows, self.x[rows] + corrected.d, of_c, of_v, self.width(rows))
         better = self._accepted(again, step, corrected.d, promised[again], second)
-        better &= corrected.met
+        better &= corrected.met | ~step.met[again]
         good[again[better]] = True
         step.d[again[better]] = corrected.d[better]
         trial.put(again[better], second.take(better))
@@ -351,10 +351,10 @@ class _Run:
         kept = self.violation[row] <= FEASIBLE
         return feasible if kept else else_ or End.UNFINISHED
 
-    def _steps(self, rows: Index, model: Model, relax: bool = True) -> Steps:
+    def _steps(self, rows: Index, model: Model) -> Steps:
         """Solve the quadratic programs of rows whose models these are."""
         bounds = self.lower[rows], self.upper[rows]
-        return least_steps(model, *bounds, self.radius[rows], self.linear, relax)
+        return least_steps(model, *bounds, self.radius[rows], self.linear)
 
 
 def _times(matrices: Array, d: Array) -> Array:

@@ -25,7 +25,7 @@ def test_moves_at_rest_are_planned_as_alone(moves, bound):
     assert (found.residual <= 1e-8).all()
     assert found.by_cvodes.any()
     for task, energy, coefficients in zip(moves, found.energy, found.coefficients, strict=True):
-        alone = plan_move(task, bound=bound, starts=1)
+        alone = plan_move(task, bound=bound)
         assert energy == pytest.approx(alone.energy, rel=1e-5)
         exact = resimulate(task, found.profile, coefficients)
         assert energy == pytest.approx(exact.energy, rel=1e-5)

@@ -160,7 +160,7 @@ def test_the_first_start_is_the_plain_cycloid_within_the_box(family, terms):
     lower, upper = profile.box(None)
     starts = start_coefficients(profile, SolveSettings(starts=30, seed=2))
     assert all(np.all((lower <= start) & (start <= upper)) for start in starts)
-    assert len({tuple(start) for start in starts}) == 30
+    assert len({tuple(start) for start in starts}) == len(starts) >= 30
 
 
 def test_a_bound_is_for_the_weights_of_units(of_units):
@@ -236,7 +236,7 @@ def test_the_gradient_plans_with_it(solved, name, profile, tasks, tmp_path):
 @pytest.mark.parametrize("profile", [CycloidGaussians(2), CycloidNetwork(2), CycloidSpline(6)])
 def test_limits_hold(profile, tasks):
     arm = tasks["arm"]
-    free = plan_move(arm, profile, starts=1)
+    free = plan_move(arm, profile)  # from one start the Gaussians end 12 % above their best
     limit = 0.9 * free.motion.peak_acceleration
     task = PointToPoint(arm.plant, arm.target, arm.duration, acceleration_limit=limit)
     plan = plan_move(task, profile, starts=1)

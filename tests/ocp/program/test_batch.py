@@ -201,14 +201,16 @@ def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
 
 
 @pytest.mark.parametrize("terms", [3, 12, 20])
-def test_along_even_axes_the_input_moves_alike_and_independently(plants, terms):
-    # U at the nodes moves by (1 - T^2) T^n along coefficient n, n from 0; its Gram matrix is that
-    # of the integrals over the move. That of 1 - T^2 is 16/15.
+def test_along_even_axes_the_inputs_speed_changes_alike_and_independently(plants, terms):
+    # U moves by (1 - T^2) T^n along coefficient n, n from 0, so its derivative by
+    # n T^(n-1) - (n + 2) T^(n+1). The Gram matrix is that of the integrals over the move; that of
+    # the first, -2 T, is 8/3.
     axes = batch(plants["arm"], CycloidPolynomial(terms), 80).even_axes()
     T, weights = np.polynomial.legendre.leggauss(40)
-    moves = ((1 - T**2) * T ** np.arange(terms)[:, None]).T @ axes
-    gram = (moves * weights[:, None]).T @ moves
-    assert gram == pytest.approx(16 / 15 * np.eye(terms), abs=1e-2)
+    n = np.arange(terms)[:, None]
+    speeds = (n * T ** np.maximum(n - 1, 0) - (n + 2) * T ** (n + 1)).T @ axes
+    gram = (speeds * weights[:, None]).T @ speeds
+    assert gram == pytest.approx(8 / 3 * np.eye(terms), abs=0.05)
 
 
 def test_axes_of_coefficients_that_enter_nonlinearly_are_their_own(plants):
