@@ -69,8 +69,8 @@ class Solution:
     arrival : ndarray, shape (2 * modes,)
         W (m) and then W' (m/s) on arrival, corrected as asked.
     prices : dict of str to float
-        By how much the least energy falls if a limit is widened [J by the limit's unit]; rest on
-        arrival, which is no limit, has none.
+        By how much the least energy falls if a limit is widened [J by the limit's unit]; of the
+        residual, too, where rest on arrival is asked for.
     reason : str
         How it ended, in the solver's own words.
     """

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple, get_args
 
+import daqp
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +19,8 @@ from ocp.program.stack import Stack
 
 Solver = Literal["sqp", "ipopt"]
 SOLVERS: tuple[str, ...] = get_args(Solver)
+_LITTLE = 1e-8
+"""Curvature that makes a linear program a quadratic one."""
 STOPPED = End.STOPPED.value
 """The reason of a solution that Ctrl-C ended."""
 _NONE = 1e-8
@@ -146,4 +149,23 @@ def _prices(stack: Stack, ended: Rows, i: int, program: Program, ask: Ask) -> di
         if name in ask.limits and name != ask.least:
             of = float(np.abs(ended.of_v[i, part]).sum())
             prices[name] = of / of_energy * program.energy / program.scale_of(name)
+    if ask.at_rest:
+        of_arrival = ended.of_c[i] / program.scale
+        of = _price_of_rest(of_arrival, program.rests[0])
+        prices[RESIDUAL] = of / of_energy * program.energy
     return prices
+
+
+def _price_of_rest(of_arrival: NDArray[np.float64], rests: NDArray[np.float64]) -> float:
+    """The most that the objective falls by for a residual of 1 m, from its slope by the arrival.
+
+    The largest product of that slope and a state on arrival whose residual is 1 m: a linear
+    program, with a little curvature for the solver of quadratic ones.
+    """
+    scale = np.abs(rests).max(axis=0)
+    slope, table = of_arrival / scale, rests / scale
+    size, limit = len(slope), np.ones(len(table))
+    steepest = np.abs(slope).max() or 1.0
+    little = _LITTLE * np.eye(size)
+    state, *_ = daqp.solve(little, -slope / steepest, table, limit, -limit)
+    return float(slope @ np.asarray(state))

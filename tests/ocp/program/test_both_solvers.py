@@ -117,6 +117,15 @@ def test_the_price_of_a_limit_is_what_a_wider_one_saves(link_and_arm, name, quan
         assert there.slope == -there.prices[RESIDUAL] < 0
 
 
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("name", ["single link", "arm"])
+def test_the_price_of_stillness_is_what_a_little_residual_saves(link_and_arm, name, solver):
+    still = _solved(link_and_arm[name][1], Ask(AT_REST), solver)
+    ringing = _solved(link_and_arm[name][1], Ask({RESIDUAL: 1e-5}))
+    saved = (still.energy - ringing.energy) / 1e-5
+    assert still.prices[RESIDUAL] == pytest.approx(saved, rel=2e-3)
+
+
 def test_what_the_steps_miss_of_the_arrival_is_given_back(program, tasks):
     asked = program(tasks["arm"])
     missed = np.array([[1e-5, -2e-4]])  # W [m] and W' [m/s]
