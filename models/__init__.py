@@ -3,7 +3,8 @@
 from models.arm_on_flexible_link import ArmOnFlexibleLink
 from models.drawing import Body, flexible_link, rigid_link
 from models.dual_link import DualLinkManipulator
-from models.plant import Expression, JointMotion, Plant, known_plants, parameter
+from models.joint_motion import Expression, JointMotion
+from models.plant import Plant, known_plants, parameter
 from models.plant_file import PlantFile, file_of_plant, load_plant_file
 from models.single_link import SingleLinkManipulator
 from models.version import __version__

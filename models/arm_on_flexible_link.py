@@ -10,7 +10,8 @@ import casadi as ca
 import numpy as np
 
 from models.drawing import TIP_SLOPE, Body, flexible_link, rigid_link
-from models.plant import Expression, JointMotion, Plant, parameter
+from models.joint_motion import Expression, JointMotion
+from models.plant import Plant, parameter
 
 _LENGTH = 0.55
 """Of the link [m], section 3.2."""

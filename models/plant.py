@@ -8,38 +8,14 @@ plain number (a table). Use `casadi.sin` and its like, not those of `numpy` or `
 from __future__ import annotations
 
 import math
-import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import Field, field, fields
-from numbers import Real
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
+from models.contract import check_contract
 from models.drawing import Body, rigid_link
-
-Expression = Any
-"""An SX scalar, an MX matrix or a number: casadi gives these no common base class."""
-
-
-class JointMotion(NamedTuple):
-    """Angle, speed, acceleration and jerk of the joint: entries of the same shape.
-
-    Attributes
-    ----------
-    angle : Expression
-        theta [rad].
-    speed : Expression
-        theta' [rad/s].
-    acceleration : Expression
-        theta'' [rad/s^2].
-    jerk : Expression or None
-        theta''' [rad/s^3]; None where it is not asked for. No plant's equations may use it.
-    """
-
-    angle: Expression
-    speed: Expression
-    acceleration: Expression
-    jerk: Expression = None
+from models.joint_motion import Expression, JointMotion
 
 
 def parameter(default: float, unit: str, source: str) -> Any:
@@ -103,11 +79,9 @@ class Plant(ABC):
         Plant._known[name] = cls
 
     def __post_init__(self) -> None:
-        named: object = getattr(self, "name", None)
-        if not isinstance(named, str) or not named.isprintable() or not named.strip():
-            has = "no name" if named is None else f"name {named!r}"
+        if not getattr(self, "name", ""):
             raise ValueError(
-                f"class {type(self).__name__} has {has}; write the plant's name in it, as "
+                f"class {type(self).__name__} has no name; write the plant's name in it, as "
                 "name: ClassVar[str] = 'crane'"
             )
         for entry in fields(self):
@@ -116,13 +90,11 @@ class Plant(ABC):
                     f"{self.name}: {entry.name} is not a parameter; write it as "
                     f"{entry.name}: ClassVar[{_OF_CLASS[entry.name]}]"
                 )
-            value = getattr(self, entry.name)
-            if not _is_finite(value):
+            value = float(getattr(self, entry.name))
+            if not math.isfinite(value):
                 raise ValueError(
-                    f"{self.name}: parameter {entry.name} is {reprlib.repr(value)}; give a finite "
-                    "number"
+                    f"{self.name}: parameter {entry.name} is {value:g}; give a finite number"
                 )
-            value = float(value)
             if abs(value) > _MOST_PARAMETER:
                 raise ValueError(
                     f"{self.name}: parameter {entry.name} is {value:g}; give at most "
@@ -210,8 +182,6 @@ class Plant(ABC):
             finite at rest, or the modes are not affine, not at rest with the joint, or unstable;
             when moving the joint takes no torque.
         """
-        from models.contract import check_contract  # it builds on this module
-
         check_contract(self)
 
 
@@ -219,15 +189,6 @@ _OF_CLASS = {"name": "str", "modes": "int", "small_deflection": "float | None"}
 """What a class of plants sets beside its parameters, with the type."""
 _MOST_PARAMETER = 1e100
 """Powers of larger ones are beyond double precision."""
-
-
-def _is_finite(value: object) -> bool:
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # a whole number beyond double precision
-        return False
 
 
 def _is_ours(plant: type[Plant]) -> bool:

@@ -5,22 +5,14 @@ from __future__ import annotations
 import copyreg
 import hashlib
 import inspect
-import os
-import reprlib
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
-from models.contract.calls import text_of
 from models.plant import Plant
-
-MOST_BYTES = 1_000_000
-"""More than any plant's equations take up."""
 
 
 @dataclass(frozen=True)
@@ -69,8 +61,6 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     ValueError
         When it cannot be read or imported, or defines no plant that is complete.
     """
-    if not isinstance(path, str | os.PathLike):
-        raise ValueError(f"plant file is {path!r}; give its name, such as crane.py")
     return dict(_loaded(PlantFile(str(path), _read(Path(path)))))
 
 
@@ -85,30 +75,21 @@ def _read(path: Path) -> bytes:
             f"plant file {path} is not called .py; give a Python file, such as crane.py"
         )
     try:
-        if path.exists() and not path.is_file():
-            kind = "a folder" if path.is_dir() else "no ordinary file"
-            raise ValueError(f"plant file {path} is {kind}; give a Python file, such as crane.py")
-        with path.open("rb") as file:
-            source = file.read(MOST_BYTES + 1)
+        return path.read_bytes()
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise ValueError(f"plant file {path} cannot be read: {reason}; give another file") from None
-    if len(source) > MOST_BYTES:
-        raise ValueError(
-            f"plant file {path} has over {MOST_BYTES} bytes; give a Python file, such as crane.py"
-        )
-    return source
 
 
 def _loaded(file: PlantFile) -> Mapping[str, type[Plant]]:
     plants = _by_digest.get(file.digest)
     if plants is None:
-        before = dict(Plant._known)
+        known = dict(Plant._known)
         try:
             plants = _plants_of(_run(file), file.path)
         except BaseException:
             Plant._known.clear()
-            Plant._known.update(before)
+            Plant._known.update(known)
             raise
         _by_digest[file.digest] = plants
         for plant in plants.values():
@@ -119,67 +100,29 @@ def _loaded(file: PlantFile) -> Mapping[str, type[Plant]]:
 
 
 def _run(file: PlantFile) -> ModuleType:
-    """The module of a file."""
+    """The module of a file; ValueError with the line where it cannot be imported."""
     module = ModuleType(f"plant file {file.path}")
-    module.__package__ = ""  # it is part of none
     module.__file__ = file.path
-    vars(module)["print"] = _print_beside
     sys.modules[module.__name__] = module  # dataclasses look their annotations up there
     try:
-        with _left_as_it_was():
-            exec(compile(file.source, file.path, "exec", dont_inherit=True), vars(module))
-    except BaseException as error:
+        exec(compile(file.source, file.path, "exec", dont_inherit=True), vars(module))
+    except Exception as error:
         del sys.modules[module.__name__]
-        if isinstance(error, KeyboardInterrupt):
-            raise
-        raise ValueError(_in_a_line(file.path, error)) from None
+        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__)
+                 if frame.filename == file.path]  # fmt: skip
+        if isinstance(error, SyntaxError):
+            lines = [error.lineno]
+        place = f", line {lines[-1]}" if lines and lines[-1] else ""
+        said, remedy = f"{type(error).__name__}: {error}", "mend it"
+        if isinstance(error, ImportError):
+            remedy = "a plant is one file: put what it needs into it, or install that"
+        elif isinstance(error, ValueError):  # `Plant` refused a class
+            said, remedy = str(error), ""
+        text = " ".join(said.split())
+        raise ValueError(
+            f"plant file {file.path}{place}: {text}{'; ' if remedy else ''}{remedy}"
+        ) from None
     return module
-
-
-def _print_beside(*values: object, **settings: Any) -> None:
-    """Print to standard error: standard output may be a file that a command was asked for."""
-    settings.setdefault("file", sys.stderr)
-    print(*values, **settings)
-
-
-@contextmanager
-def _left_as_it_was() -> Iterator[None]:
-    """Undo what a file changes of the process: its folder, where it prints, its recursion limit."""
-    folder, streams, limit = os.getcwd(), (sys.stdout, sys.stderr), sys.getrecursionlimit()
-    try:
-        yield
-    finally:
-        os.chdir(folder)
-        sys.stdout, sys.stderr = streams
-        sys.setrecursionlimit(limit)
-
-
-def _in_a_line(path: str, error: BaseException) -> str:
-    """Why a file cannot be imported, and where."""
-    if isinstance(error, SystemExit):
-        return (
-            f"plant file {path} ends the program when it is imported; put what it runs under "
-            "if __name__ == '__main__'"
-        )
-    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__)
-             if frame.filename == path]  # fmt: skip
-    if isinstance(error, SyntaxError):
-        lines = [error.lineno]
-    place = f", line {lines[-1]}" if lines and lines[-1] else ""
-    if isinstance(error, SyntaxError):
-        what = f"{reprlib.repr(error.text.strip())} is not Python: " if error.text else ""
-        said = f"{what}{error.msg}; mend it"
-        if "null bytes" in said or "utf-8" in said:
-            said = "it is no text in UTF-8; save it so"
-    elif isinstance(error, ImportError):
-        said = text_of(error)
-        what = "it imports what lies beside it" if "relative import" in said else said
-        said = f"{what}; a plant is one file: put what it needs into it, or install that"
-    elif isinstance(error, ValueError):  # `Plant` refused a class
-        said = text_of(error)
-    else:
-        said = f"{f'{type(error).__name__}: {text_of(error)}'.rstrip(': ')}; mend it"
-    return f"plant file {path}{place}: {' '.join(said.split())}"
 
 
 def _plants_of(module: ModuleType, path: str) -> dict[str, type[Plant]]:

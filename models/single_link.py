@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from models.drawing import Body, flexible_link
-from models.plant import Expression, JointMotion, Plant, parameter
+from models.joint_motion import Expression, JointMotion
+from models.plant import Plant, parameter
 
 _LENGTH = 0.475
 """Of the plate [m], section 3.1."""

@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from models import Expression, JointMotion, Plant
-from models.contract.calls import Calls
+from models.contract import outputs_of
 from ocp.base.checks import of_kind, positive
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.names import has_no
@@ -198,9 +198,9 @@ def _check_symbols(plant: Plant, name: str, error: float) -> None:
         return
     value, symbol = getattr(plant, name) * (1 + error), ca.SX.sym(name)
     motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 3 * plant.modes).tolist()
-    expressions = Calls(_with_symbols(plant, {name: symbol}), 1).outputs(motion).all
+    expressions = outputs_of(_with_symbols(plant, {name: symbol}), motion).all
     found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
-    anew = Calls(replace(plant, **{name: value}), 1).outputs(motion).all
+    anew = outputs_of(replace(plant, **{name: value}), motion).all
     if not np.allclose(found, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):
         raise ValueError(
             f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "

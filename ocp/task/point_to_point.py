@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from models import Plant
-from models.contract.along import check_along
+from models.contract import check_along
 from ocp.base.checks import finite, positive
 from ocp.base.interrupts import keep_interrupts
 from ocp.base.threads import one_at_a_time

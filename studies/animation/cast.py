@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import Body, Plant
-from models.contract.calls import Calls
 from ocp import Floor, Plan, Trajectory
 from ocp.base.checks import positive
 from studies.animation.clock import Clock
@@ -122,13 +121,10 @@ def _at(times: Array, of: Array, columns: Array) -> Array:
 
 
 def _structures(plant: Plant, angles: Array, tips: Array) -> list[Bodies]:
-    call = Calls(plant, 1)
-    found = [
-        call.structure(float(angle), row.tolist()) for angle, row in zip(angles, tips, strict=True)
+    return [
+        list(plant.structure(float(angle), row.tolist()))
+        for angle, row in zip(angles, tips, strict=True)
     ]
-    if len({tuple(body.tip for body in bodies) for bodies in found}) > 1:
-        raise call.wrong("structure", "does not return the same bodies at every moment")
-    return found
 
 
 def _size(bodies: Bodies) -> float:

@@ -12,7 +12,6 @@ from models import (
     flexible_link,
     rigid_link,
 )
-from models.contract.calls import Calls
 from models.drawing import TIP_SLOPE, cantilever
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
@@ -92,23 +91,12 @@ def test_a_plant_of_your_own_is_drawn_as_a_straight_link_of_a_metre():
 
 
 @pytest.mark.parametrize(
-    ("structure", "message"),
-    [
-        (lambda plant, angle: [], "structure takes other arguments than it is given"),
-        (lambda plant, angle, tips: None, "structure returns None"),
-        (lambda plant, angle, tips: [], r"structure returns list \[\]"),
-        (lambda plant, angle, tips: [[0, 1]], r"structure returns a list with list \[0, 1\]"),
-        (lambda plant, angle, tips: [Body(np.zeros(3))], r"have shape \(3,\); give \(points, 2\)"),
-        (lambda plant, angle, tips: [Body(np.full((2, 2), np.nan))], "is not finite"),
-        (lambda plant, angle, tips: tips + angle, "structure fails .*TypeError"),
-    ],
+    ("points", "told"),
+    [(np.zeros(3), r"shape \(3,\); give \(points, 2\)"), ([[np.nan, 0]], "not fin")],
 )
-def test_a_structure_that_cannot_be_drawn_is_told(structure, message):
-    plant = type("Broken", (Sound,), {"name": "broken", "structure": structure})()
-    with pytest.raises(ValueError, match=f"plant 'broken': .*{message}") as told:
-        Calls(plant, 1).structure(0.0, [0.0])
-    assert "return a list of models.Body" in str(told.value)
-    assert "casadi" not in str(told.value)
+def test_points_that_cannot_be_drawn_are_told(points, told):
+    with pytest.raises(ValueError, match=told):
+        Body(points)
 
 
 def test_what_is_drawn_thick_is_hubs_motor_arm_and_clamp():

@@ -2,7 +2,6 @@
 
 import copy
 import hashlib
-import os
 import pickle
 import subprocess
 import sys
@@ -87,7 +86,7 @@ def test_a_broken_plant_in_it_is_found_when_it_is_checked(crane_file):
     )
     crane_file.write_text(text)
     crane = load_plant_file(crane_file)["crane"]()
-    with pytest.raises(ValueError, match="'crane': torque returns None"):
+    with pytest.raises(ValueError, match="'crane': torque returns NoneType"):
         crane.validate()
 
 
@@ -99,14 +98,12 @@ OWN = "from models import Plant, SingleLinkManipulator\n"
     [
         ("x = 1\n", "defines no plant; write a class in it"),
         (OWN, "defines no plant; write a class in it"),
-        ("def x(:\n", ", line 1: 'def x(:' is not Python: invalid syntax; mend it"),
-        ("import .\n", ", line 1: 'import .' is not Python: invalid syntax; mend it"),
-        ("from . import x\n", ", line 1: it imports what lies beside it; a plant is one file"),
-        ("assert False\n", ", line 1: AssertionError; mend it"),
-        ("raise GeneratorExit\n", ", line 1: GeneratorExit; mend it"),
+        ("def x(:\n", ", line 1: SyntaxError: invalid syntax"),
         ("\n\nx = 1 / 0\n", ", line 3: ZeroDivisionError: division by zero"),
-        ("import a_module_that_is_not\n", ", line 1: No module named 'a_module_that_is_not'"),
-        ("import sys\nsys.exit(3)\n", "ends the program"),
+        (
+            "import a_module_that_is_not\n",
+            ", line 1: ModuleNotFoundError: No module named 'a_module_that_is_not'; a plant is one",
+        ),
         (OWN + "class S(SingleLinkManipulator): pass\n", "write name: ClassVar[str]"),
         (OWN + "class S(Plant):\n    name, modes = 's', 1\n", "write modal_accelerations and "),
         (
@@ -121,41 +118,10 @@ def test_a_file_that_gives_no_plant_is_refused_with_the_line(tmp_path, content, 
     assert told in _refused(path)
 
 
-def test_what_it_does_to_the_process_is_undone(crane_file, capsys):
-    code = "import os, sys\nos.chdir('/')\nsys.stdout = None\nsys.setrecursionlimit(99)\n"
-    before = os.getcwd(), sys.getrecursionlimit()
-    crane_file.write_text(code + crane_file.read_text())
-    assert "crane" in load_plant_file(crane_file)
-    assert (os.getcwd(), sys.getrecursionlimit()) == before
-    print("here")
-    assert capsys.readouterr().out == "here\n"
-
-
-def test_what_it_prints_goes_beside_the_answer(crane_file, capsys):
-    # `--output -` writes the answer to standard output
-    mass = "    def torque(self, joint, W, dW, ddW):\n"
-    lines = crane_file.read_text()
-    assert mass in lines
-    crane_file.write_text("print('run')\n" + lines.replace(mass, f"{mass}        print(1, 2)\n"))
-    crane = load_plant_file(crane_file)["crane"]()
-    assert capsys.readouterr() == ("", "run\n")
-    crane.validate()
-    said = capsys.readouterr()
-    assert (said.out, set(said.err.splitlines())) == ("", {"1 2"})
-
-
-def test_bytes_that_are_no_text_are_refused(tmp_path):
-    for content in (b"\xff\xfe\x00", "x = 1\n".encode("utf-16"), b"# \xe4\nx = '\xe4'\n"):
-        (tmp_path / "crane.py").write_bytes(content)
-        assert _refused(tmp_path / "crane.py").endswith("it is no text in UTF-8; save it so")
-
-
 def test_a_file_that_is_none_is_refused(tmp_path):
     assert "no such file" in _refused(tmp_path / "none.py")
     (tmp_path / "folder.py").mkdir()
-    assert "is a folder" in _refused(tmp_path / "folder.py")
-    os.mkfifo(tmp_path / "pipe.py")
-    assert "no ordinary file" in _refused(tmp_path / "pipe.py")
+    assert "is a directory" in _refused(tmp_path / "folder.py")
 
 
 def test_a_data_file_is_not_run(tmp_path):
@@ -164,19 +130,9 @@ def test_a_data_file_is_not_run(tmp_path):
     assert "is not called .py" in _refused(path)
 
 
-def test_a_file_of_any_size_is_not_read_whole(tmp_path):
-    (tmp_path / "large.py").write_bytes(b"#" * 1_000_001)
-    assert "over 1000000 bytes" in _refused(tmp_path / "large.py")
-
-
 def test_ctrl_c_while_it_is_imported_is_not_swallowed(crane_file):
     crane_file.write_text(f"{crane_file.read_text()}\nraise KeyboardInterrupt\n")
     before = dict(known_plants())
     with pytest.raises(KeyboardInterrupt):
         load_plant_file(crane_file)
     assert known_plants() == before
-
-
-@pytest.mark.parametrize("path", [None, 5, b"crane.py"], ids=repr)
-def test_what_is_no_name_of_a_file_is_refused(path):
-    assert "; give its name, such as crane.py" in _refused(path)
