@@ -49,14 +49,14 @@ from parts.measuring import console, forget_compiled, load_plugins, machine, tim
 from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 
-from models import ArmOnFlexibleLink, JointMotion
-from ocp import CycloidPolynomial, PointToPoint, energy_floor
-from ocp.floor.grid import first_grid
-from ocp.floor.program import _COLD, FloorProgram
-from ocp.profiles.free_motion import FreeMotion
-from ocp.simulation.collocation import NODES
-from ocp.simulation.piecewise import PiecewiseMotion
-from ocp.simulation.resimulation import resimulated
+from quietarm.models import ArmOnFlexibleLink, JointMotion
+from quietarm.ocp import CycloidPolynomial, PointToPoint, energy_floor
+from quietarm.ocp.floor.grid import first_grid
+from quietarm.ocp.floor.program import _COLD, FloorProgram
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.simulation.collocation import NODES
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import resimulated
 
 try:
     import yapss

@@ -33,10 +33,10 @@ from numpy.typing import NDArray
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.table import Table
 
-from metaheuristics import SearchProgress, search
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import CycloidPolynomial, Front, PointToPoint, epsilon_front, plan_move
-from studies.comparison.staircase import filled, objectives
+from quietarm.metaheuristics import SearchProgress, search
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, epsilon_front, plan_move
+from quietarm.studies.comparison.staircase import filled, objectives
 
 PROFILE = CycloidPolynomial(6)
 CASES = {

@@ -141,8 +141,8 @@ def serve(seeds: int) -> None:
 
 def conditions() -> dict:
     """The paper's six, in its boxes, and four of our own, by name: task and bound."""
-    from models import ArmOnFlexibleLink, SingleLinkManipulator
-    from ocp import PointToPoint
+    from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+    from quietarm.ocp import PointToPoint
 
     link, arm = SingleLinkManipulator(), ArmOnFlexibleLink()
     return {
@@ -161,7 +161,7 @@ def conditions() -> dict:
 
 def plan(task, terms: int, first: bool = False, **settings) -> dict:
     """Time the second plan of a shape, or the first, and say what it found."""
-    from ocp import CycloidPolynomial, QuietarmError, plan_move
+    from quietarm.ocp import CycloidPolynomial, QuietarmError, plan_move
 
     began = time.process_time()
     try:
@@ -187,7 +187,7 @@ def plans() -> dict:
 
 def fronts() -> dict:
     """One front for each condition."""
-    from ocp import epsilon_front
+    from quietarm.ocp import epsilon_front
 
     def front(task, bound) -> dict:
         began = time.process_time()
@@ -208,8 +208,8 @@ def fronts() -> dict:
 
 def hard() -> dict:
     """What was slow before."""
-    from models import ArmOnFlexibleLink, SingleLinkManipulator
-    from ocp import PointToPoint
+    from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+    from quietarm.ocp import PointToPoint
 
     arm = PointToPoint(ArmOnFlexibleLink(), pi / 2, 0.8)
     link = PointToPoint(SingleLinkManipulator(), pi / 2, 1.0)
@@ -231,7 +231,7 @@ def hard() -> dict:
 
 def modes() -> dict:
     """Plants of many modes."""
-    from ocp import PointToPoint
+    from quietarm.ocp import PointToPoint
 
     return {
         f"{count} modes": lambda count=count: plan(
@@ -245,9 +245,9 @@ def robust() -> dict:
     """Random machines whose frequency is uncertain."""
     import numpy as np
 
-    from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-    from ocp import CycloidPolynomial, PointToPoint, QuietarmError, UncertainPlant, plan_move
-    from ocp import evaluate_coefficients as evaluate
+    from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+    from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, UncertainPlant, plan_move
+    from quietarm.ocp import evaluate_coefficients as evaluate
 
     plants = (
         lambda omega: SingleLinkManipulator(omega=omega),
@@ -293,9 +293,9 @@ def moves() -> dict:
     """Many moves of one plant."""
     import numpy as np
 
-    import ocp
-    from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-    from ocp import PointToPoint, plan_move
+    from quietarm import ocp
+    from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+    from quietarm.ocp import PointToPoint, plan_move
 
     def many(plant) -> dict:
         random = np.random.default_rng(1)
@@ -318,7 +318,7 @@ def moves() -> dict:
 
 def floors() -> dict:
     """Floors of five conditions, both kinds."""
-    from ocp import energy_floor
+    from quietarm.ocp import energy_floor
 
     def floor(task, smooth: bool) -> dict:
         began = time.process_time()
@@ -337,7 +337,7 @@ def floors() -> dict:
 
 def searches() -> dict:
     """The paper's two searches on its six conditions, in its boxes."""
-    from metaheuristics import search
+    from quietarm.metaheuristics import search
 
     def front(task, bound: float, method: str) -> dict:
         began = time.process_time()
@@ -359,8 +359,8 @@ def population() -> dict:
     """The objective of many candidates."""
     import numpy as np
 
-    from metaheuristics import PopulationObjective
-    from ocp import CycloidPolynomial
+    from quietarm.metaheuristics import PopulationObjective
+    from quietarm.ocp import CycloidPolynomial
 
     def calls(task, bound: float) -> dict:
         objective = PopulationObjective(task, CycloidPolynomial(6))
@@ -379,8 +379,8 @@ def population() -> dict:
 
 def starts(seeds: int) -> dict:
     """Many seeds of a plan, for each move, number of terms, and box."""
-    from models import ArmOnFlexibleLink, SingleLinkManipulator
-    from ocp import PointToPoint
+    from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+    from quietarm.ocp import PointToPoint
 
     link, arm = SingleLinkManipulator(), ArmOnFlexibleLink()
     others = {
@@ -408,7 +408,7 @@ def starts(seeds: int) -> dict:
 
 def many_seeds(task, terms: int, bound: float | None, seeds: int) -> dict:
     """Plan with every seed; say how many found the best, and how many found none."""
-    from ocp import CycloidPolynomial, QuietarmError, plan_move
+    from quietarm.ocp import CycloidPolynomial, QuietarmError, plan_move
 
     began, energies = time.process_time(), []
     for seed in range(seeds):
@@ -426,7 +426,7 @@ def links(count: int):
     """Flexible links on one hub, invented; 8, 15, 22, ... rad/s: told apart within 1 s."""
     import numpy as np
 
-    from models import Plant, parameter
+    from quietarm.models import Plant, parameter
 
     frequencies = (8.0 + 7.0 * np.arange(count)).tolist()
 

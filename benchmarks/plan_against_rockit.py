@@ -29,7 +29,7 @@ Printed are medians over interleaved repetitions, and the median of the ratios w
 
 - build and solve: everything from the task to the coefficients, nothing built before. quietarm's
   time is `plan_move`'s and includes the verification by CVODES, which rockit does not have;
-- second call: the same again with all built, `plan_move` against `ocp.solve`;
+- second call: the same again with all built, `plan_move` against `quietarm.ocp.solve`;
 - solver alone: the second solve with these steps, without the verification.
 """
 
@@ -50,13 +50,13 @@ from parts.measuring import console, forget_compiled, load_plugins, machine, tim
 from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 
-from ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
-from ocp.program.ipopt import OPTIONS
-from ocp.program.program import Program
-from ocp.program.solution import ENERGY, RESIDUAL, Ask, Solution
-from ocp.program.solving import Row, solve
-from ocp.simulation.collocation import NODES, mesh
-from ocp.simulation.resimulation import resimulate
+from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
+from quietarm.ocp.program.ipopt import OPTIONS
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import ENERGY, RESIDUAL, Ask, Solution
+from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.simulation.collocation import NODES, mesh
+from quietarm.ocp.simulation.resimulation import resimulate
 
 PROFILE = CycloidPolynomial(6)
 STEPS = (16, 24, 32, 50, 100, 200)

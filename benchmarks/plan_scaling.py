@@ -35,11 +35,11 @@ from parts.measuring import console, forget_compiled, load_plugins, machine, tim
 from rich.progress import track
 from rich.table import Table
 
-from models import ArmOnFlexibleLink
-from ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
-from ocp.program.program import Program
-from ocp.program.solution import RESIDUAL, Ask, Solution
-from ocp.program.solving import Row, solve
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import RESIDUAL, Ask, Solution
+from quietarm.ocp.program.solving import Row, solve
 
 TASK = PointToPoint(ArmOnFlexibleLink(), target=pi / 2, duration=0.8)
 BOX = 0.5

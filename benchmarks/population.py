@@ -50,9 +50,9 @@ from parts.population.equations import PLANT, PROFILE, TASK
 from parts.population.rows import CANDIDATES, SHARE, Method, methods
 from rich.table import Table
 
-from metaheuristics import PopulationObjective
-from ocp import PointToPoint
-from ocp.program.batch import batch
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.ocp import PointToPoint
+from quietarm.ocp.program.batch import batch
 
 SECOND_TASK = PointToPoint(PLANT, start=-pi / 2, target=pi / 4, duration=1.0)
 BOX, MANY = 0.5, 10_000
@@ -140,9 +140,9 @@ def tasks_table(population: NDArray[np.float64]) -> Table:
 
 MEMORY = f"""
 import math, numpy as np
-from metaheuristics import PopulationObjective
-from models import ArmOnFlexibleLink
-from ocp import CycloidPolynomial, PointToPoint
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import CycloidPolynomial, PointToPoint
 
 def peak():  # ru_maxrss would start from the parent's peak
     return next(int(line.split()[1]) for line in open("/proc/self/status") if "VmHWM" in line)

@@ -24,8 +24,8 @@ from matplotlib.lines import Line2D
 from parts.measuring import console, machine
 from rich.table import Table
 
-from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+from quietarm.ocp import (
     Plan,
     PointToPoint,
     SolverFailedError,

@@ -20,11 +20,11 @@ import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from rich.table import Table
 
-from metaheuristics import PRESETS, PopulationObjective, search, search_many
-from metaheuristics.ensemble import energies_at, energy_at
-from ocp import evaluate_coefficients
-from studies.paper.case import Case
-from studies.paper.printed import (
+from quietarm.metaheuristics import PRESETS, PopulationObjective, search, search_many
+from quietarm.metaheuristics.ensemble import energies_at, energy_at
+from quietarm.ocp import evaluate_coefficients
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.printed import (
     ARM_HALF,
     COEFFICIENTS,
     MENDED,

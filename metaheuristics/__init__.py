@@ -10,27 +10,27 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]
+from quietarm import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]
 
-from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset
-from metaheuristics.algorithms.velocity import (
+from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset
+from quietarm.metaheuristics.algorithms.velocity import (
     CONSTRICTION,
     INERTIA_2002,
     PAPER_GROUP,
     VelocityRule,
 )
-from metaheuristics.search import search
+from quietarm.metaheuristics.search import search
 
 if TYPE_CHECKING:
-    from metaheuristics.algorithms.nsga2 import PaperNSGA2
-    from metaheuristics.algorithms.vepso import VEPSO
-    from metaheuristics.ensemble import LostSeedsError, Spread, search_many
-    from metaheuristics.objective.population import PopulationObjective, PopulationValues
-    from metaheuristics.objective.problem import MoveProblem
-    from metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
-    from metaheuristics.problems.function import MoveFunction
-    from metaheuristics.problems.pymoo_problem import ExactProblem
-    from metaheuristics.runs.progress import SearchProgress
+    from quietarm.metaheuristics.algorithms.nsga2 import PaperNSGA2
+    from quietarm.metaheuristics.algorithms.vepso import VEPSO
+    from quietarm.metaheuristics.ensemble import LostSeedsError, Spread, search_many
+    from quietarm.metaheuristics.objective.population import PopulationObjective, PopulationValues
+    from quietarm.metaheuristics.objective.problem import MoveProblem
+    from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
+    from quietarm.metaheuristics.problems.function import MoveFunction
+    from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem
+    from quietarm.metaheuristics.runs.progress import SearchProgress
 
 __all__ = [
     "CONSTRICTION",
@@ -80,4 +80,4 @@ def __getattr__(name: str) -> object:
     """Import what takes long to load when it is first asked for."""
     if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"metaheuristics.{_LATER[name]}"), name)
+    return getattr(import_module(f"quietarm.metaheuristics.{_LATER[name]}"), name)

@@ -9,10 +9,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from metaheuristics.algorithms.presets import PRESETS
-from metaheuristics.runs.progress import SearchProgress
-from metaheuristics.search import search
-from metaheuristics.sharing.pieces import (
+from quietarm.metaheuristics.algorithms.presets import PRESETS
+from quietarm.metaheuristics.runs.progress import SearchProgress
+from quietarm.metaheuristics.search import search
+from quietarm.metaheuristics.sharing.pieces import (
     INTERRUPTED,
     Done,
     InterruptedPiece,
@@ -21,10 +21,10 @@ from metaheuristics.sharing.pieces import (
     Piece,
     Say,
 )
-from metaheuristics.sharing.running import run_pieces
-from metaheuristics.sharing.workers import Workers
-from ocp import Front, PointToPoint, QuietarmError
-from ocp.base.checks import report_given, whole
+from quietarm.metaheuristics.sharing.running import run_pieces
+from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.ocp import Front, PointToPoint, QuietarmError
+from quietarm.ocp.base.checks import report_given, whole
 
 SEARCH_RESIDUAL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""

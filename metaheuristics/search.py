@@ -8,14 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, preset_of
-from metaheuristics.runs.progress import Report
-from metaheuristics.runs.settings import SearchSettings, SearchSpec
-from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
-from ocp.base.checks import report_given
-from ocp.base.files import check_writable
-from ocp.base.interrupts import note_interrupts
-from ocp.profiles.kinds import refuse_other_kinds
+from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, preset_of
+from quietarm.metaheuristics.runs.progress import Report
+from quietarm.metaheuristics.runs.settings import SearchSettings, SearchSpec
+from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
+from quietarm.ocp.base.checks import report_given
+from quietarm.ocp.base.files import check_writable
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -94,11 +94,11 @@ def search(
         When the file to resume from is not a whole checkpoint.
     """
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
-    from metaheuristics.algorithms.provenance import settings_of
-    from metaheuristics.algorithms.states import Resumable
-    from metaheuristics.runs.front import HandingOver, front_of
-    from metaheuristics.runs.keeping import Keeper, resume_from
-    from metaheuristics.runs.loop import Loop
+    from quietarm.metaheuristics.algorithms.provenance import settings_of
+    from quietarm.metaheuristics.algorithms.states import Resumable
+    from quietarm.metaheuristics.runs.front import HandingOver, front_of
+    from quietarm.metaheuristics.runs.keeping import Keeper, resume_from
+    from quietarm.metaheuristics.runs.loop import Loop
 
     profile = CycloidPolynomial() if profile is None else profile
     refuse_other_kinds(task, profile)
@@ -157,7 +157,7 @@ def _chosen(
 def _own(
     algorithm: Algorithm, bound: float | None, population: int | None, generations: int | None
 ) -> tuple[str, Algorithm, SearchSettings]:
-    from metaheuristics.algorithms.own import own_algorithm
+    from quietarm.metaheuristics.algorithms.own import own_algorithm
 
     chosen = own_algorithm(algorithm)
     method = type(chosen).__name__

@@ -1,13 +1,13 @@
 """What moves: plants as symbolic equations, and nothing else."""
 
-from models.arm_on_flexible_link import ArmOnFlexibleLink
-from models.drawing import Body, flexible_link, rigid_link
-from models.dual_link import DualLinkManipulator
-from models.joint_motion import Expression, JointMotion
-from models.plant import Plant, known_plants, parameter
-from models.plant_file import PlantFile, file_of_plant, load_plant_file
-from models.single_link import SingleLinkManipulator
-from models.version import __version__
+from quietarm.models.arm_on_flexible_link import ArmOnFlexibleLink
+from quietarm.models.drawing import Body, flexible_link, rigid_link
+from quietarm.models.dual_link import DualLinkManipulator
+from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.plant import Plant, known_plants, parameter
+from quietarm.models.plant_file import PlantFile, file_of_plant, load_plant_file
+from quietarm.models.single_link import SingleLinkManipulator
+from quietarm.models.version import __version__
 
 __all__ = [
     "ArmOnFlexibleLink",

@@ -9,9 +9,9 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from models.drawing import TIP_SLOPE, Body, flexible_link, rigid_link
-from models.joint_motion import Expression, JointMotion
-from models.plant import Plant, parameter
+from quietarm.models.drawing import TIP_SLOPE, Body, flexible_link, rigid_link
+from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.plant import Plant, parameter
 
 _LENGTH = 0.55
 """Of the link [m], section 3.2."""

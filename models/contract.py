@@ -20,10 +20,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from models.joint_motion import Expression, JointMotion
+from quietarm.models.joint_motion import Expression, JointMotion
 
 if TYPE_CHECKING:
-    from models.plant import Plant
+    from quietarm.models.plant import Plant
 
 Array = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from models.drawing import Body, flexible_link
-from models.joint_motion import Expression, JointMotion
-from models.plant import Plant, parameter
+from quietarm.models.drawing import Body, flexible_link
+from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.plant import Plant, parameter
 
 _LENGTH = 0.5
 """Length at which both links are drawn [m]: theirs are not published."""

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from dataclasses import Field, field, fields
 from typing import Any, ClassVar
 
-from models.contract import check_contract
-from models.drawing import Body, rigid_link
-from models.joint_motion import Expression, JointMotion
+from quietarm.models.contract import check_contract
+from quietarm.models.drawing import Body, rigid_link
+from quietarm.models.joint_motion import Expression, JointMotion
 
 
 def parameter(default: float, unit: str, source: str) -> Any:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 
-from models.plant import Plant
+from quietarm.models.plant import Plant
 
 
 @dataclass(frozen=True)

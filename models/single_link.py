@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from models.drawing import Body, flexible_link
-from models.joint_motion import Expression, JointMotion
-from models.plant import Plant, parameter
+from quietarm.models.drawing import Body, flexible_link
+from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.plant import Plant, parameter
 
 _LENGTH = 0.475
 """Of the plate [m], section 3.1."""

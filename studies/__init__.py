@@ -8,8 +8,8 @@ from outside are `figures` and `animation`, which draw.
 """
 
 # ruff: noqa: E402  # what follows takes a third of a second
-from studies.early import end_in_one_line
+from quietarm.studies.early import end_in_one_line
 
 end_in_one_line()
 
-import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]  # refuses a file that shadows models
+from quietarm import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]  # refuses a file that shadows models

@@ -1,5 +1,5 @@
-"""`python -m studies` is `quietarm`."""
+"""`python -m quietarm` is `quietarm`."""
 
-from studies.cli import main
+from quietarm.studies.cli import main
 
 main()

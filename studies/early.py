@@ -17,7 +17,7 @@ else:
 
 _COMMANDS = ("quietarm", "-m")
 """Names of the running program at the time that this is loaded, where it is the command:
-`python -m studies` has not found its file yet."""
+`python -m quietarm` has not found its file yet."""
 _OURS = ("models", "ocp", "metaheuristics", "studies")
 _NEEDED = ("casadi", "click", "dask", "distributed", "matplotlib", "msgspec", "numpy", "pymoo",
            "rich", "scipy")  # fmt: skip

@@ -13,7 +13,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Numba compiles pymoo's AGE-MOEA anew in every process, which takes longer than its small searches.
 os.environ.setdefault("NUMBA_OPT", "0")
 
-from models import DualLinkManipulator, Plant
+from quietarm.models import DualLinkManipulator, Plant
 
 # A shell lets what it starts in the background ignore Ctrl-C, which these tests send.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -109,7 +109,7 @@ CRANE = """
 from dataclasses import dataclass
 from typing import ClassVar
 
-from models import Plant, parameter
+from quietarm.models import Plant, parameter
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ import pytest
 from pages import COMMANDS, DOCS, NOTEBOOK, PAGES, README, ROOT, TWO_COMMANDS
 from PIL import Image
 
-from ocp import evaluate_coefficients, plan_move
-from studies.cli import quietarm
-from studies.paper.printed import SINGLE_LINK_SIXTH
+from quietarm.ocp import evaluate_coefficients, plan_move
+from quietarm.studies.cli import quietarm
+from quietarm.studies.paper.printed import SINGLE_LINK_SIXTH
 
 # The two commands
 

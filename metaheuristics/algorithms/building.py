@@ -13,8 +13,8 @@ from pymoo.core.algorithm import Algorithm
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
-from metaheuristics.algorithms.presets import Preset
-from metaheuristics.algorithms.settings import Value
+from quietarm.metaheuristics.algorithms.presets import Preset
+from quietarm.metaheuristics.algorithms.settings import Value
 
 _OPERATORS: dict[str, Callable[..., Any]] = {"crossover": SBX, "mutation": PM}
 

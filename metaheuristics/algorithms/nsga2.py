@@ -16,7 +16,7 @@ from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.selection.tournament import TournamentSelection
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 
-from metaheuristics.algorithms.states import (
+from quietarm.metaheuristics.algorithms.states import (
     POPULATION_ARRAYS,
     array_of,
     count_of,
@@ -24,7 +24,7 @@ from metaheuristics.algorithms.states import (
     population_of,
     restore_generator,
 )
-from ocp.base.checks import whole
+from quietarm.ocp.base.checks import whole
 
 CROSSOVER: dict[str, Any] = {"prob": 0.8, "prob_var": 0.5, "eta": 15}
 """Simulated binary crossover: the paper's rate for a pair; pymoo's defaults for a gene and eta."""

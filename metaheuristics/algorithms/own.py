@@ -6,7 +6,7 @@ import copy
 
 from pymoo.core.algorithm import Algorithm
 
-from metaheuristics.algorithms.presets import PRESETS
+from quietarm.metaheuristics.algorithms.presets import PRESETS
 
 
 def own_algorithm(algorithm: object) -> Algorithm:

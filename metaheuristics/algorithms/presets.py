@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from metaheuristics.algorithms.settings import (
+from quietarm.metaheuristics.algorithms.settings import (
     Setting,
     Value,
     count,
@@ -22,8 +22,8 @@ from metaheuristics.algorithms.settings import (
     with_defaults,
     yes_or_no,
 )
-from ocp.base.checks import not_negative, positive
-from ocp.base.names import unknown
+from quietarm.ocp.base.checks import not_negative, positive
+from quietarm.ocp.base.names import unknown
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -100,7 +100,7 @@ class Preset:
             When a setting or the population is not known or out of range, or a library is missing.
         """
         values = self.checked(population, settings)
-        from metaheuristics.algorithms.building import built
+        from quietarm.metaheuristics.algorithms.building import built
 
         return built(self, population, values)
 
@@ -193,7 +193,7 @@ _GENETIC = (*_sbx(0.9, 15.0), *_pm())
 _BY_DIRECTIONS = (*_sbx(1.0, 30.0), *_pm())
 _NORMALISE = Setting("normalise", "normalize", True,
                      "scale the objectives to the population", yes_or_no)  # fmt: skip
-_OURS, _PYMOO = "metaheuristics.algorithms", "pymoo.algorithms.moo"
+_OURS, _PYMOO = "quietarm.metaheuristics.algorithms", "pymoo.algorithms.moo"
 
 _ALL = (
     Preset(
@@ -292,5 +292,5 @@ _ALL = (
 
 PRESETS: Mapping[str, Preset] = {preset.name: preset for preset in _ALL}
 """By name. Section 3.1: 100 particles in a swarm, 200 iterations. Section 3.2: population 200, 500
-generations, crossover 0.8, mutation 0.01 (`metaheuristics.algorithms.nsga2`). All other settings
+generations, crossover 0.8, mutation 0.01 (`quietarm.metaheuristics.algorithms.nsga2`). All other settings
 are pymoo's defaults."""

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ocp.base.checks import finite, of_kind, positive, whole
-from ocp.base.names import has_no, nearest
+from quietarm.ocp.base.checks import finite, of_kind, positive, whole
+from quietarm.ocp.base.names import has_no, nearest
 
 Value = float | int | bool | str | None
 MOST_KEPT = 100_000

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.population import Population
 
-from ocp.base.checks import finite, whole
+from quietarm.ocp.base.checks import finite, whole
 
 POPULATION_ARRAYS = ("X", "F", "G", "H")
 

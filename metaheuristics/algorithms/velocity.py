@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from ocp.base.checks import not_negative, positive
+from quietarm.ocp.base.checks import not_negative, positive
 
 Array = np.ndarray
 

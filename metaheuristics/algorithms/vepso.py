@@ -28,7 +28,7 @@ from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.util.display.multi import MultiObjectiveOutput
 
-from metaheuristics.algorithms.states import (
+from quietarm.metaheuristics.algorithms.states import (
     POPULATION_ARRAYS,
     array_of,
     count_of,
@@ -36,9 +36,9 @@ from metaheuristics.algorithms.states import (
     population_of,
     restore_generator,
 )
-from metaheuristics.algorithms.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
-from metaheuristics.objective.problem import UNUSABLE
-from ocp.base.checks import positive, whole
+from quietarm.metaheuristics.algorithms.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
+from quietarm.metaheuristics.objective.problem import UNUSABLE
+from quietarm.ocp.base.checks import positive, whole
 
 STATE_ARRAYS = ("velocities", "best_X", "best_merit", "swarm_best")
 

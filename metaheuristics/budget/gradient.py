@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.budget.problem import BudgetProblem
-from ocp.answers.provenance import SolveSettings
-from ocp.front.sweep import Sweep
-from ocp.program.solution import Solution
+from quietarm.metaheuristics.budget.problem import BudgetProblem
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.program.solution import Solution
 
 Array = NDArray[np.float64]
 _BETWEEN = (0.25, 0.5, 0.75)

@@ -9,9 +9,9 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.budget.record import Mark, Scale, Visits, marks_of
-from metaheuristics.objective.population import PopulationObjective
-from metaheuristics.objective.problem import UNUSABLE, MoveProblem
+from quietarm.metaheuristics.budget.record import Mark, Scale, Visits, marks_of
+from quietarm.metaheuristics.objective.population import PopulationObjective
+from quietarm.metaheuristics.objective.problem import UNUSABLE, MoveProblem
 
 Array = NDArray[np.float64]
 

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.algorithms.presets import PRESETS
-from metaheuristics.budget.record import Mark, Scale, Visits
-from metaheuristics.runs.settings import search_versions
-from ocp import Front, JointProfile, PointToPoint, reference_corner
-from ocp.base.checks import whole
-from ocp.base.names import unknown
+from quietarm.metaheuristics.algorithms.presets import PRESETS
+from quietarm.metaheuristics.budget.record import Mark, Scale, Visits
+from quietarm.metaheuristics.runs.settings import search_versions
+from quietarm.ocp import Front, JointProfile, PointToPoint, reference_corner
+from quietarm.ocp.base.checks import whole
+from quietarm.ocp.base.names import unknown
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
 
-    from metaheuristics.budget.problem import BudgetProblem
+    from quietarm.metaheuristics.budget.problem import BudgetProblem
 
 MOST_EVALUATIONS = 10_000_000
 _OF_THE_SEARCH = 0.5
@@ -143,10 +143,10 @@ def search_within(
         When an argument is out of range, or the method cannot search this task.
     """
     # Not at the top: pymoo takes longer to load than all of quietarm.
-    from metaheuristics.budget.gradient import Gradient
-    from metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
-    from metaheuristics.objective.population import PopulationObjective
-    from metaheuristics.runs.front import verified_points
+    from quietarm.metaheuristics.budget.gradient import Gradient
+    from quietarm.metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
+    from quietarm.metaheuristics.objective.population import PopulationObjective
+    from quietarm.metaheuristics.runs.front import verified_points
 
     search, helped = parts_of(method)
     budget = number_of_evaluations(evaluations)
@@ -202,8 +202,8 @@ def _built(
     search: str, population: int | None, bound: float, given: Mapping[str, object] | None
 ) -> tuple[Algorithm | None, dict[str, Any]]:
     """The algorithm of a search, none where the gradient is alone, and its settings."""
-    from metaheuristics.algorithms.provenance import flat, settings_of
-    from metaheuristics.runs.settings import SearchSettings
+    from quietarm.metaheuristics.algorithms.provenance import flat, settings_of
+    from quietarm.metaheuristics.runs.settings import SearchSettings
 
     if search == MULTISTART:
         if given:

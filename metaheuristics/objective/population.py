@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp import JointProfile, PointToPoint
-from ocp.base.checks import real_array, whole
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.threads import one_at_a_time
-from ocp.program.batch import Batch, batch
-from ocp.simulation.residual import residual_rows
-from ocp.simulation.rollout import default_steps
+from quietarm.ocp import JointProfile, PointToPoint
+from quietarm.ocp.base.checks import real_array, whole
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.program.batch import Batch, batch
+from quietarm.ocp.simulation.residual import residual_rows
+from quietarm.ocp.simulation.rollout import default_steps
 
 CANDIDATE_STEPS = 24
 """Steps that keep the energy of nine in ten random candidates of the paper's boxes within 1e-4, and

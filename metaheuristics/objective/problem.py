@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 
-from metaheuristics.objective.population import (
+from quietarm.metaheuristics.objective.population import (
     UNUSABLE,
     PopulationObjective,
     replace_failures,

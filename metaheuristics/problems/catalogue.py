@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.problems.finding import exact_front
-from metaheuristics.problems.function import MoveFunction
-from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-from ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, UncertainPlant
-from ocp.base.names import unknown
+from quietarm.metaheuristics.problems.finding import exact_front
+from quietarm.metaheuristics.problems.function import MoveFunction
+from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, UncertainPlant
+from quietarm.ocp.base.names import unknown
 
 if TYPE_CHECKING:
-    from metaheuristics.problems.pymoo_problem import ExactProblem
+    from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem
 
 FRONTS = Path(__file__).parent / "fronts"
 """The exact fronts, in a folder for each plant, where a problem with several has one of its own."""
@@ -63,7 +63,7 @@ class NamedProblem:
 
     def pymoo(self, **settings: Any) -> ExactProblem:
         """It as a pymoo problem with its exact front; settings as for `function`."""
-        from metaheuristics.problems.pymoo_problem import ExactProblem
+        from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem
 
         return ExactProblem(self.function(**settings), *self.exact())
 

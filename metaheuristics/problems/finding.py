@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ocp import (
+from quietarm.ocp import (
     Front,
     FrontPoint,
     JointProfile,
@@ -13,9 +13,9 @@ from ocp import (
     epsilon_front,
     non_dominated,
 )
-from ocp.answers.provenance import SolveSettings
-from ocp.front.points import LEVELS
-from ocp.plan.solver import plan_at_samples
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.plan.solver import plan_at_samples
 
 POINTS = 25
 """Points of an exact front, beside those at `LEVELS`."""

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from metaheuristics.objective.population import PopulationObjective, replace_failures
-from ocp import CycloidPolynomial, JointProfile, PointToPoint
-from ocp.answers.provenance import coefficient_bound
-from ocp.base.names import unknown
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.simulation.rollout import default_steps
-from ocp.task.quantities import QUANTITIES
+from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
+from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
+from quietarm.ocp.answers.provenance import coefficient_bound
+from quietarm.ocp.base.names import unknown
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.task.quantities import QUANTITIES
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 
-from metaheuristics.problems.function import MoveFunction
+from quietarm.metaheuristics.problems.function import MoveFunction
 
 
 class ExactProblem(Problem):

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from ocp import FileFormatError
-from ocp.answers.documents import content_of, read_bytes
-from ocp.base.files import write_whole
+from quietarm.ocp import FileFormatError
+from quietarm.ocp.answers.documents import content_of, read_bytes
+from quietarm.ocp.base.files import write_whole
 
 KIND, VERSION = "checkpoint", 2
 _HEADER, _STATE = "header", "state."

@@ -9,13 +9,13 @@ from dataclasses import asdict, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.algorithms.provenance import flat
-from metaheuristics.objective.population import PopulationObjective
-from metaheuristics.runs.loop import Loop
-from metaheuristics.runs.progress import SearchProgress
-from metaheuristics.runs.settings import search_versions
-from ocp import Front, FrontPoint, JointProfile, PointToPoint, non_dominated
-from ocp.simulation.rollout import default_steps
+from quietarm.metaheuristics.algorithms.provenance import flat
+from quietarm.metaheuristics.objective.population import PopulationObjective
+from quietarm.metaheuristics.runs.loop import Loop
+from quietarm.metaheuristics.runs.progress import SearchProgress
+from quietarm.metaheuristics.runs.settings import search_versions
+from quietarm.ocp import Front, FrontPoint, JointProfile, PointToPoint, non_dominated
+from quietarm.ocp.simulation.rollout import default_steps
 
 WITHIN = 1e-6
 """Share by which a peak of the finer rollout may exceed its limit: the search kept it exactly."""

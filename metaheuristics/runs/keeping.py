@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
-from metaheuristics.runs.loop import Loop
-from metaheuristics.runs.progress import SearchProgress
-from metaheuristics.runs.settings import SearchSpec, search_versions
-from ocp.answers.documents import reading
-from ocp.answers.encoding import plain, typed
+from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
+from quietarm.metaheuristics.runs.loop import Loop
+from quietarm.metaheuristics.runs.progress import SearchProgress
+from quietarm.metaheuristics.runs.settings import SearchSpec, search_versions
+from quietarm.ocp.answers.documents import reading
+from quietarm.ocp.answers.encoding import plain, typed
 
 CHECKPOINT_SECONDS = 2.0
 

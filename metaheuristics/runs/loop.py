@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.termination.max_gen import MaximumGenerationTermination
 
-from metaheuristics.algorithms.states import array_of, count_of, number_of, part_of
-from metaheuristics.objective.claims import check_points
-from metaheuristics.objective.population import PopulationObjective
-from metaheuristics.objective.problem import UNUSABLE, MoveProblem
-from metaheuristics.runs.progress import Report, SearchProgress
-from metaheuristics.runs.settings import SearchSpec
-from ocp import FrontPoint, Generation, reference_corner
+from quietarm.metaheuristics.algorithms.states import array_of, count_of, number_of, part_of
+from quietarm.metaheuristics.objective.claims import check_points
+from quietarm.metaheuristics.objective.population import PopulationObjective
+from quietarm.metaheuristics.objective.problem import UNUSABLE, MoveProblem
+from quietarm.metaheuristics.runs.progress import Report, SearchProgress
+from quietarm.metaheuristics.runs.settings import SearchSpec
+from quietarm.ocp import FrontPoint, Generation, reference_corner
 
 
 class Loop:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
 
-from ocp import JointProfile, PointToPoint
-from ocp.answers.provenance import coefficient_bound, versions
-from ocp.base.checks import whole
+from quietarm.ocp import JointProfile, PointToPoint
+from quietarm.ocp.answers.provenance import coefficient_bound, versions
+from quietarm.ocp.base.checks import whole
 
 MOST_INDIVIDUALS, MOST_GENERATIONS = 100_000, 1_000_000
 

@@ -22,10 +22,10 @@ from distributed import Client, LocalCluster, rpc
 from distributed.comm.addressing import get_address_host_port
 from distributed.utils import get_mp_context
 
-from metaheuristics.sharing.workers import Workers
-from ocp import QuietarmError
-from ocp.answers.provenance import versions
-from ocp.base.interrupts import note_interrupts
+from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.ocp import QuietarmError
+from quietarm.ocp.answers.provenance import versions
+from quietarm.ocp.base.interrupts import note_interrupts
 
 _FORKED = "forkserver" in multiprocessing.get_all_start_methods()
 """Whether a process that only loads what all workers need can be forked into each of them."""

@@ -6,8 +6,8 @@ from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar
 
-from metaheuristics.runs.progress import Report
-from ocp import Front, QuietarmError
+from quietarm.metaheuristics.runs.progress import Report
+from quietarm.ocp import Front, QuietarmError
 
 INTERRUPTED = "interrupted"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from metaheuristics.sharing.pieces import (
+from quietarm.metaheuristics.sharing.pieces import (
     INTERRUPTED,
     Done,
     InterruptedPiece,
@@ -13,9 +13,9 @@ from metaheuristics.sharing.pieces import (
     Piece,
     Say,
 )
-from metaheuristics.sharing.workers import HERE, Workers
-from ocp import QuietarmError
-from ocp.base.interrupts import hear_interrupts
+from quietarm.metaheuristics.sharing.workers import HERE, Workers
+from quietarm.ocp import QuietarmError
+from quietarm.ocp.base.interrupts import hear_interrupts
 
 
 def run_pieces(
@@ -53,7 +53,7 @@ def run_pieces(
     if workers.here or workers.local(len(pieces)) == 1:
         return _one_after_another(pieces, listener, note)
     # Not at the top: dask is an extra, and takes longer to load than all of quietarm.
-    from metaheuristics.sharing.sharing import share
+    from quietarm.metaheuristics.sharing.sharing import share
 
     return share(pieces, listener, workers, note)
 

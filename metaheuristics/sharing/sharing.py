@@ -13,14 +13,14 @@ from uuid import uuid4
 
 from distributed import Client, Future, KilledWorker
 
-from metaheuristics.runs.progress import SearchProgress
-from metaheuristics.sharing.cluster import Cluster, connected
-from metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, LostPieceError, Piece
-from metaheuristics.sharing.worker import do_piece
-from metaheuristics.sharing.workers import Workers
-from ocp import Front, QuietarmError
-from ocp.answers.encoding import typed
-from ocp.base.interrupts import note_interrupts
+from quietarm.metaheuristics.runs.progress import SearchProgress
+from quietarm.metaheuristics.sharing.cluster import Cluster, connected
+from quietarm.metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, LostPieceError, Piece
+from quietarm.metaheuristics.sharing.worker import do_piece
+from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.ocp import Front, QuietarmError
+from quietarm.ocp.answers.encoding import typed
+from quietarm.ocp.base.interrupts import note_interrupts
 
 _INSISTENT = 3
 """After this many more Ctrl-C, answers on their way are no longer waited for."""

@@ -10,10 +10,10 @@ from typing import Any
 
 from distributed import get_worker
 
-from metaheuristics.runs.progress import SearchProgress
-from metaheuristics.sharing.pieces import Done, Piece, Say
-from ocp import Front
-from ocp.answers.encoding import plain
+from quietarm.metaheuristics.runs.progress import SearchProgress
+from quietarm.metaheuristics.sharing.pieces import Done, Piece, Say
+from quietarm.ocp import Front
+from quietarm.ocp.answers.encoding import plain
 
 _SAY_SECONDS = 0.2
 _ONE_AT_A_TIME = threading.Lock()

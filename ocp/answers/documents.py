@@ -13,9 +13,9 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from ocp.answers.encoding import typed
-from ocp.base.errors import FileFormatError
-from ocp.base.files import read_whole, write_whole
+from quietarm.ocp.answers.encoding import typed
+from quietarm.ocp.base.errors import FileFormatError
+from quietarm.ocp.base.files import read_whole, write_whole
 
 Document = dict[str, Any]
 T = TypeVar("T")

@@ -16,8 +16,8 @@ from typing import Any, TypeVar
 import msgspec
 import numpy as np
 
-from models import Plant, known_plants
-from ocp.answers.plants import (
+from quietarm.models import Plant, known_plants
+from quietarm.ocp.answers.plants import (
     PLANT_FILE,
     UNCERTAIN,
     Uncertainty,
@@ -25,9 +25,9 @@ from ocp.answers.plants import (
     without_file,
     without_uncertainty,
 )
-from ocp.base.printable import has_control_characters
-from ocp.profiles.joint_profile import JointProfile, known_profiles
-from ocp.robustness.uncertain import UncertainPlant
+from quietarm.ocp.base.printable import has_control_characters
+from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
+from quietarm.ocp.robustness.uncertain import UncertainPlant
 
 T = TypeVar("T")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from ocp.answers.provenance import Provenance
-from ocp.answers.saved import Saved
-from ocp.simulation.objective import Motion
+from quietarm.ocp.answers.provenance import Provenance
+from quietarm.ocp.answers.saved import Saved
+from quietarm.ocp.simulation.objective import Motion
 
 
 class MotionAnswer(Saved):

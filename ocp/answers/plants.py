@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 from msgspec import Meta
 
-from models import Plant, file_of_plant, known_plants
+from quietarm.models import Plant, file_of_plant, known_plants
 
 PLANT_FILE = "plant_file"
 """The entry of a plant that tells of its file."""

@@ -11,12 +11,12 @@ from typing import Generic, Literal, TypeVar
 import casadi as ca
 import numpy as np
 
-from models import __version__
-from ocp.base.checks import finite, of_kind, positive, whole
-from ocp.base.ranges import CountFromOne, NotNegative
-from ocp.base.readonly import ReadOnlyDict
-from ocp.simulation.objective import Motion
-from ocp.simulation.rollout import MOST_STEPS
+from quietarm.models import __version__
+from quietarm.ocp.base.checks import finite, of_kind, positive, whole
+from quietarm.ocp.base.ranges import CountFromOne, NotNegative
+from quietarm.ocp.base.readonly import ReadOnlyDict
+from quietarm.ocp.simulation.objective import Motion
+from quietarm.ocp.simulation.rollout import MOST_STEPS
 
 Setting = str | bool | int | float | None
 S = TypeVar("S")
@@ -41,7 +41,7 @@ def versions() -> dict[str, str]:
 
 @dataclass(frozen=True)
 class SolveSettings:
-    """What was asked of the solver beyond the task; see `ocp.plan_move` for the meanings.
+    """What was asked of the solver beyond the task; see `quietarm.ocp.plan_move` for the meanings.
 
     Raises
     ------

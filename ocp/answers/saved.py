@@ -7,8 +7,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar, Self, get_type_hints
 
-from ocp.answers.documents import read_document, write_document
-from ocp.answers.encoding import plain, typed
+from quietarm.ocp.answers.documents import read_document, write_document
+from quietarm.ocp.answers.encoding import plain, typed
 
 
 class Saved:

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
-from ocp.answers.motion_answer import MotionAnswer
-from ocp.answers.provenance import Provenance, Verification, number_of_starts
-from ocp.base.checks import positive, whole
-from ocp.base.ranges import CountFromOne
-from ocp.base.status import SolveStatus
-from ocp.profiles.free_motion import FreeMotion
-from ocp.simulation.cvodes import Trajectory
-from ocp.simulation.objective import Motion
-from ocp.simulation.piecewise import PiecewiseMotion
-from ocp.simulation.resimulation import resimulated
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.answers.motion_answer import MotionAnswer
+from quietarm.ocp.answers.provenance import Provenance, Verification, number_of_starts
+from quietarm.ocp.base.checks import positive, whole
+from quietarm.ocp.base.ranges import CountFromOne
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.simulation.cvodes import Trajectory
+from quietarm.ocp.simulation.objective import Motion
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
 """Ratios of successive falls of the energy. The first is that of an error proportional to the
@@ -43,7 +43,7 @@ class Level:
 
 @dataclass(frozen=True)
 class FloorSettings:
-    """What was asked of the search beyond the task; see `ocp.energy_floor` for the meanings.
+    """What was asked of the search beyond the task; see `quietarm.ocp.energy_floor` for the meanings.
 
     Raises
     ------

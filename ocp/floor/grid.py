@@ -6,8 +6,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.profiles.free_motion import FreeMotion
-from ocp.simulation.collocation import mesh
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.simulation.collocation import mesh
 
 _AT_AN_END, _SHRINK = 3, 4.0
 """The first and last interval are cut at 1/4, 1/16 and 1/64 of their length: without a limit

@@ -9,20 +9,20 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Plant
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.status import SolveStatus
-from ocp.floor.grid import first_grid
-from ocp.floor.step_model import by_group
-from ocp.floor.transcription import FreePoint, FreeProgram
-from ocp.profiles.free_motion import FreeMotion
-from ocp.profiles.joint_profile import JointPath
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.program.ipopt import OPTIONS
-from ocp.program.solution import ENERGY
-from ocp.simulation.collocation import GAUSS_WEIGHTS, NODES
-from ocp.task.point_to_point import PointToPoint
-from ocp.task.quantities import ask_for_jerk
+from quietarm.models import Plant
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.floor.grid import first_grid
+from quietarm.ocp.floor.step_model import by_group
+from quietarm.ocp.floor.transcription import FreePoint, FreeProgram
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.profiles.joint_profile import JointPath
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.program.ipopt import OPTIONS
+from quietarm.ocp.program.solution import ENERGY
+from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES
+from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task.quantities import ask_for_jerk
 
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}
 """The systems are sparse and have no dense columns: minimum degree makes them a quarter faster."""

@@ -9,9 +9,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Expression, JointMotion, Plant
-from ocp.simulation.collocation import NODES, NodeState, step
-from ocp.task.quantities import QUANTITIES
+from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.simulation.collocation import NODES, NodeState, step
+from quietarm.ocp.task.quantities import QUANTITIES
 
 JOINT = 3
 """Numbers that describe the joint to the plant at one time: angle, speed, acceleration."""

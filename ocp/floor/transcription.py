@@ -15,13 +15,13 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Plant
-from ocp.floor.step_model import JOINT, LiftedStep, groups_of
-from ocp.floor.symbols import split
-from ocp.profiles.free_motion import joint_after
-from ocp.program.ipopt import LagrangianHessian, Options, Point, Stop, ipopt, run_ipopt
-from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
-from ocp.task.quantities import QUANTITIES
+from quietarm.models import Plant
+from quietarm.ocp.floor.step_model import JOINT, LiftedStep, groups_of
+from quietarm.ocp.floor.symbols import split
+from quietarm.ocp.profiles.free_motion import joint_after
+from quietarm.ocp.program.ipopt import LagrangianHessian, Options, Point, Stop, ipopt, run_ipopt
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
+from quietarm.ocp.task.quantities import QUANTITIES
 
 
 class FreeStep:

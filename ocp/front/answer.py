@@ -12,20 +12,20 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp.answers.provenance import Setting, settings_given, versions
-from ocp.answers.saved import Saved
-from ocp.base.checks import not_negative, of_kind
-from ocp.base.files import write_whole
-from ocp.base.ranges import Count, NotNegative, Positive
-from ocp.base.readonly import ReadOnlyDict
-from ocp.base.threads import one_at_a_time
-from ocp.front.evaluation import evaluated, table_of
-from ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.simulation.rollout import rollout
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.answers.provenance import Setting, settings_given, versions
+from quietarm.ocp.answers.saved import Saved
+from quietarm.ocp.base.checks import not_negative, of_kind
+from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.base.ranges import Count, NotNegative, Positive
+from quietarm.ocp.base.readonly import ReadOnlyDict
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.front.evaluation import evaluated, table_of
+from quietarm.ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.simulation.rollout import rollout
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 LEAST_REFERENCE = 1e-3
 """Where the plain cycloid arrives nearly still, its residual is no scale for hypervolumes [m]."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from ocp.base.interrupts import note_interrupts
-from ocp.front.answer import Front, reference_corner
-from ocp.front.points import FailedPoint, FrontPoint, non_dominated
-from ocp.front.robust import EXCESS, held_between
-from ocp.front.sweep import Sweep
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.front.answer import Front, reference_corner
+from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
+from quietarm.ocp.front.robust import EXCESS, held_between
+from quietarm.ocp.front.sweep import Sweep
 
 
 def front_of(

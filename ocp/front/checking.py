@@ -7,16 +7,16 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ocp.base.errors import SolverFailedError
-from ocp.base.interrupts import note_interrupts
-from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.sweep import Sweep
-from ocp.plan.finer import EVERY, SAME, finer_values
-from ocp.plan.verification import OF_A_PLAN, Care, Checked, verified
-from ocp.program.solution import RESIDUAL, STILL, Solution
-from ocp.robustness.uncertain import UncertainPlant
-from ocp.simulation.cvodes import residual_of
-from ocp.simulation.resimulation import resimulate
+from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.front.points import FailedPoint, FrontPoint
+from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.plan.finer import EVERY, SAME, finer_values
+from quietarm.ocp.plan.verification import OF_A_PLAN, Care, Checked, verified
+from quietarm.ocp.program.solution import RESIDUAL, STILL, Solution
+from quietarm.ocp.robustness.uncertain import UncertainPlant
+from quietarm.ocp.simulation.cvodes import residual_of
+from quietarm.ocp.simulation.resimulation import resimulate
 
 RESIDUAL_LIMIT = "residual_limit"
 _TIME_AFTER_CTRL_C = 0.6

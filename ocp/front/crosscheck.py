@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ocp.answers.provenance import SolveSettings, number_of_points
-from ocp.base.checks import finite
-from ocp.base.threads import one_at_a_time
-from ocp.front.answer import Front
-from ocp.front.points import FrontPoint
-from ocp.front.sweep import Report, Sweep, no_report
-from ocp.program.solution import RESIDUAL
+from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
+from quietarm.ocp.base.checks import finite
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.front.answer import Front
+from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.front.sweep import Report, Sweep, no_report
+from quietarm.ocp.program.solution import RESIDUAL
 
 _SAME = 1e-6
 """Energies that differ by no more than this share agree."""

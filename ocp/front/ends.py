@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ocp.base.errors import SolverFailedError
-from ocp.front.checking import RESIDUAL_LIMIT, SAMPLING, care_of, checked, front_point
-from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.sweep import SAME, Sweep
-from ocp.plan.feasibility import least_peaks
-from ocp.plan.starts import from_starts
-from ocp.plan.verification import MOST_SOLVER_STEPS, verified
-from ocp.program.solution import ENERGY, RESIDUAL, STILL, Solution
-from ocp.robustness.uncertain import UncertainPlant, on_assumed
+from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.front.checking import RESIDUAL_LIMIT, SAMPLING, care_of, checked, front_point
+from quietarm.ocp.front.points import FailedPoint, FrontPoint
+from quietarm.ocp.front.sweep import SAME, Sweep
+from quietarm.ocp.plan.feasibility import least_peaks
+from quietarm.ocp.plan.starts import from_starts
+from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS, verified
+from quietarm.ocp.program.solution import ENERGY, RESIDUAL, STILL, Solution
+from quietarm.ocp.robustness.uncertain import UncertainPlant, on_assumed
 
 _LESS_AND_LESS = (1.0, 0.1, 0.02, 2e-3)
 """Weights of the energy beside the residual, one solve after the other, on the way to the still end

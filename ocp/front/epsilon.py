@@ -8,21 +8,21 @@ from itertools import pairwise
 
 import numpy as np
 
-from ocp.answers.provenance import SolveSettings, number_of_points
-from ocp.base.checks import listed, positive, report_given
-from ocp.base.interrupts import note_interrupts
-from ocp.base.threads import one_at_a_time
-from ocp.front.answer import Front
-from ocp.front.assembly import front_of
-from ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
-from ocp.front.ends import Ends, find_ends
-from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.sweep import Guess, InterruptedSolveError, Report, Sweep, better, no_report
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.program.solution import STILL, Solution
-from ocp.program.solving import Solver
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
+from quietarm.ocp.base.checks import listed, positive, report_given
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.front.answer import Front
+from quietarm.ocp.front.assembly import front_of
+from quietarm.ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
+from quietarm.ocp.front.ends import Ends, find_ends
+from quietarm.ocp.front.points import FailedPoint, FrontPoint
+from quietarm.ocp.front.sweep import Guess, InterruptedSolveError, Report, Sweep, better, no_report
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.program.solution import STILL, Solution
+from quietarm.ocp.program.solving import Solver
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _SCOUTS = 5
 """Limits between the ends at which all starts are tried; the points lie between those."""

@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp.base.checks import positive
-from ocp.base.errors import SolverFailedError
-from ocp.front.points import FrontPoint, non_dominated
-from ocp.profiles.joint_profile import JointProfile
-from ocp.simulation.resimulation import resimulate
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.base.checks import positive
+from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.front.points import FrontPoint, non_dominated
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _KEPT = 1e-9
 """Share of a limit within which a peak that CVODES gives counts as at it."""

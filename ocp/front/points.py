@@ -9,9 +9,9 @@ from numbers import Real
 
 import numpy as np
 
-from ocp.base.checks import listed, of_kind
-from ocp.base.ranges import Count, NotNegative, Share
-from ocp.base.readonly import ReadOnlyDict
+from quietarm.ocp.base.checks import listed, of_kind
+from quietarm.ocp.base.ranges import Count, NotNegative, Share
+from quietarm.ocp.base.readonly import ReadOnlyDict
 
 LEVELS = (1e-4, 1e-3, 5e-3)
 """Residuals [m] at which the energies of fronts are compared; those that are compared have a point

@@ -9,16 +9,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ocp.answers.provenance import SolveSettings
-from ocp.base.checks import finite, of_kind, report_given
-from ocp.base.threads import one_at_a_time
-from ocp.front.answer import Front
-from ocp.front.assembly import front_of
-from ocp.front.checking import RESIDUAL_LIMIT, checked
-from ocp.front.points import FailedPoint, FrontPoint
-from ocp.front.robust import EXCESS
-from ocp.front.sweep import Report, Sweep, no_report
-from ocp.program.solution import Solution
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.base.checks import finite, of_kind, report_given
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.front.answer import Front
+from quietarm.ocp.front.assembly import front_of
+from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
+from quietarm.ocp.front.points import FailedPoint, FrontPoint
+from quietarm.ocp.front.robust import EXCESS
+from quietarm.ocp.front.sweep import Report, Sweep, no_report
+from quietarm.ocp.program.solution import Solution
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.answers.provenance import REST
-from ocp.base.checks import of_kind
-from ocp.front.answer import Front
-from ocp.front.checking import RESIDUAL_LIMIT, checked
-from ocp.front.points import FailedPoint, FrontPoint, non_dominated
-from ocp.front.sweep import Sweep
-from ocp.robustness.uncertain import UncertainPlant
-from ocp.robustness.worst import peaks_between, worst_at
+from quietarm.ocp.answers.provenance import REST
+from quietarm.ocp.base.checks import of_kind
+from quietarm.ocp.front.answer import Front
+from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
+from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
+from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.robustness.uncertain import UncertainPlant
+from quietarm.ocp.robustness.worst import peaks_between, worst_at
 
 EXCESS = "excess"
 """Among the settings of a front: the share by which the residual between the samples may pass that

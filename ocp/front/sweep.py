@@ -9,15 +9,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.answers.provenance import SolveSettings
-from ocp.plan.starts import first_steps, start_coefficients
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.program.program import Program
-from ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
-from ocp.program.solving import Row, solve
-from ocp.robustness.uncertain import uncertain_plant, with_samples
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.plan.starts import first_steps, start_coefficients
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
+from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.robustness.uncertain import uncertain_plant, with_samples
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 Guess = NDArray[np.float64]
 Report = Callable[[int, int], None]

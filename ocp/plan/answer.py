@@ -14,21 +14,21 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ocp.answers.motion_answer import MotionAnswer
-from ocp.answers.provenance import Provenance, Setting, SolveSettings, Verification
-from ocp.base.checks import positive
-from ocp.base.files import write_whole
-from ocp.base.status import SolveStatus
-from ocp.base.threads import one_at_a_time
-from ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.robustness.worst import Worst, worst_of
-from ocp.simulation.cvodes import Trajectory
-from ocp.simulation.objective import Motion
-from ocp.simulation.resimulation import resimulate, sample_trajectory
-from ocp.simulation.rollout import rollout
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.answers.motion_answer import MotionAnswer
+from quietarm.ocp.answers.provenance import Provenance, Setting, SolveSettings, Verification
+from quietarm.ocp.base.checks import positive
+from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.robustness.worst import Worst, worst_of
+from quietarm.ocp.simulation.cvodes import Trajectory
+from quietarm.ocp.simulation.objective import Motion
+from quietarm.ocp.simulation.resimulation import resimulate, sample_trajectory
+from quietarm.ocp.simulation.rollout import rollout
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
 _SAMPLES = 1500
@@ -99,7 +99,7 @@ class Plan(MotionAnswer):
         return self.sampled(np.union1d(np.linspace(0.0, arrival + window, _SAMPLES), [arrival]))
 
     def sampled(self, times: ArrayLike) -> Trajectory:
-        """The motion at given times by CVODES; see `ocp.sample_trajectory`."""
+        """The motion at given times by CVODES; see `quietarm.ocp.sample_trajectory`."""
         return sample_trajectory(self.task, self.profile, self.coefficients, times)
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:

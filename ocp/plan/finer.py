@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.program.batch import Values, batch
-from ocp.program.program import Program
-from ocp.simulation.rollout import default_steps
+from quietarm.ocp.program.batch import Values, batch
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.simulation.rollout import default_steps
 
 EVERY = 10
 """CVODES checks one motion in so many."""

@@ -9,24 +9,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.answers.provenance import SolveSettings
-from ocp.base.errors import SolverFailedError
-from ocp.base.status import SolveStatus
-from ocp.base.threads import one_at_a_time
-from ocp.plan.finer import EVERY, SAME, finer_values
-from ocp.plan.starts import first_steps, start_coefficients
-from ocp.plan.verification import OF_A_PLAN, verified
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.program.batch import Values
-from ocp.program.program import Program, programs_of
-from ocp.program.solution import RESIDUAL, STILL, Ask, Solution
-from ocp.program.solving import STOPPED, Row, Solved, Solver, solve
-from ocp.robustness.uncertain import UncertainPlant
-from ocp.simulation.residual import residuals_at_rest, state_matrices
-from ocp.simulation.resimulation import resimulate
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.plan.finer import EVERY, SAME, finer_values
+from quietarm.ocp.plan.starts import first_steps, start_coefficients
+from quietarm.ocp.plan.verification import OF_A_PLAN, verified
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.program.batch import Values
+from quietarm.ocp.program.program import Program, programs_of
+from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
+from quietarm.ocp.program.solving import STOPPED, Row, Solved, Solver, solve
+from quietarm.ocp.robustness.uncertain import UncertainPlant
+from quietarm.ocp.simulation.residual import residuals_at_rest, state_matrices
+from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 Array = NDArray[np.float64]
 _PILOTS, _SAME_MOVE = 8, 1e-9

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from ocp.answers.provenance import SolveSettings
-from ocp.base.errors import InfeasibleTaskError
-from ocp.plan.answer import Plan, evaluate_coefficients
-from ocp.plan.feasibility import UNITS
-from ocp.plan.verification import OVERRUN
-from ocp.profiles.joint_profile import JointProfile
-from ocp.program.solution import STILL
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.base.errors import InfeasibleTaskError
+from quietarm.ocp.plan.answer import Plan, evaluate_coefficients
+from quietarm.ocp.plan.feasibility import UNITS
+from quietarm.ocp.plan.verification import OVERRUN
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.program.solution import STILL
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 
 def only_motion(

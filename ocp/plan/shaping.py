@@ -6,13 +6,13 @@ from typing import Literal
 
 import numpy as np
 
-from ocp.base.threads import one_at_a_time
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.profiles.shaped_cycloid import ShapedCycloid
-from ocp.robustness.uncertain import on_assumed
-from ocp.simulation.residual import vibrations
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
+from quietarm.ocp.robustness.uncertain import on_assumed
+from quietarm.ocp.simulation.residual import vibrations
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _SAMPLES = 200
 """Joint angles along the plain cycloid, at even times, over which `average` is taken."""

@@ -9,23 +9,23 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp.answers.provenance import Provenance, SolveSettings, Verification
-from ocp.base.errors import SolverFailedError
-from ocp.base.interrupts import note_interrupts
-from ocp.base.threads import one_at_a_time
-from ocp.plan.answer import Plan
-from ocp.plan.only_motion import only_motion
-from ocp.plan.robust import limit_of, robust_plan
-from ocp.plan.starts import first_steps, from_starts, start_coefficients
-from ocp.plan.verification import HURRIED, verified
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.program.program import Program
-from ocp.program.solution import RESIDUAL, Ask
-from ocp.program.solving import Solver
-from ocp.robustness.uncertain import UncertainPlant
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.answers.provenance import Provenance, SolveSettings, Verification
+from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.plan.answer import Plan
+from quietarm.ocp.plan.only_motion import only_motion
+from quietarm.ocp.plan.robust import limit_of, robust_plan
+from quietarm.ocp.plan.starts import first_steps, from_starts, start_coefficients
+from quietarm.ocp.plan.verification import HURRIED, verified
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import RESIDUAL, Ask
+from quietarm.ocp.program.solving import Solver
+from quietarm.ocp.robustness.uncertain import UncertainPlant
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 
 @one_at_a_time

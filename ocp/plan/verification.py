@@ -9,14 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ocp.base.errors import SolverFailedError
-from ocp.program.program import Program
-from ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Solution
-from ocp.program.solving import Row, Solver, solve
-from ocp.robustness.uncertain import on_assumed
-from ocp.simulation.objective import Motion, WithPeaks
-from ocp.simulation.piecewise import PiecewiseMotion
-from ocp.simulation.resimulation import resimulated
+from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Solution
+from quietarm.ocp.program.solving import Row, Solver, solve
+from quietarm.ocp.robustness.uncertain import on_assumed
+from quietarm.ocp.simulation.objective import Motion, WithPeaks
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import resimulated
 
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""

@@ -11,8 +11,8 @@ from typing import ClassVar, Self
 import casadi as ca
 import numpy as np
 
-from models import Expression, JointMotion
-from ocp.profiles.joint_profile import JointProfile
+from quietarm.models import Expression, JointMotion
+from quietarm.ocp.profiles.joint_profile import JointProfile
 
 
 @dataclass(frozen=True)

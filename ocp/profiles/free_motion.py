@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Expression, JointMotion
+from quietarm.models import Expression, JointMotion
 
 
 def joint_after(derivatives: Sequence[Expression], t: Expression) -> JointMotion:

@@ -8,8 +8,8 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from models import Expression
-from ocp.profiles.units import REACH, CycloidOfUnits, Range, side_by_side
+from quietarm.models import Expression
+from quietarm.ocp.profiles.units import REACH, CycloidOfUnits, Range, side_by_side
 
 _WIDEST, _SHARPEST = 0.3, 3.0
 """Inverse widths: from nearly a parabola over the whole move to a sixth of it."""

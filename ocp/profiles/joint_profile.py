@@ -13,8 +13,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models import Expression, JointMotion
-from ocp.base.checks import real_array
+from quietarm.models import Expression, JointMotion
+from quietarm.ocp.base.checks import real_array
 
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ocp.base.checks import of_kind
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.base.checks import of_kind
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _SIX_TERMS = CycloidPolynomial()
 

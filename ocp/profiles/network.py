@@ -8,8 +8,8 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from models import Expression
-from ocp.profiles.units import REACH, CycloidOfUnits, Range, side_by_side
+from quietarm.models import Expression
+from quietarm.ocp.profiles.units import REACH, CycloidOfUnits, Range, side_by_side
 
 _STRAIGHTEST, _STEEPEST = 0.3, 4.0
 """Gains: from nearly a straight line over the whole move to a step that takes a quarter of it."""

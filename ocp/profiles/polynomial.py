@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from models import Expression
-from ocp.profiles.cycloid import Cycloid, with_bump
+from quietarm.models import Expression
+from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
 
 MAX_TERMS = 32
 """Most terms of the polynomial. The condition number of the powers of T on [-1, 1] grows like (1 +

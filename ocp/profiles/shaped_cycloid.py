@@ -11,10 +11,10 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from models import Expression
-from ocp.base.checks import finite, positive
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.shapers import SHAPERS, Impulses, convolved
+from quietarm.models import Expression
+from quietarm.ocp.base.checks import finite, positive
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.shapers import SHAPERS, Impulses, convolved
 
 LEAST_SHARE = 0.05
 """Least share of the duration that is left for the cycloid: a shorter one would be a jolt between

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
 
-from models import Expression
-from ocp.profiles.cycloid import Cycloid
+from quietarm.models import Expression
+from quietarm.ocp.profiles.cycloid import Cycloid
 
 DEGREE = 5
 """Quintic: the joint's jerk is continuous, and the integrators' fixed steps keep their order where

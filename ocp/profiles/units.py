@@ -10,8 +10,8 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models import Expression
-from ocp.profiles.cycloid import Cycloid, with_bump
+from quietarm.models import Expression
+from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
 
 REACH = 1.25
 """At first the units lie in even cells of T between plus and minus this: the outermost have their

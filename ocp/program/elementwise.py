@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import casadi as ca
 
-from models import Expression
+from quietarm.models import Expression
 
 
 def elementwise(function: ca.Function, *inputs: Sequence[Expression]) -> list[list[ca.MX]]:

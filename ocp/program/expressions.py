@@ -12,15 +12,15 @@ from typing import Any, NamedTuple
 import casadi as ca
 import numpy as np
 
-from models import Plant
-from ocp.profiles.joint_profile import JointProfile
-from ocp.program.elementwise import elementwise
-from ocp.program.node import NodeFunctions, PathFunctions, Places
-from ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, Step, step
-from ocp.simulation.errors import with_errors
-from ocp.simulation.objective import energy_derivatives, resolved_energy
-from ocp.simulation.rollout import march, node_times, symbolic_rollout
-from ocp.task.quantities import QUANTITIES, ask_for_jerk
+from quietarm.models import Plant
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.program.elementwise import elementwise
+from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places
+from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, Step, step
+from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.simulation.objective import energy_derivatives, resolved_energy
+from quietarm.ocp.simulation.rollout import march, node_times, symbolic_rollout
+from quietarm.ocp.task.quantities import QUANTITIES, ask_for_jerk
 
 _LEAST_SLOPE = 1e-4
 """Smaller slopes of the power at its zeros count as this share of its root mean square."""

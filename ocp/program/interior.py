@@ -15,11 +15,11 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.base.interrupts import note_interrupts
-from ocp.program.ipopt import OPTIONS, Point, ipopt_of_functions, run_ipopt
-from ocp.program.quadratic import Model
-from ocp.program.sqp import FEASIBLE, End, Rows
-from ocp.program.stack import Stack
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.program.ipopt import OPTIONS, Point, ipopt_of_functions, run_ipopt
+from quietarm.ocp.program.quadratic import Model
+from quietarm.ocp.program.sqp import FEASIBLE, End, Rows
+from quietarm.ocp.program.stack import Stack
 
 Array = NDArray[np.float64]
 _STAGES = (0.5, 0.15, 0.05, 0.015, 0.0)

@@ -12,8 +12,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.threads import silent_errors
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.threads import silent_errors
 
 Options = Mapping[str, str | int | float]
 OPTIONS: dict[str, str | int | float] = {

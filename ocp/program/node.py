@@ -9,11 +9,11 @@ from collections.abc import Sequence
 
 import casadi as ca
 
-from models import JointMotion, Plant
-from ocp.profiles.joint_profile import JointProfile
-from ocp.simulation.collocation import end_to_end
-from ocp.simulation.errors import with_errors
-from ocp.task.quantities import QUANTITIES
+from quietarm.models import JointMotion, Plant
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.simulation.collocation import end_to_end
+from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.task.quantities import QUANTITIES
 
 Places = list[tuple[int, int]]
 """Rows and columns of a matrix's nonzeros."""

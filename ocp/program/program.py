@@ -9,14 +9,14 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.base.interrupts import keep_interrupts
-from ocp.profiles.joint_profile import JointProfile
-from ocp.program.batch import Derivatives, batch
-from ocp.program.solution import ENERGY, RESIDUAL
-from ocp.robustness.uncertain import UncertainPlant, assumed_plant
-from ocp.simulation.errors import with_errors
-from ocp.simulation.residual import residual_rows
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.program.batch import Derivatives, batch
+from quietarm.ocp.program.solution import ENERGY, RESIDUAL
+from quietarm.ocp.robustness.uncertain import UncertainPlant, assumed_plant
+from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.simulation.residual import residual_rows
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 Array = NDArray[np.float64]
 

@@ -9,13 +9,13 @@ import daqp
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.base.status import SolveStatus
-from ocp.program.batch import Derivatives
-from ocp.program.interior import interior_point
-from ocp.program.program import Program, evaluated
-from ocp.program.solution import RESIDUAL, Ask, Solution
-from ocp.program.sqp import SHARP, WIDTHS, End, Rows, minimise
-from ocp.program.stack import Stack
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.program.batch import Derivatives
+from quietarm.ocp.program.interior import interior_point
+from quietarm.ocp.program.program import Program, evaluated
+from quietarm.ocp.program.solution import RESIDUAL, Ask, Solution
+from quietarm.ocp.program.sqp import SHARP, WIDTHS, End, Rows, minimise
+from quietarm.ocp.program.stack import Stack
 
 Solver = Literal["sqp", "ipopt"]
 SOLVERS: tuple[str, ...] = get_args(Solver)

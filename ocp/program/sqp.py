@@ -26,8 +26,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.base.interrupts import note_interrupts
-from ocp.program.quadratic import Model, Steps, convex, least_steps
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.program.quadratic import Model, Steps, convex, least_steps
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

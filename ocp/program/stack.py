@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.program.batch import Derivatives
-from ocp.program.program import Program
-from ocp.program.quadratic import Model
-from ocp.program.solution import ENERGY, RESIDUAL, Ask
+from quietarm.ocp.program.batch import Derivatives
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.quadratic import Model
+from quietarm.ocp.program.solution import ENERGY, RESIDUAL, Ask
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -8,18 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp.base.checks import not_negative, report_given, whole
-from ocp.base.readonly import ReadOnlyDict
-from ocp.base.threads import one_at_a_time
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.profiles.polynomial import CycloidPolynomial
-from ocp.robustness.population import ErrorPopulation, Figures
-from ocp.robustness.uncertain import on_assumed
-from ocp.simulation.errors import checked_ranges
-from ocp.simulation.objective import Motion
-from ocp.simulation.resimulation import resimulate
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.base.checks import not_negative, report_given, whole
+from quietarm.ocp.base.readonly import ReadOnlyDict
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.robustness.population import ErrorPopulation, Figures
+from quietarm.ocp.robustness.uncertain import on_assumed
+from quietarm.ocp.simulation.errors import checked_ranges
+from quietarm.ocp.simulation.objective import Motion
+from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 TOLERATED = 0.05
 """Share of the plain cycloid's residual up to which a motion counts as insensitive."""

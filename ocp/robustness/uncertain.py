@@ -8,11 +8,11 @@ from functools import lru_cache
 from itertools import product
 from typing import Any
 
-from models import Body, Expression, JointMotion, Plant
-from ocp.base.checks import finite, listed, of_kind
-from ocp.base.readonly import ReadOnlyDict
-from ocp.simulation.errors import checked_ranges, with_errors
-from ocp.task.point_to_point import PointToPoint
+from quietarm.models import Body, Expression, JointMotion, Plant
+from quietarm.ocp.base.checks import finite, listed, of_kind
+from quietarm.ocp.base.readonly import ReadOnlyDict
+from quietarm.ocp.simulation.errors import checked_ranges, with_errors
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 MOST_RANGES = 4
 """Errors at once: each of them doubles the corners at which a residual is held."""

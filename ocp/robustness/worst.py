@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ocp.base.ranges import NotNegative
-from ocp.base.readonly import ReadOnlyDict
-from ocp.profiles.joint_profile import JointProfile
-from ocp.robustness.population import ErrorPopulation
-from ocp.robustness.uncertain import UncertainPlant, on_assumed, uncertain_plant
-from ocp.simulation.piecewise import PiecewiseMotion
-from ocp.simulation.resimulation import resimulated
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.base.ranges import NotNegative
+from quietarm.ocp.base.readonly import ReadOnlyDict
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.robustness.population import ErrorPopulation
+from quietarm.ocp.robustness.uncertain import UncertainPlant, on_assumed, uncertain_plant
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
 """Errors along each side of the grid, by the number of ranges."""

@@ -18,7 +18,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from models import Expression, JointMotion, Plant
+from quietarm.models import Expression, JointMotion, Plant
 
 NODES = 3
 

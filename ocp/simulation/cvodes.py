@@ -15,13 +15,13 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models import Expression, JointMotion, Plant
-from ocp.base.errors import SolverFailedError
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.threads import silent_errors
-from ocp.simulation.errors import with_errors
-from ocp.simulation.residual import fastest_mode
-from ocp.task.point_to_point import PointToPoint
+from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.threads import silent_errors
+from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.simulation.residual import fastest_mode
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 CVODES = {
     "linear_multistep_method": "adams",  # order up to 12: a fifth of the steps of BDF's 5

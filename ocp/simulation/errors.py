@@ -11,12 +11,12 @@ from numbers import Real
 import casadi as ca
 import numpy as np
 
-from models import Expression, JointMotion, Plant
-from models.contract import outputs_of
-from ocp.base.checks import of_kind, positive
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.names import has_no
-from ocp.simulation.collocation import modal_system
+from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.contract import outputs_of
+from quietarm.ocp.base.checks import of_kind, positive
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.names import has_no
+from quietarm.ocp.simulation.collocation import modal_system
 
 FREQUENCY, DAMPING = "frequency", "damping"
 _OF_MODES = (FREQUENCY, DAMPING)

@@ -11,10 +11,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Expression, JointMotion
-from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
-from ocp.task.point_to_point import PointToPoint
-from ocp.task.quantities import QUANTITIES
+from quietarm.models import Expression, JointMotion
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
+from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task.quantities import QUANTITIES
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)

@@ -12,10 +12,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models import Expression, JointMotion, Plant
-from ocp.profiles.free_motion import FreeMotion, joint_after
-from ocp.profiles.joint_profile import JointProfile
-from ocp.task.point_to_point import PointToPoint
+from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _STRANGE = 100.0
 """So many times its default a parameter is suspected, and a coefficient from this on."""

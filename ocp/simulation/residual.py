@@ -10,12 +10,12 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from models import JointMotion, Plant
-from ocp.base.checks import of_kind, whole
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.threads import one_at_a_time
-from ocp.simulation.collocation import NODES, modal_system, step
-from ocp.task.point_to_point import PointToPoint
+from quietarm.models import JointMotion, Plant
+from quietarm.ocp.base.checks import of_kind, whole
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.simulation.collocation import NODES, modal_system, step
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 MOST_SAMPLES = 200_000
 _TIMES_AT_ONCE = 256

@@ -19,14 +19,14 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models import Plant
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.threads import one_at_a_time
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.simulation.buffered import BufferedFunction
-from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
-from ocp.simulation.cvodes import (
+from quietarm.models import Plant
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.simulation.buffered import BufferedFunction
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from quietarm.ocp.simulation.cvodes import (
     Errors,
     Trajectory,
     after_arrival,
@@ -38,12 +38,12 @@ from ocp.simulation.cvodes import (
     residual_of,
     rest_of,
 )
-from ocp.simulation.errors import with_errors
-from ocp.simulation.extremes import extremes
-from ocp.simulation.objective import Motion, WithPeaks, beyond_quadratic, resolved_energy
-from ocp.simulation.piecewise import Law, PiecewiseMotion
-from ocp.simulation.residual import fastest_mode, residual_samples
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.simulation.extremes import extremes
+from quietarm.ocp.simulation.objective import Motion, WithPeaks, beyond_quadratic, resolved_energy
+from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
+from quietarm.ocp.simulation.residual import fastest_mode, residual_samples
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 _STEPS, _SMOOTH_STEPS = 500, 250
 """Least number of steps of the quadrature, in all and where nothing breaks: its nodes are at most a

@@ -11,13 +11,13 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
-from models import Expression, JointMotion, Plant
-from ocp.base.checks import whole
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.threads import one_at_a_time
-from ocp.profiles.joint_profile import JointProfile
-from ocp.profiles.kinds import refuse_other_kinds
-from ocp.simulation.collocation import (
+from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.base.checks import whole
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.kinds import refuse_other_kinds
+from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
     NodeState,
@@ -26,9 +26,9 @@ from ocp.simulation.collocation import (
     mesh,
     step,
 )
-from ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
-from ocp.simulation.residual import fastest_mode, residual_matrix
-from ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
+from quietarm.ocp.simulation.residual import fastest_mode, residual_matrix
+from quietarm.ocp.task.point_to_point import PointToPoint
 
 MOST_STEPS = 20_000
 """Of any simulation by fixed steps: finer ones differ by rounding alone."""

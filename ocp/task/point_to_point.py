@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from models import Plant
-from models.contract import check_along
-from ocp.base.checks import finite, positive
-from ocp.base.interrupts import keep_interrupts
-from ocp.base.threads import one_at_a_time
-from ocp.task.quantities import QUANTITIES
+from quietarm.models import Plant
+from quietarm.models.contract import check_along
+from quietarm.ocp.base.checks import finite, positive
+from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.task.quantities import QUANTITIES
 
 LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}
 """The limits that a task may set, with their units."""

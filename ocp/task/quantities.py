@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from models import Expression, JointMotion, Plant
+from quietarm.models import Expression, JointMotion, Plant
 
 _JERK = 3
 

@@ -4,6 +4,6 @@
 makes a file of the frames. May import `figures` and `display`.
 """
 
-from studies.animation.film import Animation, animate
+from quietarm.studies.animation.film import Animation, animate
 
 __all__ = ["Animation", "animate"]

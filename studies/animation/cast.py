@@ -9,11 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from models import Body, Plant
-from ocp import Floor, Plan, Trajectory
-from ocp.base.checks import positive
-from studies.animation.clock import Clock
-from studies.figures import Line
+from quietarm.models import Body, Plant
+from quietarm.ocp import Floor, Plan, Trajectory
+from quietarm.ocp.base.checks import positive
+from quietarm.studies.animation.clock import Clock
+from quietarm.studies.figures import Line
 
 Array = NDArray[np.float64]
 Bodies = list[Body]

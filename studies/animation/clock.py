@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp.base.checks import positive
-from studies.figures import Line
+from quietarm.ocp.base.checks import positive
+from quietarm.studies.figures import Line
 
 MOST_FRAMES = 500
 """More would take minutes, and make a file that is too large to be shown."""

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ocp.base.checks import whole
-from ocp.base.files import write_whole
-from studies.animation.cast import cast_of
-from studies.animation.clock import Clock, end_of
-from studies.animation.formats import FORMATS, PAUSE, Picture, check_format, format_of
-from studies.animation.stage import Stage
-from studies.figures.motion import Motions, lines_of
+from quietarm.ocp.base.checks import whole
+from quietarm.ocp.base.files import write_whole
+from quietarm.studies.animation.cast import cast_of
+from quietarm.studies.animation.clock import Clock, end_of
+from quietarm.studies.animation.formats import FORMATS, PAUSE, Picture, check_format, format_of
+from quietarm.studies.animation.stage import Stage
+from quietarm.studies.figures.motion import Motions, lines_of
 
 MOST_MOTIONS = 6
 _LEAST_WIDTH, _MOST_WIDTH = 200, 2000

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from ocp import QuietarmError
+from quietarm.ocp import QuietarmError
 
 Picture = NDArray[np.uint8]
 """Red, green and blue of every pixel, shape (height, width, 3)."""

@@ -13,14 +13,14 @@ from matplotlib.figure import SubFigure
 from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
-from models import Body
-from ocp.base.printable import printable
-from studies.animation.cast import Actor, Array
-from studies.animation.clock import Clock
-from studies.animation.formats import Picture
-from studies.display.pictures import as_written
-from studies.display.words import millimetres, move_of, plant_words, title_of
-from studies.figures.axes import TITLE, axes_or_new, new_figure
+from quietarm.models import Body
+from quietarm.ocp.base.printable import printable
+from quietarm.studies.animation.cast import Actor, Array
+from quietarm.studies.animation.clock import Clock
+from quietarm.studies.animation.formats import Picture
+from quietarm.studies.display.pictures import as_written
+from quietarm.studies.display.words import millimetres, move_of, plant_words, title_of
+from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
 
 _COLUMNS = {1: 1, 2: 2, 4: 2}
 """Panels in a row, by how many there are; else 3."""

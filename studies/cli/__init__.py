@@ -3,6 +3,6 @@
 May import every room; no other room imports this one or knows click.
 """
 
-from studies.cli.application import main, quietarm
+from quietarm.studies.cli.application import main, quietarm
 
 __all__ = ["main", "quietarm"]

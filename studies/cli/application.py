@@ -11,15 +11,15 @@ from keyword import iskeyword
 
 import click
 
-from ocp import FileFormatError, QuietarmError
-from ocp.base.files import written
-from ocp.base.interrupts import as_ctrl_c
-from ocp.base.names import unknown
-from ocp.base.printable import printable
-from studies.cli.drawing_words import matplotlib_in_one_line
-from studies.cli.refusals import in_our_words
-from studies.cli.streams import patient_streams
-from studies.early import in_the_way, ready
+from quietarm.ocp import FileFormatError, QuietarmError
+from quietarm.ocp.base.files import written
+from quietarm.ocp.base.interrupts import as_ctrl_c
+from quietarm.ocp.base.names import unknown
+from quietarm.ocp.base.printable import printable
+from quietarm.studies.cli.drawing_words import matplotlib_in_one_line
+from quietarm.studies.cli.refusals import in_our_words
+from quietarm.studies.cli.streams import patient_streams
+from quietarm.studies.early import in_the_way, ready
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
@@ -39,7 +39,7 @@ COMMANDS = {
     "reproduce": ("studies", "Recompute the paper."),
 }
 """The room of each command and what it does. `NAME` is the function `NAME` of
-`studies.cli.commands.ROOM.NAME`, with an underscore behind it where NAME is a word of Python's."""
+`quietarm.studies.cli.commands.ROOM.NAME`, with an underscore behind it where NAME is a word of Python's."""
 
 
 class LazyGroup(click.Group):
@@ -55,13 +55,13 @@ class LazyGroup(click.Group):
         if name is not None:
             own = f"{name}_" if iskeyword(name) else name
             room, _ = COMMANDS[name]
-            command = getattr(import_module(f"studies.cli.commands.{room}.{own}"), own)
+            command = getattr(import_module(f"quietarm.studies.cli.commands.{room}.{own}"), own)
         return name, command, others
 
 
 def _say_version(ctx: click.Context, param: click.Parameter, wanted: bool) -> None:
     if wanted:
-        from models import __version__
+        from quietarm.models import __version__
 
         click.echo(f"quietarm, version {__version__}")
         ctx.exit()

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from ocp import Plan, PointToPoint
-from ocp.plan.answer import ticks_of_move
-from studies.cli.options import bare_angles
-from studies.cli.plants import chosen_plant, uncertain
-from studies.display.saving import File, drawing
-from studies.runs.files import refuse_same_file
+from quietarm.ocp import Plan, PointToPoint
+from quietarm.ocp.plan.answer import ticks_of_move
+from quietarm.studies.cli.options import bare_angles
+from quietarm.studies.cli.plants import chosen_plant, uncertain
+from quietarm.studies.display.saving import File, drawing
+from quietarm.studies.runs.files import refuse_same_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,7 +65,7 @@ def plan_files(
     """The files of a plan that were asked for."""
 
     def picture() -> Figure:
-        from studies.figures import motion_figure
+        from quietarm.studies.figures import motion_figure
 
         return motion_figure(found)
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 import click
 
-from ocp.base.printable import printable
+from quietarm.ocp.base.printable import printable
 
 
 class _OneLineEach(logging.Handler):

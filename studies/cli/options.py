@@ -10,14 +10,14 @@ from typing import Any, TypeVar
 
 import click
 
-from models import Plant, load_plant_file
-from ocp.base.files import check_folder, check_writable
-from ocp.base.names import unknown
-from ocp.profiles.shapers import SHAPERS
-from ocp.program.solving import SOLVERS
-from ocp.task.quantities import QUANTITIES, Quantity
-from studies.cli.plants import parse_error, parse_plant, parse_setting
-from studies.cli.quantities import (
+from quietarm.models import Plant, load_plant_file
+from quietarm.ocp.base.files import check_folder, check_writable
+from quietarm.ocp.base.names import unknown
+from quietarm.ocp.profiles.shapers import SHAPERS
+from quietarm.ocp.program.solving import SOLVERS
+from quietarm.ocp.task.quantities import QUANTITIES, Quantity
+from quietarm.studies.cli.plants import parse_error, parse_plant, parse_setting
+from quietarm.studies.cli.quantities import (
     is_number,
     literal,
     parse_angle,
@@ -30,9 +30,9 @@ from studies.cli.quantities import (
     parse_weights,
     parse_whole,
 )
-from studies.display.pictures import check_figure
-from studies.display.saving import STDOUT
-from studies.registry.profiles import FAMILIES, POLYNOMIAL, PROFILES
+from quietarm.studies.display.pictures import check_figure
+from quietarm.studies.display.saving import STDOUT
+from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL, PROFILES
 
 _BARE = "quietarm.bare_angles"
 F = TypeVar("F", bound=Callable[..., Any])

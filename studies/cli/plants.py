@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from typing import Any
 
-from models import Plant, known_plants
-from ocp import UncertainPlant
-from ocp.base.names import has_no, unknown
-from studies.cli.quantities import parse_share
+from quietarm.models import Plant, known_plants
+from quietarm.ocp import UncertainPlant
+from quietarm.ocp.base.names import has_no, unknown
+from quietarm.studies.cli.quantities import parse_share
 
 
 def parse_plant(name: str) -> type[Plant]:

@@ -6,7 +6,7 @@ import re
 
 import click
 
-from ocp.base.names import nearest
+from quietarm.ocp.base.names import nearest
 
 _OF_CLICK = (
     (r"Got unexpected extra arguments? \((.*)\)",

@@ -6,12 +6,12 @@ import json
 import reprlib
 from collections.abc import Sequence
 
-from ocp import Front
-from ocp.answers.encoding import plain
-from ocp.base.checks import listed, of_kind
-from ocp.front.robust import EXCESS
-from studies.paper.tasks import task_difference
-from studies.registry.methods import method_of
+from quietarm.ocp import Front
+from quietarm.ocp.answers.encoding import plain
+from quietarm.ocp.base.checks import listed, of_kind
+from quietarm.ocp.front.robust import EXCESS
+from quietarm.studies.paper.tasks import task_difference
+from quietarm.studies.registry.methods import method_of
 
 
 def checked_names(names: Sequence[str], fronts: int) -> list[str]:

@@ -11,15 +11,15 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.ensemble import Spread
-from ocp import Front, PointToPoint
-from ocp.base.checks import listed, not_negative, of_kind, positive, whole
-from ocp.front.points import LEVELS
-from ocp.front.robust import on_same_samples
-from ocp.robustness.uncertain import on_assumed
-from studies.comparison.groups import check_fronts, checked_names, grouped
-from studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
-from studies.registry.methods import Method, method_of
+from quietarm.metaheuristics.ensemble import Spread
+from quietarm.ocp import Front, PointToPoint
+from quietarm.ocp.base.checks import listed, not_negative, of_kind, positive, whole
+from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.front.robust import on_same_samples
+from quietarm.ocp.robustness.uncertain import on_assumed
+from quietarm.studies.comparison.groups import check_fronts, checked_names, grouped
+from quietarm.studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
+from quietarm.studies.registry.methods import Method, method_of
 
 FILL, MOST_FILL = 1000, 100_000
 """About how many points a filled front has, and at most."""

@@ -9,8 +9,8 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.objective.claims import objective_of
-from ocp import Front
+from quietarm.metaheuristics.objective.claims import objective_of
+from quietarm.ocp import Front
 
 Array = NDArray[np.float64]
 _KEPT = 1e-6

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import isfinite
 
-from metaheuristics.ensemble import Spread
-from studies.comparison.measures import Comparison, Group
-from studies.display.tables import Cell, Column, Table
-from studies.display.words import millimetres
+from quietarm.metaheuristics.ensemble import Spread
+from quietarm.studies.comparison.measures import Comparison, Group
+from quietarm.studies.display.tables import Cell, Column, Table
+from quietarm.studies.display.words import millimetres
 
 _ENERGY, _SHARE, _PERCENT = "{:.5g}".format, "{:.4f}".format, "{:.2f}".format
 _MISS = "{:.2g}".format

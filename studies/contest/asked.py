@@ -7,19 +7,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Self
 
-from metaheuristics import PRESETS, NamedProblem
-from metaheuristics.algorithms.settings import Value, with_defaults
-from metaheuristics.budget.run import check_method, number_of_evaluations, parts_of
-from metaheuristics.ensemble import seeds_of
-from metaheuristics.objective.claims import check_figures
-from metaheuristics.runs.settings import number_of_individuals, search_versions
-from metaheuristics.sharing.workers import HERE, Workers
-from studies.contest.folder import EXACT, Contents
-from studies.contest.imported import Imported
-from studies.contest.names import POPULATION, name_of, sets_population
-from studies.contest.problems import Yardstick
-from studies.contest.runs import REMEDY, Key, Run, check_end
-from studies.display.words import counted
+from quietarm.metaheuristics import PRESETS, NamedProblem
+from quietarm.metaheuristics.algorithms.settings import Value, with_defaults
+from quietarm.metaheuristics.budget.run import check_method, number_of_evaluations, parts_of
+from quietarm.metaheuristics.ensemble import seeds_of
+from quietarm.metaheuristics.objective.claims import check_figures
+from quietarm.metaheuristics.runs.settings import number_of_individuals, search_versions
+from quietarm.metaheuristics.sharing.workers import HERE, Workers
+from quietarm.studies.contest.folder import EXACT, Contents
+from quietarm.studies.contest.imported import Imported
+from quietarm.studies.contest.names import POPULATION, name_of, sets_population
+from quietarm.studies.contest.problems import Yardstick
+from quietarm.studies.contest.runs import REMEDY, Key, Run, check_end
+from quietarm.studies.display.words import counted
 
 _CODE = ("quietarm", "pymoo")
 """What decides how a search goes; other libraries change its rounding."""

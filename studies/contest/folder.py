@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
-from ocp import FileFormatError
-from ocp.base.files import check_inside
-from studies.contest.imported import Imported, Source
-from studies.contest.landscape import Landscape
-from studies.contest.names import folder_of
-from studies.contest.problems import Yardstick
-from studies.contest.runs import Key, Run
+from quietarm.ocp import FileFormatError
+from quietarm.ocp.base.files import check_inside
+from quietarm.studies.contest.imported import Imported, Source
+from quietarm.studies.contest.landscape import Landscape
+from quietarm.studies.contest.names import folder_of
+from quietarm.studies.contest.problems import Yardstick
+from quietarm.studies.contest.runs import Key, Run
 
 EXACT = "exact"
 _RUNS, _IMPORTS, _LANDSCAPES = "runs", "imports", "landscape"

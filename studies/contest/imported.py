@@ -8,18 +8,18 @@ from hashlib import sha256
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-from metaheuristics import NamedProblem
-from metaheuristics.budget.record import Scale
-from ocp import Front, SolverFailedError
-from ocp.answers.documents import read_bytes
-from ocp.answers.provenance import Setting
-from ocp.answers.saved import Saved
-from ocp.base.printable import printable
-from ocp.base.ranges import CountFromOne
-from studies.contest.names import name_given
-from studies.contest.problems import Yardstick
-from studies.runs.foreign import read_found
-from studies.runs.importing import import_front
+from quietarm.metaheuristics import NamedProblem
+from quietarm.metaheuristics.budget.record import Scale
+from quietarm.ocp import Front, SolverFailedError
+from quietarm.ocp.answers.documents import read_bytes
+from quietarm.ocp.answers.provenance import Setting
+from quietarm.ocp.answers.saved import Saved
+from quietarm.ocp.base.printable import printable
+from quietarm.ocp.base.ranges import CountFromOne
+from quietarm.studies.contest.names import name_given
+from quietarm.studies.contest.problems import Yardstick
+from quietarm.studies.runs.foreign import read_found
+from quietarm.studies.runs.importing import import_front
 
 
 class Source(NamedTuple):

@@ -8,12 +8,12 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics import NamedProblem, PopulationObjective
-from ocp import QuietarmError, plan_move
-from ocp.answers.provenance import SolveSettings
-from ocp.answers.saved import Saved
-from ocp.base.ranges import CountFromOne, Positive, Share
-from ocp.front.sweep import Sweep
+from quietarm.metaheuristics import NamedProblem, PopulationObjective
+from quietarm.ocp import QuietarmError, plan_move
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.answers.saved import Saved
+from quietarm.ocp.base.ranges import CountFromOne, Positive, Share
+from quietarm.ocp.front.sweep import Sweep
 
 LEVEL = 1e-3
 """Residual [m] within which the energy is minimised."""

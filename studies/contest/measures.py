@@ -11,15 +11,15 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics.budget.record import CORNER
-from metaheuristics.ensemble import Spread
-from ocp.front.points import LEVELS
-from studies.comparison.staircase import objectives, within
-from studies.contest.folder import Contents
-from studies.contest.imported import Imported
-from studies.contest.landscape import Landscape
-from studies.contest.problems import Yardstick
-from studies.contest.runs import Run
+from quietarm.metaheuristics.budget.record import CORNER
+from quietarm.metaheuristics.ensemble import Spread
+from quietarm.ocp.front.points import LEVELS
+from quietarm.studies.comparison.staircase import objectives, within
+from quietarm.studies.contest.folder import Contents
+from quietarm.studies.contest.imported import Imported
+from quietarm.studies.contest.landscape import Landscape
+from quietarm.studies.contest.problems import Yardstick
+from quietarm.studies.contest.runs import Run
 
 Array = NDArray[np.float64]
 _Kind = TypeVar("_Kind", Run, Imported)

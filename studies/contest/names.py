@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from metaheuristics.algorithms.settings import Value
-from metaheuristics.budget.run import MULTISTART, Help, parts_of
-from studies.registry.methods import method_of
+from quietarm.metaheuristics.algorithms.settings import Value
+from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
+from quietarm.studies.registry.methods import method_of
 
 POPULATION = "population"
 """What may be set beside a method's own settings."""

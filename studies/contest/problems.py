@@ -10,13 +10,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from metaheuristics import PROBLEMS, NamedProblem, problem_of
-from metaheuristics.budget.record import CORNER, Scale
-from ocp import CycloidPolynomial, Front
-from ocp.answers.saved import Saved
-from ocp.base.ranges import Positive
-from studies.comparison.staircase import filled, objectives
-from studies.paper.printed import CONDITIONS
+from quietarm.metaheuristics import PROBLEMS, NamedProblem, problem_of
+from quietarm.metaheuristics.budget.record import CORNER, Scale
+from quietarm.ocp import CycloidPolynomial, Front
+from quietarm.ocp.answers.saved import Saved
+from quietarm.ocp.base.ranges import Positive
+from quietarm.studies.comparison.staircase import filled, objectives
+from quietarm.studies.paper.printed import CONDITIONS
 
 _FILL = 10_000
 """Points of an exact front with the motions between them: its hypervolume is right to 1e-4."""

@@ -7,13 +7,13 @@ from itertools import pairwise
 from pathlib import Path
 from typing import ClassVar, NamedTuple, Self
 
-from metaheuristics.budget.record import Mark, Scale, Visits
-from metaheuristics.budget.run import BudgetRun
-from ocp import Front
-from ocp.answers.saved import Saved
-from ocp.base.ranges import CountFromOne
-from studies.comparison.staircase import objectives
-from studies.contest.problems import Yardstick
+from quietarm.metaheuristics.budget.record import Mark, Scale, Visits
+from quietarm.metaheuristics.budget.run import BudgetRun
+from quietarm.ocp import Front
+from quietarm.ocp.answers.saved import Saved
+from quietarm.ocp.base.ranges import CountFromOne
+from quietarm.studies.comparison.staircase import objectives
+from quietarm.studies.contest.problems import Yardstick
 
 REMEDY = "remove it to have it made again"
 """What helps where a file states what its run did not find."""

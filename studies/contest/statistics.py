@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.contest.measures import Arena, methods_in
+from quietarm.studies.contest.measures import Arena, methods_in
 
 Array = NDArray[np.float64]
 LEAST_RUNS = 5

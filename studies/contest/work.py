@@ -6,19 +6,19 @@ from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from metaheuristics import NamedProblem
-from metaheuristics.budget.run import number_of_evaluations, search_within
-from metaheuristics.sharing.pieces import Done, Listener, Piece, Say
-from metaheuristics.sharing.running import run_pieces
-from metaheuristics.sharing.workers import Workers
-from ocp import QuietarmError
-from ocp.base.interrupts import note_interrupts
-from studies.contest.asked import Contest, check_alike
-from studies.contest.folder import Contents
-from studies.contest.imported import Imported, imported_run
-from studies.contest.landscape import Landscape, landscape_of
-from studies.contest.problems import Yardstick
-from studies.contest.runs import Key, Run
+from quietarm.metaheuristics import NamedProblem
+from quietarm.metaheuristics.budget.run import number_of_evaluations, search_within
+from quietarm.metaheuristics.sharing.pieces import Done, Listener, Piece, Say
+from quietarm.metaheuristics.sharing.running import run_pieces
+from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.ocp import QuietarmError
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.studies.contest.asked import Contest, check_alike
+from quietarm.studies.contest.folder import Contents
+from quietarm.studies.contest.imported import Imported, imported_run
+from quietarm.studies.contest.landscape import Landscape, landscape_of
+from quietarm.studies.contest.problems import Yardstick
+from quietarm.studies.contest.runs import Key, Run
 
 
 def set_up(

@@ -9,8 +9,8 @@ from html import escape
 
 from matplotlib.figure import Figure
 
-from studies.display.pictures import as_written
-from studies.display.tables import Table
+from quietarm.studies.display.pictures import as_written
+from quietarm.studies.display.tables import Table
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1b1f24; --paper: #ffffff; --soft: #57606a;

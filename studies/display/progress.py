@@ -20,7 +20,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from studies.display.words import print_lines
+from quietarm.studies.display.words import print_lines
 
 Display = TypeVar("Display")
 

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from ocp import QuietarmError
-from ocp.base.files import unwritable
-from ocp.base.interrupts import note_interrupts
-from studies.display.progress import working
-from studies.display.words import print_lines
+from quietarm.ocp import QuietarmError
+from quietarm.ocp.base.files import unwritable
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.studies.display.progress import working
+from quietarm.studies.display.words import print_lines
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -115,7 +115,7 @@ def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
     """A function that writes a picture, and imports the drawing library only then."""
 
     def write(path: Path) -> None:
-        from studies.display.pictures import save_figure
+        from quietarm.studies.display.pictures import save_figure
 
         try:
             figure = draw()

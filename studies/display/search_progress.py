@@ -10,10 +10,10 @@ from math import isnan
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
-from metaheuristics import SearchProgress
-from ocp import Front
-from studies.display.progress import PLAIN_SECONDS, shown, ticking
-from studies.display.words import millimetres, print_lines
+from quietarm.metaheuristics import SearchProgress
+from quietarm.ocp import Front
+from quietarm.studies.display.progress import PLAIN_SECONDS, shown, ticking
+from quietarm.studies.display.words import millimetres, print_lines
 
 _WIDE = 120
 """A terminal of this many columns shows every figure with its name."""

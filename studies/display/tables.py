@@ -13,8 +13,8 @@ from rich.console import Console
 from rich.table import Table as ScreenTable
 from rich.text import Text
 
-from ocp.base.files import write_whole
-from studies.display.words import print_lines
+from quietarm.ocp.base.files import write_whole
+from quietarm.studies.display.words import print_lines
 
 Cell = str | int | float | None
 _WIDEST = 10_000

@@ -7,10 +7,10 @@ from math import degrees
 
 from rich.console import Console
 
-from models import Plant
-from ocp import PointToPoint, UncertainPlant
-from ocp.base.printable import printable
-from ocp.task.quantities import QUANTITIES
+from quietarm.models import Plant
+from quietarm.ocp import PointToPoint, UncertainPlant
+from quietarm.ocp.base.printable import printable
+from quietarm.ocp.task.quantities import QUANTITIES
 
 
 def print_lines(console: Console, *lines: str) -> None:

@@ -6,21 +6,21 @@ none opens a window: save one with ``ax.figure.savefig("name.png")``. May import
 `paper`, `registry` and `display`.
 """
 
-from studies.comparison.measures import Comparison, compare_fronts
-from studies.figures.comparison import (
+from quietarm.studies.comparison.measures import Comparison, compare_fronts
+from quietarm.studies.figures.comparison import (
     comparison_figure,
     draw_gaps,
     draw_still,
     draw_whole,
 )
-from studies.figures.fronts import (
+from quietarm.studies.figures.fronts import (
     draw_fronts,
     draw_hypervolume,
     draw_seed_energies,
     front_figure,
 )
-from studies.figures.looks import BLUE, COLOURS, GREEN, GREY, RED, Look, look
-from studies.figures.motion import (
+from quietarm.studies.figures.looks import BLUE, COLOURS, GREEN, GREY, RED, Look, look
+from quietarm.studies.figures.motion import (
     PAPER_PANELS,
     QUANTITIES_DRAWN,
     Line,
@@ -28,8 +28,8 @@ from studies.figures.motion import (
     floor_figure,
     motion_figure,
 )
-from studies.figures.robustness import draw_robustness, robustness_figure
-from studies.figures.sweep import (
+from quietarm.studies.figures.robustness import draw_robustness, robustness_figure
+from quietarm.studies.figures.sweep import (
     draw_polish,
     draw_savings,
     draw_sweep,

@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
-from ocp.base.checks import of_kind
+from quietarm.ocp.base.checks import of_kind
 
 STAIRS = "steps-post"
 """Line style of a front: between two points the stiller one is the best known motion."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from ocp import Front, Polish, Robustness
-from ocp.base.checks import of_kind
-from ocp.robustness.uncertain import on_assumed
-from studies.comparison.measures import Comparison
+from quietarm.ocp import Front, Polish, Robustness
+from quietarm.ocp.base.checks import of_kind
+from quietarm.ocp.robustness.uncertain import on_assumed
+from quietarm.studies.comparison.measures import Comparison
 
 _OTHER_TASK = "give what was found for one move of one plant"
 _A_FRONT = "a Front, as of epsilon_front, search or Front.load"

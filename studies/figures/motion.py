@@ -11,14 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ocp import Floor, Plan, Trajectory, evaluate_coefficients
-from ocp.answers.motion_answer import MotionAnswer
-from ocp.base.checks import of_kind
-from ocp.robustness.uncertain import assumed_plant
-from ocp.task.quantities import QUANTITIES
-from studies.display.words import error_words, title_of
-from studies.figures.axes import TITLE, axes_or_new, legend_of, new_figure
-from studies.figures.looks import BLUE, GREY, RED, Dash, look
+from quietarm.ocp import Floor, Plan, Trajectory, evaluate_coefficients
+from quietarm.ocp.answers.motion_answer import MotionAnswer
+from quietarm.ocp.base.checks import of_kind
+from quietarm.ocp.robustness.uncertain import assumed_plant
+from quietarm.ocp.task.quantities import QUANTITIES
+from quietarm.studies.display.words import error_words, title_of
+from quietarm.studies.figures.axes import TITLE, axes_or_new, legend_of, new_figure
+from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
 
 _SHOWN, _ABOVE = 0.99, 1.15
 """A panel with jolts ends at this multiple of the 99 % quantile."""

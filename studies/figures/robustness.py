@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ocp import Robustness, Sweep
-from ocp.base.names import has_no
-from ocp.robustness.measures import TOLERATED
-from studies.figures.axes import axes_or_new, legend_of, side_by_side
-from studies.figures.given import robustness_given
-from studies.figures.looks import look
+from quietarm.ocp import Robustness, Sweep
+from quietarm.ocp.base.names import has_no
+from quietarm.ocp.robustness.measures import TOLERATED
+from quietarm.studies.figures.axes import axes_or_new, legend_of, side_by_side
+from quietarm.studies.figures.given import robustness_given
+from quietarm.studies.figures.looks import look
 
 
 def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None = None) -> Axes:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from metaheuristics import PAPER_BOX
-from ocp import PointToPoint
-from ocp.base.checks import positive
+from quietarm.metaheuristics import PAPER_BOX
+from quietarm.ocp import PointToPoint
+from quietarm.ocp.base.checks import positive
 
 
 @dataclass(frozen=True)

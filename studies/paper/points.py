@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from metaheuristics.ensemble import SEARCH_RESIDUAL
-from ocp import Plan, PointToPoint, evaluate_coefficients
-from studies.paper.case import Case
-from studies.paper.printed import COEFFICIENTS, MENDED, ROWS
-from studies.paper.tasks import condition_of
+from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
+from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.printed import COEFFICIENTS, MENDED, ROWS
+from quietarm.studies.paper.tasks import condition_of
 
 
 @dataclass(frozen=True)

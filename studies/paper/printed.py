@@ -8,10 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
-from models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
-from ocp import PointToPoint
-from studies.paper.case import Case
-from studies.registry.methods import NSGA2, VEPSO
+from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
+from quietarm.ocp import PointToPoint
+from quietarm.studies.paper.case import Case
+from quietarm.studies.registry.methods import NSGA2, VEPSO
 
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
 
@@ -57,7 +57,7 @@ EARLIER: dict[str, tuple[int, str]] = {
     ARM.name: (24, "Gaussians"),
 }
 """The earlier study of each plant: its reference, and what it moves the joint with, by a name of
-`studies.registry.profiles.OTHERS`; sections 1 and 3."""
+`quietarm.studies.registry.profiles.OTHERS`; sections 1 and 3."""
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import isclose
 
-from ocp import PointToPoint, UncertainPlant
-from ocp.task.quantities import QUANTITIES
-from studies.paper.case import Case
-from studies.paper.printed import CONDITIONS
+from quietarm.ocp import PointToPoint, UncertainPlant
+from quietarm.ocp.task.quantities import QUANTITIES
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.printed import CONDITIONS
 
 _SAME = 1e-9
 """Relative difference below which two numbers of a task are one: 30deg and pi/6."""

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
 
-from metaheuristics import PRESETS
-from ocp import Front, epsilon_front, weighted_front
-from ocp.front.points import LEVELS
+from quietarm.metaheuristics import PRESETS
+from quietarm.ocp import Front, epsilon_front, weighted_front
+from quietarm.ocp.front.points import LEVELS
 
 _POLISHED = ", polished"
-"""What `ocp.polish_front` adds to the name of a method."""
+"""What `quietarm.ocp.polish_front` adds to the name of a method."""
 
 
 class Kind(Enum):
@@ -43,7 +43,7 @@ class Method:
         Whether the gradient improved its front afterwards.
     sweep : callable
         For the gradient: finds the front of a task, a profile and settings. A metaheuristic is
-        known to `metaheuristics.search` by its name.
+        known to `quietarm.metaheuristics.search` by its name.
     """
 
     name: str

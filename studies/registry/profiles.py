@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ocp import (
+from quietarm.ocp import (
     CycloidGaussians,
     CycloidNetwork,
     CycloidPolynomial,
@@ -13,8 +13,8 @@ from ocp import (
     PointToPoint,
     shaped_cycloid,
 )
-from ocp.profiles.cycloid import Cycloid
-from ocp.profiles.shapers import SHAPERS
+from quietarm.ocp.profiles.cycloid import Cycloid
+from quietarm.ocp.profiles.shapers import SHAPERS
 
 POLYNOMIAL = "polynomial"
 FAMILIES: Mapping[str, type[Cycloid]] = {

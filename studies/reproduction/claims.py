@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 
-from ocp import Plan
-from studies.paper.case import Case
-from studies.paper.printed import Row
-from studies.reproduction.pieces import BEYOND_SIX, STUDIED
-from studies.reproduction.recompute import Reproduction
+from quietarm.ocp import Plan
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.printed import Row
+from quietarm.studies.reproduction.pieces import BEYOND_SIX, STUDIED
+from quietarm.studies.reproduction.recompute import Reproduction
 
 _AT_REST = 1e-7
 """A residual below this [m] counts as cancelled."""

@@ -7,13 +7,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, NullLocator
 
-from studies.display.words import move_of
-from studies.figures.axes import axes_or_new, new_figure
-from studies.figures.looks import BLUE, GREEN, PINK, RED
-from studies.paper.printed import CONDITIONS
-from studies.registry.methods import NSGA2, VEPSO
-from studies.reproduction.floor_table import FREE, IN_BOX, PAPER, SERIES, Multiple, multiples
-from studies.reproduction.recompute import Reproduction
+from quietarm.studies.display.words import move_of
+from quietarm.studies.figures.axes import axes_or_new, new_figure
+from quietarm.studies.figures.looks import BLUE, GREEN, PINK, RED
+from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.registry.methods import NSGA2, VEPSO
+from quietarm.studies.reproduction.floor_table import FREE, IN_BOX, PAPER, SERIES, Multiple, multiples
+from quietarm.studies.reproduction.recompute import Reproduction
 
 _COLOURS = {
     PAPER: "black", VEPSO.label: GREEN, NSGA2.label: PINK, IN_BOX: BLUE, FREE: RED,

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from metaheuristics.ensemble import Spread
-from ocp import Floor
-from studies.display.tables import Cell, Column, Table
-from studies.paper.case import Case
-from studies.paper.printed import CONDITIONS
-from studies.reproduction.pieces import SEARCHES, TERMS
-from studies.reproduction.recompute import Reproduction
+from quietarm.metaheuristics.ensemble import Spread
+from quietarm.ocp import Floor
+from quietarm.studies.display.tables import Cell, Column, Table
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.reproduction.pieces import SEARCHES, TERMS
+from quietarm.studies.reproduction.recompute import Reproduction
 
 PAPER, IN_BOX, FREE = "paper", "gradient, in the box", "gradient, no box"
 SERIES = (PAPER, *(method.label for method in SEARCHES), IN_BOX, FREE)

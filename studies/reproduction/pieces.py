@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import partial
 from itertools import product
 
-from metaheuristics.ensemble import number_of_runs, one_seed
-from metaheuristics.sharing.pieces import Done, Piece, Say, to_the_end
-from ocp import (
+from quietarm.metaheuristics.ensemble import number_of_runs, one_seed
+from quietarm.metaheuristics.sharing.pieces import Done, Piece, Say, to_the_end
+from quietarm.ocp import (
     CycloidPolynomial,
     Floor,
     Plan,
@@ -18,10 +18,10 @@ from ocp import (
     energy_floor,
     plan_move,
 )
-from ocp.robustness.measures import tolerated_residual
-from ocp.simulation.errors import FREQUENCY
-from studies.paper.case import Case
-from studies.paper.printed import (
+from quietarm.ocp.robustness.measures import tolerated_residual
+from quietarm.ocp.simulation.errors import FREQUENCY
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.printed import (
     ARM_HALF,
     CONDITIONS,
     DUAL_LINK_HALF,
@@ -29,9 +29,9 @@ from studies.paper.printed import (
     ROWS,
     SINGLE_LINK_SIXTH,
 )
-from studies.registry.methods import Method
-from studies.registry.profiles import OTHERS
-from studies.reproduction.side_by_side.results import (
+from quietarm.studies.registry.methods import Method
+from quietarm.studies.registry.profiles import OTHERS
+from quietarm.studies.reproduction.side_by_side.results import (
     COMPARED_TERMS,
     FREQUENCY_ERROR,
     ROBUST,

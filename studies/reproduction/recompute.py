@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from metaheuristics.ensemble import Spread, energies_at
-from metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener
-from metaheuristics.sharing.running import run_pieces
-from metaheuristics.sharing.workers import HERE, Workers
-from ocp import Floor, Front, Plan, evaluate_coefficients
-from ocp.base.interrupts import note_interrupts
-from studies.paper.case import Case
-from studies.paper.points import residual_level
-from studies.paper.printed import (
+from quietarm.metaheuristics.ensemble import Spread, energies_at
+from quietarm.metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener
+from quietarm.metaheuristics.sharing.running import run_pieces
+from quietarm.metaheuristics.sharing.workers import HERE, Workers
+from quietarm.ocp import Floor, Front, Plan, evaluate_coefficients
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.points import residual_level
+from quietarm.studies.paper.printed import (
     COEFFICIENTS,
     CONDITIONS,
     EARLIER,
@@ -22,8 +22,8 @@ from studies.paper.printed import (
     ROWS,
     Row,
 )
-from studies.registry.methods import Method
-from studies.reproduction.pieces import (
+from quietarm.studies.registry.methods import Method
+from quietarm.studies.reproduction.pieces import (
     CASES,
     PAPER_SOLVES,
     SEARCHES,
@@ -32,7 +32,7 @@ from studies.reproduction.pieces import (
     pieces_of_paper,
     searches_of,
 )
-from studies.reproduction.side_by_side.results import System
+from quietarm.studies.reproduction.side_by_side.results import System
 
 
 @dataclass(frozen=True)

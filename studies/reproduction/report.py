@@ -13,22 +13,22 @@ from rich.console import Console
 from rich.padding import Padding
 from rich.text import Text
 
-from ocp import Plan
-from ocp.base.files import write_whole
-from studies.display.saving import File, drawing, inside
-from studies.display.tables import Cell, Column, Table, print_table
-from studies.display.words import title_of
-from studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
-from studies.figures.looks import ORANGE
-from studies.paper.case import Case
-from studies.paper.printed import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH
-from studies.reproduction.claims import Claim
-from studies.reproduction.floor_dots import floor_dots
-from studies.reproduction.floor_table import LEGEND as FLOOR_LEGEND
-from studies.reproduction.floor_table import finding, floor_table, floor_tables
-from studies.reproduction.recompute import Reproduction, RowResult
-from studies.reproduction.side_by_side.picture import systems_figure
-from studies.reproduction.side_by_side.table import (
+from quietarm.ocp import Plan
+from quietarm.ocp.base.files import write_whole
+from quietarm.studies.display.saving import File, drawing, inside
+from quietarm.studies.display.tables import Cell, Column, Table, print_table
+from quietarm.studies.display.words import title_of
+from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
+from quietarm.studies.figures.looks import ORANGE
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.printed import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH
+from quietarm.studies.reproduction.claims import Claim
+from quietarm.studies.reproduction.floor_dots import floor_dots
+from quietarm.studies.reproduction.floor_table import LEGEND as FLOOR_LEGEND
+from quietarm.studies.reproduction.floor_table import finding, floor_table, floor_tables
+from quietarm.studies.reproduction.recompute import Reproduction, RowResult
+from quietarm.studies.reproduction.side_by_side.picture import systems_figure
+from quietarm.studies.reproduction.side_by_side.table import (
     all_systems,
     print_systems,
     systems_in_markdown,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from metaheuristics.ensemble import SEARCH_RESIDUAL
-from metaheuristics.sharing.pieces import Done, Piece
-from ocp import Floor, Front, Plan
-from studies.display.tables import Cell, Column, Table
-from studies.reproduction.side_by_side.results import System
+from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
+from quietarm.metaheuristics.sharing.pieces import Done, Piece
+from quietarm.ocp import Floor, Front, Plan
+from quietarm.studies.display.tables import Cell, Column, Table
+from quietarm.studies.reproduction.side_by_side.results import System
 
 FILE = "unfinished.csv"
 

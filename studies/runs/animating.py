@@ -7,14 +7,14 @@ from pathlib import Path
 
 from rich.console import Console
 
-from studies.animation import animate
-from studies.animation.clock import Clock, end_of
-from studies.animation.formats import check_format, format_of
-from studies.display.progress import count
-from studies.display.saving import finish
-from studies.display.words import print_lines
-from studies.figures import Line
-from studies.runs.loading import load_plans
+from quietarm.studies.animation import animate
+from quietarm.studies.animation.clock import Clock, end_of
+from quietarm.studies.animation.formats import check_format, format_of
+from quietarm.studies.display.progress import count
+from quietarm.studies.display.saving import finish
+from quietarm.studies.display.words import print_lines
+from quietarm.studies.figures import Line
+from quietarm.studies.runs.loading import load_plans
 
 
 def run_animate(
@@ -36,7 +36,7 @@ def run_animate(
     output : Path
         The file; its ending says the format.
     speed, deflection_scale, frames_per_second, width
-        As for `studies.animation.animate`.
+        As for `quietarm.studies.animation.animate`.
     quiet : bool
         Show no progress.
 

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ocp import FileFormatError
-from ocp.answers.documents import read_bytes
-from ocp.base.files import MOST_BYTES
-from ocp.base.printable import printable
-from studies.display.words import counted
+from quietarm.ocp import FileFormatError
+from quietarm.ocp.answers.documents import read_bytes
+from quietarm.ocp.base.files import MOST_BYTES
+from quietarm.ocp.base.printable import printable
+from quietarm.studies.display.words import counted
 
 Array = NDArray[np.float64]
 

@@ -10,19 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from metaheuristics import MoveFunction
-from metaheuristics.objective.claims import FIGURES, agrees
-from metaheuristics.objective.population import UNUSABLE
-from ocp import Front, JointProfile, PointToPoint, SolverFailedError
-from ocp.answers.provenance import REST, Setting
-from ocp.base.checks import whole
-from ocp.front.evaluation import refuse_beyond_box
-from studies.display.progress import working
-from studies.display.saving import drawing, finish
-from studies.display.words import print_lines
-from studies.runs.files import FrontFiles
-from studies.runs.foreign import MOST_MOTIONS, Found
-from studies.runs.reports.search import print_fronts
+from quietarm.metaheuristics import MoveFunction
+from quietarm.metaheuristics.objective.claims import FIGURES, agrees
+from quietarm.metaheuristics.objective.population import UNUSABLE
+from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError
+from quietarm.ocp.answers.provenance import REST, Setting
+from quietarm.ocp.base.checks import whole
+from quietarm.ocp.front.evaluation import refuse_beyond_box
+from quietarm.studies.display.progress import working
+from quietarm.studies.display.saving import drawing, finish
+from quietarm.studies.display.words import print_lines
+from quietarm.studies.runs.files import FrontFiles
+from quietarm.studies.runs.foreign import MOST_MOTIONS, Found
+from quietarm.studies.runs.reports.search import print_fronts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -235,7 +235,7 @@ def run_import(
             raise ValueError(f"{path}: {error}") from None
 
     def picture() -> Figure:
-        from studies.figures import front_figure
+        from quietarm.studies.figures import front_figure
 
         return front_figure([front])
 

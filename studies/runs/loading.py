@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from metaheuristics.objective.claims import check_figures, check_plan
-from ocp import Front, Plan
-from ocp.base.printable import printable
+from quietarm.metaheuristics.objective.claims import check_figures, check_plan
+from quietarm.ocp import Front, Plan
+from quietarm.ocp.base.printable import printable
 
 
 def load_front(path: Path) -> Front:

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.console import Console
 
-from ocp import Front, Gain, polish_front
-from ocp.base.checks import whole
-from studies.display.progress import count, working
-from studies.display.saving import drawing, finish, interruption
-from studies.display.tables import Column, Table
-from studies.display.words import counted, millimetres, print_lines
-from studies.runs.files import FrontFiles
-from studies.runs.loading import load_front
-from studies.runs.reports.sweep import failure_lines
+from quietarm.ocp import Front, Gain, polish_front
+from quietarm.ocp.base.checks import whole
+from quietarm.studies.display.progress import count, working
+from quietarm.studies.display.saving import drawing, finish, interruption
+from quietarm.studies.display.tables import Column, Table
+from quietarm.studies.display.words import counted, millimetres, print_lines
+from quietarm.studies.runs.files import FrontFiles
+from quietarm.studies.runs.loading import load_front
+from quietarm.studies.runs.reports.sweep import failure_lines
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,7 +62,7 @@ def run_polish(path: Path, points: int | None, files: FrontFiles, quiet: bool) -
         raise KeyboardInterrupt
 
     def picture() -> Figure:
-        from studies.figures import polish_figure
+        from quietarm.studies.figures import polish_figure
 
         return polish_figure(front, polish)
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
-from ocp import Front
-from studies.display.progress import progress
-from studies.display.saving import Together, finish, inside, interruption
-from studies.display.words import error_words, print_lines
+from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
+from quietarm.ocp import Front
+from quietarm.studies.display.progress import progress
+from quietarm.studies.display.saving import Together, finish, inside, interruption
+from quietarm.studies.display.words import error_words, print_lines
 
 
 def run_problems(names: Sequence[str], again: bool, output: Path | None, quiet: bool) -> None:

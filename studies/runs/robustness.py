@@ -9,13 +9,13 @@ from pathlib import Path
 
 from rich.console import Console
 
-from ocp import Plan, Robustness, evaluate_robustness
-from ocp.robustness.uncertain import assumed_plant
-from ocp.simulation.errors import checked_ranges
-from studies.display.progress import count
-from studies.display.saving import finish, interruption
-from studies.runs.loading import load_plans
-from studies.runs.reports.robustness import Figured, print_robustness, robustness_files
+from quietarm.ocp import Plan, Robustness, evaluate_robustness
+from quietarm.ocp.robustness.uncertain import assumed_plant
+from quietarm.ocp.simulation.errors import checked_ranges
+from quietarm.studies.display.progress import count
+from quietarm.studies.display.saving import finish, interruption
+from quietarm.studies.runs.loading import load_plans
+from quietarm.studies.runs.reports.robustness import Figured, print_robustness, robustness_files
 
 DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
 """The errors where none is asked for."""

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from metaheuristics import search
-from metaheuristics.ensemble import SEARCH_RESIDUAL, LostSeedsError, search_many, seeds_of
-from ocp import (
+from quietarm.metaheuristics import search
+from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, LostSeedsError, search_many, seeds_of
+from quietarm.ocp import (
     Front,
     JointProfile,
     Plan,
@@ -23,14 +23,14 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from ocp.base.files import check_writable
-from ocp.base.interrupts import note_interrupts
-from ocp.plan.robust import limit_of
-from studies.display.saving import STDOUT, File, drawing, finish
-from studies.display.search_progress import search_display
-from studies.registry.methods import Method
-from studies.runs.files import FrontFiles, refuse_same_file, warn_of_workers
-from studies.runs.reports.search import print_fronts
+from quietarm.ocp.base.files import check_writable
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.plan.robust import limit_of
+from quietarm.studies.display.saving import STDOUT, File, drawing, finish
+from quietarm.studies.display.search_progress import search_display
+from quietarm.studies.registry.methods import Method
+from quietarm.studies.runs.files import FrontFiles, refuse_same_file, warn_of_workers
+from quietarm.studies.runs.reports.search import print_fronts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -165,7 +165,7 @@ def run_front(
         raise lost or SolverFailedError(f"{method.name}: {fronts[0].why_empty()}")
 
     def picture() -> Figure:
-        from studies.figures import front_figure
+        from quietarm.studies.figures import front_figure
 
         return front_figure(fronts)
 

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from ocp import (
+from quietarm.ocp import (
     Front,
     PointToPoint,
     SolverFailedError,
     cross_check,
 )
-from studies.display.progress import count
-from studies.display.saving import drawing, finish, interruption
-from studies.registry.methods import Method
-from studies.runs.files import FrontFiles
-from studies.runs.reports.sweep import failure_lines, print_sweep
+from quietarm.studies.display.progress import count
+from quietarm.studies.display.saving import drawing, finish, interruption
+from quietarm.studies.registry.methods import Method
+from quietarm.studies.runs.files import FrontFiles
+from quietarm.studies.runs.reports.sweep import failure_lines, print_sweep
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,7 +72,7 @@ def run_sweep(
             complete = False
 
     def picture() -> Figure:
-        from studies.figures import sweep_figure
+        from quietarm.studies.figures import sweep_figure
 
         return sweep_figure(front)
 

@@ -6,11 +6,11 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from ocp.base.files import write_whole
-from studies.display.saving import File, inside
-from studies.display.words import title_of
-from studies.study.page import study_page
-from studies.study.work import Study
+from quietarm.ocp.base.files import write_whole
+from quietarm.studies.display.saving import File, inside
+from quietarm.studies.display.words import title_of
+from quietarm.studies.study.page import study_page
+from quietarm.studies.study.work import Study
 
 
 def page_file(study: Study, output: Path) -> File:

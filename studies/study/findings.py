@@ -7,11 +7,11 @@ from math import isfinite
 
 import numpy as np
 
-from studies.comparison.measures import Comparison, Group
-from studies.comparison.staircase import within
-from studies.display.words import millimetres, title_of
-from studies.registry.methods import WEIGHTED, Kind, Method
-from studies.study.work import CaseStudy, Study
+from quietarm.studies.comparison.measures import Comparison, Group
+from quietarm.studies.comparison.staircase import within
+from quietarm.studies.display.words import millimetres, title_of
+from quietarm.studies.registry.methods import WEIGHTED, Kind, Method
+from quietarm.studies.study.work import CaseStudy, Study
 
 STILL_LEVEL = 1
 """Which of the comparison's residual levels the summary speaks of."""

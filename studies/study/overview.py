@@ -8,13 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from studies.display.tables import Cell, Column, Table
-from studies.display.words import millimetres, title_of
-from studies.figures.axes import axes_or_new, new_figure
-from studies.figures.comparison import looks
-from studies.registry.methods import Method
-from studies.study.findings import STILL_LEVEL, at_rest, gap
-from studies.study.work import Study
+from quietarm.studies.display.tables import Cell, Column, Table
+from quietarm.studies.display.words import millimetres, title_of
+from quietarm.studies.figures.axes import axes_or_new, new_figure
+from quietarm.studies.figures.comparison import looks
+from quietarm.studies.registry.methods import Method
+from quietarm.studies.study.findings import STILL_LEVEL, at_rest, gap
+from quietarm.studies.study.work import Study
 
 
 def overview_table(study: Study) -> Table:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from metaheuristics import PRESETS
-from ocp.front.points import LEVELS
-from studies.comparison.tables import how_to_read, tables, units
-from studies.display.html_page import Markup, bullets, element, joined, page, picture, table_element
-from studies.display.words import counted, millimetres, title_of
-from studies.figures.comparison import BANDS, PANELS, panel_figure
-from studies.registry.methods import PAPERS, Method
-from studies.study.findings import STILL_LEVEL, case_findings, findings
-from studies.study.overview import gap_figure, overview_table
-from studies.study.work import CaseStudy, Study, StudySettings
+from quietarm.metaheuristics import PRESETS
+from quietarm.ocp.front.points import LEVELS
+from quietarm.studies.comparison.tables import how_to_read, tables, units
+from quietarm.studies.display.html_page import Markup, bullets, element, joined, page, picture, table_element
+from quietarm.studies.display.words import counted, millimetres, title_of
+from quietarm.studies.figures.comparison import BANDS, PANELS, panel_figure
+from quietarm.studies.registry.methods import PAPERS, Method
+from quietarm.studies.study.findings import STILL_LEVEL, case_findings, findings
+from quietarm.studies.study.overview import gap_figure, overview_table
+from quietarm.studies.study.work import CaseStudy, Study, StudySettings
 
 _ALTERNATIVES = {
     "whole": "Energy against residual vibration, one staircase for each method, for {0}.",

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
-from metaheuristics.algorithms.presets import preset_of
-from metaheuristics.ensemble import one_seed, seeds_of
-from metaheuristics.runs.settings import number_of_generations, number_of_individuals
-from metaheuristics.sharing.pieces import Done, NotTriedError, Piece, Say, to_the_end
-from metaheuristics.sharing.workers import Workers
-from ocp import (
+from quietarm.metaheuristics.algorithms.presets import preset_of
+from quietarm.metaheuristics.ensemble import one_seed, seeds_of
+from quietarm.metaheuristics.runs.settings import number_of_generations, number_of_individuals
+from quietarm.metaheuristics.sharing.pieces import Done, NotTriedError, Piece, Say, to_the_end
+from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.ocp import (
     CycloidPolynomial,
     Floor,
     Front,
@@ -21,11 +21,11 @@ from ocp import (
     energy_floor,
     polish_front,
 )
-from ocp.answers.provenance import number_of_points
-from ocp.base.checks import whole
-from studies.display.words import title_of
-from studies.paper.case import Case
-from studies.registry.methods import METHODS, PAPERS, Kind, Method, methods_of
+from quietarm.ocp.answers.provenance import number_of_points
+from quietarm.ocp.base.checks import whole
+from quietarm.studies.display.words import title_of
+from quietarm.studies.paper.case import Case
+from quietarm.studies.registry.methods import METHODS, PAPERS, Kind, Method, methods_of
 
 FLOOR = "floor"
 

@@ -8,18 +8,18 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, Piece
-from metaheuristics.sharing.running import run_pieces
-from metaheuristics.sharing.workers import Workers
-from ocp import Floor, Front, Polish, QuietarmError, SolverFailedError
-from ocp.base.interrupts import note_interrupts
-from studies.comparison.measures import Comparison, compare_fronts
-from studies.display.words import title_of
-from studies.paper.case import Case
-from studies.paper.points import PaperPoint, paper_points
-from studies.paper.printed import CONDITIONS
-from studies.registry.methods import METHODS
-from studies.study.pieces import FLOOR, Key, StudySettings, pieces_of
+from quietarm.metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, Piece
+from quietarm.metaheuristics.sharing.running import run_pieces
+from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.ocp import Floor, Front, Polish, QuietarmError, SolverFailedError
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.studies.comparison.measures import Comparison, compare_fronts
+from quietarm.studies.display.words import title_of
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.points import PaperPoint, paper_points
+from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.registry.methods import METHODS
+from quietarm.studies.study.pieces import FLOOR, Key, StudySettings, pieces_of
 
 
 @dataclass(frozen=True, eq=False)

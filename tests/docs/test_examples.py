@@ -12,13 +12,13 @@ from pathlib import Path
 import pytest
 from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
 
-import studies.runs.reports.comparison
-import studies.study.pieces
-from models import SingleLinkManipulator
-from ocp import Front, Plan, PointToPoint, energy_floor, evaluate_coefficients
-from ocp.floor import search as floor_search
-from studies import figures
-from studies.cli import main
+import quietarm.studies.runs.reports.comparison
+import quietarm.studies.study.pieces
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import Front, Plan, PointToPoint, energy_floor, evaluate_coefficients
+from quietarm.ocp.floor import search as floor_search
+from quietarm.studies import figures
+from quietarm.studies.cli import main
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
@@ -111,7 +111,7 @@ def test_the_functions_that_draw_are_public_and_documented():
 def test_the_plant_of_your_own_is_one_file_that_everything_works_with(tmp_path):
     crane = CRANE
     use = """
-from ocp import PointToPoint, plan_move
+from quietarm.ocp import PointToPoint, plan_move
 
 plan = plan_move(PointToPoint(Crane(), target=1.0, duration=3.0))
 plan.save("crane.json")
@@ -168,8 +168,8 @@ def started():
 def called(capfd, monkeypatch, quick_pictures):
     """Run a command in this process, with rough floors; status, standard output and error."""
     rough = partial(energy_floor, starts=1, tolerance=0.05)
-    monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", rough)
-    monkeypatch.setattr(studies.study.pieces, "energy_floor", rough)
+    monkeypatch.setattr(quietarm.studies.runs.reports.comparison, "energy_floor", rough)
+    monkeypatch.setattr(quietarm.studies.study.pieces, "energy_floor", rough)
     monkeypatch.setattr(floor_search, "FIRST_INTERVALS", 24)
 
     def call(words):

@@ -27,7 +27,7 @@ SEARCHED = re.compile(r"nsga2|vepso|polish|n1\.json|^floor")
 
 def answer(line):
     """What a line prints and with which status it ends."""
-    from studies.cli import main
+    from quietarm.studies.cli import main
 
     out, status = io.StringIO(), 0
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):

@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymoo.algorithms.moo.sms import SMSEMOA
 
-import metaheuristics.ensemble as ensemble
-from metaheuristics import search
-from metaheuristics.ensemble import (
+import quietarm.metaheuristics.ensemble as ensemble
+from quietarm.metaheuristics import search
+from quietarm.metaheuristics.ensemble import (
     SEARCH_RESIDUAL,
     Spread,
     energies_at,
@@ -23,8 +23,8 @@ from metaheuristics.ensemble import (
     hypervolumes,
     search_many,
 )
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, Front, FrontPoint, Generation, PointToPoint
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, Generation, PointToPoint
 
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
 SMALL = {"bound": 0.2, "population": 8, "generations": 3}
@@ -186,9 +186,9 @@ def test_a_front_goes_to_another_process_and_back_whole():
 def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
     # every worker runs the script anew, as Python's spawn does
     (tmp_path / "script.py").write_text(
-        "from metaheuristics.ensemble import search_many\n"
-        "from models import SingleLinkManipulator\n"
-        "from ocp import PointToPoint\n"
+        "from quietarm.metaheuristics.ensemble import search_many\n"
+        "from quietarm.models import SingleLinkManipulator\n"
+        "from quietarm.ocp import PointToPoint\n"
         "task = PointToPoint(SingleLinkManipulator(), 0.5, 0.8)\n"
         "search_many(task, 'vepso', 3, workers=2, bound=0.2)\n"
     )
@@ -196,7 +196,7 @@ def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
         [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, timeout=600
     )
     last = ran.stderr.splitlines()[-1]
-    assert last.startswith("ocp.base.errors.QuietarmError: the workers could not be started; ")
+    assert last.startswith("quietarm.ocp.base.errors.QuietarmError: the workers could not be started; ")
     assert "run it under if __name__ == '__main__'" in last
 
 

@@ -1,22 +1,22 @@
-"""What `import metaheuristics` gives, and that it does not wait for pymoo."""
+"""What `from quietarm import metaheuristics` gives, and that it does not wait for pymoo."""
 
 import subprocess
 import sys
 
 import pytest
 
-import metaheuristics
+from quietarm import metaheuristics
 
 LIGHT = """
 import sys
-import metaheuristics
-from metaheuristics import PRESETS, PopulationObjective, Spread, search, search_many
-from metaheuristics.ensemble import energies_at
+from quietarm import metaheuristics
+from quietarm.metaheuristics import PRESETS, PopulationObjective, Spread, search, search_many
+from quietarm.metaheuristics.ensemble import energies_at
 
 assert "pymoo" not in sys.modules
-from metaheuristics import VEPSO
+from quietarm.metaheuristics import VEPSO
 
-assert VEPSO.__module__ == "metaheuristics.algorithms.vepso"
+assert VEPSO.__module__ == "quietarm.metaheuristics.algorithms.vepso"
 assert "pymoo" in sys.modules
 """
 

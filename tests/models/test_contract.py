@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from sound_plant import Sound
 
-from models import Plant, SingleLinkManipulator, known_plants, parameter
-from ocp import PointToPoint
+from quietarm.models import Plant, SingleLinkManipulator, known_plants, parameter
+from quietarm.ocp import PointToPoint
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 

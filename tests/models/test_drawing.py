@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sound_plant import Sound
 
-from models import (
+from quietarm.models import (
     ArmOnFlexibleLink,
     Body,
     DualLinkManipulator,
@@ -12,7 +12,7 @@ from models import (
     flexible_link,
     rigid_link,
 )
-from models.drawing import TIP_SLOPE, cantilever
+from quietarm.models.drawing import TIP_SLOPE, cantilever
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from models import DualLinkManipulator, JointMotion, known_plants
+from quietarm.models import DualLinkManipulator, JointMotion, known_plants
 
 motions = st.floats(-10.0, 10.0)
 pairs = st.tuples(motions, motions)

@@ -9,7 +9,7 @@ from multiprocessing.reduction import ForkingPickler
 
 import pytest
 
-from models import SingleLinkManipulator, file_of_plant, known_plants, load_plant_file
+from quietarm.models import SingleLinkManipulator, file_of_plant, known_plants, load_plant_file
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
@@ -90,7 +90,7 @@ def test_a_broken_plant_in_it_is_found_when_it_is_checked(crane_file):
         crane.validate()
 
 
-OWN = "from models import Plant, SingleLinkManipulator\n"
+OWN = "from quietarm.models import Plant, SingleLinkManipulator\n"
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models import (
+from quietarm.models import (
     ArmOnFlexibleLink,
     JointMotion,
     SingleLinkManipulator,

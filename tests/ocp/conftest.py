@@ -5,8 +5,8 @@ from functools import cache
 
 import pytest
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, plan_move
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
 
 
 @pytest.fixture(scope="session")

@@ -2,8 +2,8 @@
 
 import pytest
 
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     PointToPoint,

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from lines import COARSELY
 
-from metaheuristics import ensemble
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.metaheuristics import ensemble
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidGaussians,
     CycloidNetwork,
     CycloidPolynomial,
@@ -27,11 +27,11 @@ from ocp import (
     non_dominated,
     plan_move,
 )
-from ocp.floor import search as floor_search
-from studies.cli import main
-from studies.display import progress
-from studies.registry.methods import METHODS
-from studies.reproduction import pieces, recompute
+from quietarm.ocp.floor import search as floor_search
+from quietarm.studies.cli import main
+from quietarm.studies.display import progress
+from quietarm.studies.registry.methods import METHODS
+from quietarm.studies.reproduction import pieces, recompute
 
 
 @pytest.fixture(scope="session")

@@ -14,9 +14,9 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from models import ArmOnFlexibleLink, JointMotion
-from ocp import CycloidPolynomial, PointToPoint
-from ocp.simulation.collocation import modal_system
+from quietarm.models import ArmOnFlexibleLink, JointMotion
+from quietarm.ocp import CycloidPolynomial, PointToPoint
+from quietarm.ocp.simulation.collocation import modal_system
 
 PLANT, PROFILE = ArmOnFlexibleLink(), CycloidPolynomial(6)
 TASK = PointToPoint(PLANT, target=pi / 2, duration=0.8)

@@ -19,7 +19,7 @@ from parts.population.equations import (
 )
 from scipy.integrate import solve_ivp
 
-from ocp.simulation.residual import residual_samples
+from quietarm.ocp.simulation.residual import residual_samples
 
 
 def rates_in_floats(x: Numbers, a: Sequence[float]) -> Callable[..., Any]:

@@ -12,9 +12,9 @@ from parts.population.equations import PROFILE, TASK, Values, numbers, peak_afte
 from parts.population.marches import march_arrays, march_compiled
 from parts.population.one_by_one import integrate, rates_in_floats, rates_in_numpy
 
-from metaheuristics import PopulationObjective
-from ocp import rollout
-from ocp.simulation.collocation import mesh
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.ocp import rollout
+from quietarm.ocp.simulation.collocation import mesh
 
 CANDIDATES = 200
 FEW, TUNING = 5, 40  # candidates of solve_ivp: to time, to choose its samples

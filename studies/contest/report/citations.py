@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from metaheuristics.budget.run import MULTISTART, parts_of
-from studies.contest.names import is_own, method_in
+from quietarm.metaheuristics.budget.run import MULTISTART, parts_of
+from quietarm.studies.contest.names import is_own, method_in
 
 _TEC = "IEEE Transactions on Evolutionary Computation"
 _ALWAYS = ("casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment")
@@ -153,7 +153,7 @@ def bibtex(methods: Iterable[str], *, statistics: bool) -> str:
 
 def source_of(search: str) -> str:
     """Who published a search, and when, as its preset says."""
-    from metaheuristics import PRESETS
+    from quietarm.metaheuristics import PRESETS
 
     return PRESETS[search].source
 

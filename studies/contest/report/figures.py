@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
-from studies.comparison.staircase import objectives, within
-from studies.contest.measures import TARGETS, Arena, Outcome, quartiles
-from studies.contest.names import label_of
-from studies.contest.statistics import Ranking
-from studies.figures.axes import axes_or_new, new_figure
-from studies.figures.looks import Look, look
+from quietarm.studies.comparison.staircase import objectives, within
+from quietarm.studies.contest.measures import TARGETS, Arena, Outcome, quartiles
+from quietarm.studies.contest.names import label_of
+from quietarm.studies.contest.statistics import Ranking
+from quietarm.studies.figures.axes import axes_or_new, new_figure
+from quietarm.studies.figures.looks import Look, look
 
 Array = NDArray[np.float64]
 _LEAST = 1e-4

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from studies.contest.imported import Imported
-from studies.contest.measures import Arena, Outcome
-from studies.contest.names import label_of
-from studies.contest.report.tables import evaluations_words
-from studies.contest.runs import Run
+from quietarm.studies.contest.imported import Imported
+from quietarm.studies.contest.measures import Arena, Outcome
+from quietarm.studies.contest.names import label_of
+from quietarm.studies.contest.report.tables import evaluations_words
+from quietarm.studies.contest.runs import Run
 
 _THE_EXACT = "the exact front's"
 

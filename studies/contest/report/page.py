@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from studies.contest.landscape import CANDIDATES, LEVEL, Landscape
-from studies.contest.measures import Arena, methods_in
-from studies.contest.names import label_of
-from studies.contest.report.citations import bibtex
-from studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
-from studies.contest.report.notes import missing_words, not_alike, unequal
-from studies.contest.report.paragraph import methods_paragraph, settings_lines
-from studies.contest.report.tables import (
+from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
+from quietarm.studies.contest.measures import Arena, methods_in
+from quietarm.studies.contest.names import label_of
+from quietarm.studies.contest.report.citations import bibtex
+from quietarm.studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from quietarm.studies.contest.report.notes import missing_words, not_alike, unequal
+from quietarm.studies.contest.report.paragraph import methods_paragraph, settings_lines
+from quietarm.studies.contest.report.tables import (
     effects_table,
     summary_table,
     visits_table,
 )
-from studies.contest.statistics import ALPHA, Ranking, pairs_on, ranking_on, ranking_over, why_none
-from studies.display.html_page import Markup, bullets, element, page, picture, table_element
-from studies.display.words import counted, millimetres, title_of
+from quietarm.studies.contest.statistics import ALPHA, Ranking, pairs_on, ranking_on, ranking_over, why_none
+from quietarm.studies.display.html_page import Markup, bullets, element, page, picture, table_element
+from quietarm.studies.display.words import counted, millimetres, title_of
 
 _ANYTIME = (
     "Share of the exact front's hypervolume that is missing, over evaluations and over time: "

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from metaheuristics.budget.run import MULTISTART, Help, parts_of
-from studies.contest.measures import Arena, methods_in
-from studies.contest.names import is_own, label_of, method_in
-from studies.contest.report.notes import versions_of, wrong_claims
-from studies.contest.report.tables import evaluations_words
-from studies.contest.statistics import ALPHA, why_none
-from studies.display.words import counted
+from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
+from quietarm.studies.contest.measures import Arena, methods_in
+from quietarm.studies.contest.names import is_own, label_of, method_in
+from quietarm.studies.contest.report.notes import versions_of, wrong_claims
+from quietarm.studies.contest.report.tables import evaluations_words
+from quietarm.studies.contest.statistics import ALPHA, why_none
+from quietarm.studies.display.words import counted
 
 
 def methods_paragraph(arenas: Sequence[Arena]) -> str:

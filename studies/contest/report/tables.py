@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite
 
-from ocp.front.points import LEVELS
-from studies.contest.imported import Imported
-from studies.contest.measures import TARGETS, Arena, Field, Outcome, quartiles, spread
-from studies.contest.names import label_of
-from studies.contest.statistics import ALPHA, Pair, Ranking
-from studies.display.tables import Cell, Column, Table
-from studies.display.words import millimetres
+from quietarm.ocp.front.points import LEVELS
+from quietarm.studies.contest.imported import Imported
+from quietarm.studies.contest.measures import TARGETS, Arena, Field, Outcome, quartiles, spread
+from quietarm.studies.contest.names import label_of
+from quietarm.studies.contest.statistics import ALPHA, Pair, Ranking
+from quietarm.studies.display.tables import Cell, Column, Table
+from quietarm.studies.display.words import millimetres
 
 _PERCENT = "{:.3g} %".format
 

@@ -9,17 +9,17 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from metaheuristics.ensemble import energy_at
-from ocp import Floor, Front, Motion, Plan, evaluate_coefficients, shaped_cycloid, with_errors
-from ocp.profiles.shapers import SHAPERS
-from ocp.simulation.errors import FREQUENCY
-from ocp.simulation.piecewise import PiecewiseMotion
-from ocp.simulation.resimulation import resimulated
-from studies.display.words import millimetres
-from studies.paper.case import Case
-from studies.paper.points import paper_plan, residual_level
-from studies.paper.printed import ROWS
-from studies.registry.methods import Method
+from quietarm.metaheuristics.ensemble import energy_at
+from quietarm.ocp import Floor, Front, Motion, Plan, evaluate_coefficients, shaped_cycloid, with_errors
+from quietarm.ocp.profiles.shapers import SHAPERS
+from quietarm.ocp.simulation.errors import FREQUENCY
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.studies.display.words import millimetres
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.points import paper_plan, residual_level
+from quietarm.studies.paper.printed import ROWS
+from quietarm.studies.registry.methods import Method
 
 COMPARED_TERMS = 6
 """Terms of the polynomial: the paper's choice."""

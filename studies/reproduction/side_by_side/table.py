@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
-from studies.display.tables import Cell, Column, Table, print_table
-from studies.paper.case import Case
-from studies.reproduction.side_by_side.results import FREQUENCY_ERROR, System
+from quietarm.studies.display.tables import Cell, Column, Table, print_table
+from quietarm.studies.paper.case import Case
+from quietarm.studies.reproduction.side_by_side.results import FREQUENCY_ERROR, System
 
 Systems = Mapping[Case, Sequence[System]]
 

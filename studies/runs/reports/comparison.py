@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from ocp import QuietarmError
-from ocp.base.files import write_whole
-from ocp.base.printable import printable
-from ocp.floor.search import energy_floor
-from ocp.robustness.uncertain import on_assumed
-from studies.comparison.measures import Comparison
-from studies.comparison.tables import how_to_read, runs_table, tables, units
-from studies.display.saving import File, drawing, inside
-from studies.display.tables import print_table
-from studies.display.words import title_of
-from studies.paper.points import paper_points
+from quietarm.ocp import QuietarmError
+from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.base.printable import printable
+from quietarm.ocp.floor.search import energy_floor
+from quietarm.ocp.robustness.uncertain import on_assumed
+from quietarm.studies.comparison.measures import Comparison
+from quietarm.studies.comparison.tables import how_to_read, runs_table, tables, units
+from quietarm.studies.display.saving import File, drawing, inside
+from quietarm.studies.display.tables import print_table
+from quietarm.studies.display.words import title_of
+from quietarm.studies.paper.points import paper_points
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -60,7 +60,7 @@ def comparison_files(folder: Path, comparison: Comparison) -> list[File]:
     shown, title = tables(comparison), title_of(comparison.task)
 
     def picture() -> Figure:
-        from studies.figures import comparison_figure
+        from quietarm.studies.figures import comparison_figure
 
         return comparison_figure(comparison, paper_points(comparison.task, terms_of(comparison)))
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
-from studies.display.tables import print_rows
-from studies.runs.reports.plan import figure_rows, move_rows, stopped_words
+from quietarm.ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
+from quietarm.studies.display.tables import print_rows
+from quietarm.studies.runs.reports.plan import figure_rows, move_rows, stopped_words
 
 TERMS = 6
 """Terms of the plan that a floor is compared with."""

@@ -6,14 +6,14 @@ import math
 
 from rich.console import Console
 
-from ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid
-from ocp.answers.provenance import AGREEMENT
-from ocp.plan.robust import EXCESS
-from ocp.robustness.uncertain import assumed_plant
-from ocp.task.quantities import QUANTITIES
-from studies.display.tables import print_rows
-from studies.display.words import millimetres, move_of, plant_words
-from studies.runs.reports.worst import worst_in_words
+from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid
+from quietarm.ocp.answers.provenance import AGREEMENT
+from quietarm.ocp.plan.robust import EXCESS
+from quietarm.ocp.robustness.uncertain import assumed_plant
+from quietarm.ocp.task.quantities import QUANTITIES
+from quietarm.studies.display.tables import print_rows
+from quietarm.studies.display.words import millimetres, move_of, plant_words
+from quietarm.studies.runs.reports.worst import worst_in_words
 
 Row = tuple[str, str]
 _ROUNDING = 1e-12

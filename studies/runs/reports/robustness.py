@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from ocp import Plan, Robustness, Sweep
-from ocp.base.files import write_whole
-from ocp.base.printable import printable
-from ocp.robustness.measures import TOLERATED
-from studies.display.saving import File, drawing, inside
-from studies.display.tables import Cell, Column, Table, print_table
-from studies.display.words import move_of, plant_words
+from quietarm.ocp import Plan, Robustness, Sweep
+from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.base.printable import printable
+from quietarm.ocp.robustness.measures import TOLERATED
+from quietarm.studies.display.saving import File, drawing, inside
+from quietarm.studies.display.tables import Cell, Column, Table, print_table
+from quietarm.studies.display.words import move_of, plant_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,7 +128,7 @@ def robustness_files(folder: Path, plans: Figured) -> list[File]:
     """What writes each file to a folder."""
 
     def picture() -> Figure:
-        from studies.figures.robustness import robustness_figure
+        from quietarm.studies.figures.robustness import robustness_figure
 
         return robustness_figure({label: figures for label, (_, figures) in plans.items()})
 

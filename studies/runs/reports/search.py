@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
-from metaheuristics.ensemble import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
-from ocp import Front
-from studies.display.words import counted, millimetres, print_lines
-from studies.runs.reports.worst import point_in_words
+from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
+from quietarm.ocp import Front
+from quietarm.studies.display.words import counted, millimetres, print_lines
+from quietarm.studies.runs.reports.worst import point_in_words
 
 
 def print_fronts(console: Console, fronts: Sequence[Front]) -> None:

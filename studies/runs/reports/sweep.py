@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from metaheuristics.ensemble import energy_at
-from ocp import CrossCheck, FailedPoint, Front, UncertainPlant
-from ocp.front.checking import RESIDUAL_LIMIT
-from ocp.front.points import LEVELS
-from ocp.front.robust import EXCESS
-from studies.display.words import counted, millimetres, print_lines
-from studies.runs.reports.worst import point_in_words
+from quietarm.metaheuristics.ensemble import energy_at
+from quietarm.ocp import CrossCheck, FailedPoint, Front, UncertainPlant
+from quietarm.ocp.front.checking import RESIDUAL_LIMIT
+from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.front.robust import EXCESS
+from quietarm.studies.display.words import counted, millimetres, print_lines
+from quietarm.studies.runs.reports.worst import point_in_words
 
 
 def print_sweep(

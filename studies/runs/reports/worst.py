@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ocp import Front, FrontPoint, Worst
-from ocp.robustness.worst import worst_of
-from studies.display.words import millimetres
+from quietarm.ocp import Front, FrontPoint, Worst
+from quietarm.ocp.robustness.worst import worst_of
+from quietarm.studies.display.words import millimetres
 
 
 def worst_in_words(worst: Worst) -> str:

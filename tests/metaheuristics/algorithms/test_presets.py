@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from metaheuristics import PRESETS, VEPSO, PaperNSGA2
-from metaheuristics.algorithms import building
-from metaheuristics.algorithms.presets import preset_of
+from quietarm.metaheuristics import PRESETS, VEPSO, PaperNSGA2
+from quietarm.metaheuristics.algorithms import building
+from quietarm.metaheuristics.algorithms.presets import preset_of
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "methods.md"
 NUMBA = {"agemoea", "agemoea2"}  # pymoo compiles these for seconds as they load
@@ -35,7 +35,7 @@ def test_every_algorithm_of_pymoo_for_two_objectives_is_there():
     folder = Path(import_module("pymoo.algorithms.moo").__path__[0])
     modules = {path.stem for path in folder.glob("*.py")} - {"__init__"}
     sources = {preset.kind.partition(":")[0] for preset in PRESETS.values()}
-    mended = import_module("metaheuristics.algorithms.mended")
+    mended = import_module("quietarm.metaheuristics.algorithms.mended")
     own = {name for name, _ in inspect.getmembers(mended, inspect.ismodule)}
     named = {source.rpartition(".")[2] for source in sources} | own
     assert modules - left_out <= named
@@ -70,7 +70,7 @@ def test_the_defaults_are_those_of_the_algorithm_itself(name):
     # what its class does without them: pymoo's own settings, or the paper's
     module, _, kind = PRESETS[name].kind.partition(":")
     kind = getattr(import_module(module), kind)
-    if kind.__module__ == "metaheuristics.algorithms.mended":
+    if kind.__module__ == "quietarm.metaheuristics.algorithms.mended":
         kind = kind.__mro__[1]
     plain = kind(building.directions(12) if PRESETS[name].by_directions else 12)
     (_, built), (_, wanted) = contents(PRESETS[name].build(12)), contents(plain)

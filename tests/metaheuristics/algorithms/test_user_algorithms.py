@@ -17,8 +17,8 @@ from pymoo.operators.mutation.pm import PM
 from pymoo.util.ref_dirs import get_reference_directions
 from small_searches import HALF, LIMITED, assert_is_a_front, exactly, failing, one_line
 
-from metaheuristics import INERTIA_2002, VEPSO, MoveProblem, PopulationObjective, search
-from ocp import CycloidPolynomial, Front, rollout
+from quietarm.metaheuristics import INERTIA_2002, VEPSO, MoveProblem, PopulationObjective, search
+from quietarm.ocp import CycloidPolynomial, Front, rollout
 
 
 def _moead():

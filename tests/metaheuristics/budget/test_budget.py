@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from small_searches import BOUNDS, HALF, LIMITED, METHODS, SIXTH, SWARMS, TASKS
 
-from metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
-from metaheuristics.budget.record import CORNER, Scale, Visits, marks_of
-from metaheuristics.budget.run import parts_of, search_within
-from metaheuristics.objective.population import PopulationObjective
-from ocp import CycloidPolynomial, Front, FrontPoint, reference_corner
+from quietarm.metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
+from quietarm.metaheuristics.budget.record import CORNER, Scale, Visits, marks_of
+from quietarm.metaheuristics.budget.run import parts_of, search_within
+from quietarm.metaheuristics.objective.population import PopulationObjective
+from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, reference_corner
 
 PROFILE = CycloidPolynomial(2)
 SCALES = {

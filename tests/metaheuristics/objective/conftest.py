@@ -3,7 +3,7 @@
 import pytest
 from populations import ARM, SINGLE_LINK, pi
 
-from ocp import PointToPoint
+from quietarm.ocp import PointToPoint
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from populations import ARM, CONDITIONS, PROFILE, SINGLE_LINK, candidates, pi
 
-from metaheuristics import PopulationObjective
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import (
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import (
     PointToPoint,
     resimulate,
     rollout,

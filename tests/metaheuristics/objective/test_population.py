@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
 
-from metaheuristics import PopulationObjective
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     residual_matrix,
     rollout,
     sample_trajectory,
 )
-from ocp.simulation.residual import fastest_mode
-from ocp.task.quantities import QUANTITIES
+from quietarm.ocp.simulation.residual import fastest_mode
+from quietarm.ocp.task.quantities import QUANTITIES
 
 LIMITS = tuple(QUANTITIES)
 

@@ -14,14 +14,14 @@ import numpy as np
 import pytest
 from populations import ARM, CONDITIONS, PROFILE, SINGLE_LINK, candidates, pi
 
-from metaheuristics import PopulationObjective
-from metaheuristics.objective.population import CANDIDATE_STEPS
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import (
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import (
     PointToPoint,
     rollout,
 )
-from ocp.program.batch import batch
+from quietarm.ocp.program.batch import batch
 
 # -- builds --
 
@@ -129,9 +129,9 @@ def test_ctrl_c_at_any_moment_of_an_evaluation_is_raised(tasks):
 MEMORY = """
 import json, math
 import numpy as np
-from metaheuristics import PopulationObjective
-from models import ArmOnFlexibleLink
-from ocp import CycloidPolynomial, PointToPoint
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import CycloidPolynomial, PointToPoint
 
 def peak():
     # Not ru_maxrss: over fork and exec it starts from the peak of the parent, here pytest's.

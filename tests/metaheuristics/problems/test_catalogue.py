@@ -8,14 +8,14 @@ import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 
-from metaheuristics import PROBLEMS, MoveFunction, problem_of
-from metaheuristics.objective.claims import check_figures
-from metaheuristics.problems import finding
-from metaheuristics.problems.catalogue import FRONTS
-from ocp import CycloidPolynomial, evaluate_coefficients, weighted_front
-from ocp.answers.provenance import SolveSettings
-from ocp.plan.solver import plan_at_samples
-from ocp.simulation.errors import with_errors
+from quietarm.metaheuristics import PROBLEMS, MoveFunction, problem_of
+from quietarm.metaheuristics.objective.claims import check_figures
+from quietarm.metaheuristics.problems import finding
+from quietarm.metaheuristics.problems.catalogue import FRONTS
+from quietarm.ocp import CycloidPolynomial, evaluate_coefficients, weighted_front
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.plan.solver import plan_at_samples
+from quietarm.ocp.simulation.errors import with_errors
 
 NAMES = pytest.mark.parametrize("name", PROBLEMS)
 TWO_TERMS = ["single-link-30deg-0.8s-2-terms", "arm-on-flexible-link-90deg-0.8s-2-terms"]
@@ -150,7 +150,7 @@ def test_an_algorithm_of_pymoo_comes_near_the_exact_front_and_not_beyond():
 
 
 def test_a_move_of_ones_own_has_no_exact_front():
-    from metaheuristics import ExactProblem
+    from quietarm.metaheuristics import ExactProblem
 
     problem = problem_of(TWO_TERMS[0])
     own = ExactProblem(MoveFunction(problem.task, CycloidPolynomial(3), bound=0.2, steps=10))

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from scipy.optimize import differential_evolution
 
-from metaheuristics import problem_of
-from ocp import Front
+from quietarm.metaheuristics import problem_of
+from quietarm.ocp import Front
 
 TWO_TERMS = problem_of("single-link-30deg-0.8s-2-terms")
 DOCUMENT = Path(__file__).parents[3] / "docs" / "problems.md"

@@ -3,7 +3,7 @@
 import pytest
 from states import HEADER, state
 
-from metaheuristics.runs.checkpoint import save_checkpoint
+from quietarm.metaheuristics.runs.checkpoint import save_checkpoint
 
 
 @pytest.fixture

@@ -19,10 +19,10 @@ from small_searches import (
     run,
 )
 
-from metaheuristics import PopulationObjective
-from metaheuristics.objective.population import CANDIDATE_STEPS
-from metaheuristics.runs import keeping
-from ocp import CycloidPolynomial, Front, resimulate, rollout
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.metaheuristics.runs import keeping
+from quietarm.ocp import CycloidPolynomial, Front, resimulate, rollout
 
 # -- limits --
 

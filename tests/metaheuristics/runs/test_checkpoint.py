@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from states import HEADER, same, state
 
-from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
+from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 
 
 def test_what_goes_in_comes_out_bit_for_bit(path):

@@ -9,9 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from small_searches import IMPOSSIBLE, LIMITED, METHODS, SIXTH
 
-from metaheuristics import search
-from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
-from ocp import FileFormatError
+from quietarm.metaheuristics import search
+from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
+from quietarm.ocp import FileFormatError
 
 TASKS = {"free": SIXTH, "limited": LIMITED["vepso"], "impossible": IMPOSSIBLE["vepso"]}
 GONE = object()

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from states import HEADER, same, state
 
-from metaheuristics.runs.checkpoint import KIND, VERSION, load_checkpoint
-from ocp import FileFormatError
+from quietarm.metaheuristics.runs.checkpoint import KIND, VERSION, load_checkpoint
+from quietarm.ocp import FileFormatError
 
 FORMAT = f"quietarm-{KIND}"
 

@@ -16,9 +16,9 @@ from small_searches import (
     stop_after,
 )
 
-from metaheuristics import PopulationObjective, search
-from metaheuristics.objective.population import CANDIDATE_STEPS
-from ocp import CycloidPolynomial, Front, PointToPoint, rollout
+from quietarm.metaheuristics import PopulationObjective, search
+from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, rollout
 
 # -- history and reports --
 

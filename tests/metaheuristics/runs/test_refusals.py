@@ -6,11 +6,11 @@ import re
 import pytest
 from small_searches import BOUNDS, HALF, METHODS, TASKS, found, one_line, run
 
-from metaheuristics import CONSTRICTION, INERTIA_2002, VEPSO, PaperNSGA2, search
-from metaheuristics.runs import keeping
-from metaheuristics.runs.settings import search_versions
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import CycloidPolynomial, FileFormatError
+from quietarm.metaheuristics import CONSTRICTION, INERTIA_2002, VEPSO, PaperNSGA2, search
+from quietarm.metaheuristics.runs import keeping
+from quietarm.metaheuristics.runs.settings import search_versions
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, FileFormatError
 
 
 @pytest.fixture(scope="module")

@@ -21,10 +21,10 @@ from small_searches import (
     stop_after,
 )
 
-from metaheuristics import VEPSO, PaperNSGA2, PopulationObjective, search
-from metaheuristics.objective.population import CANDIDATE_STEPS
-from metaheuristics.runs import keeping
-from metaheuristics.runs.checkpoint import load_checkpoint
+from quietarm.metaheuristics import VEPSO, PaperNSGA2, PopulationObjective, search
+from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.metaheuristics.runs import keeping
+from quietarm.metaheuristics.runs.checkpoint import load_checkpoint
 
 # -- checkpoints --
 
@@ -234,7 +234,7 @@ def test_a_lost_checkpoint_is_a_warning_of_pythons(tmp_path, always, monkeypatch
     def full(path, content):
         raise ValueError(f"{path} cannot be written: no space left on device")
 
-    monkeypatch.setattr("metaheuristics.runs.checkpoint.write_whole", full)
+    monkeypatch.setattr("quietarm.metaheuristics.runs.checkpoint.write_whole", full)
     with pytest.warns(RuntimeWarning, match="no space left on device"):
         front = run("vepso", checkpoint=tmp_path / "checkpoint")
     assert front.complete
@@ -253,10 +253,10 @@ def test_a_checkpoint_that_cannot_be_written_is_found_before_the_work(tmp_path):
 
 KILLED = """
 import math, os, signal, sys, threading
-from metaheuristics import search
-from metaheuristics.runs import keeping
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import PointToPoint
+from quietarm.metaheuristics import search
+from quietarm.metaheuristics.runs import keeping
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import PointToPoint
 
 method, path, generation, delay = sys.argv[1:]
 keeping.CHECKPOINT_SECONDS = 0.0

@@ -5,9 +5,9 @@ import json
 import pytest
 from small_searches import HALF, LIMITED, SIXTH
 
-from metaheuristics.runs.settings import SearchSettings, SearchSpec
-from ocp import CycloidPolynomial
-from ocp.answers.encoding import plain, typed
+from quietarm.metaheuristics.runs.settings import SearchSettings, SearchSpec
+from quietarm.ocp import CycloidPolynomial
+from quietarm.ocp.answers.encoding import plain, typed
 
 SETTINGS = SearchSettings(0.5, 20, 15)
 

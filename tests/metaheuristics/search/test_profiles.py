@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from metaheuristics import search
-from metaheuristics.objective.population import PopulationObjective
-from metaheuristics.objective.problem import MoveProblem
-from models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-from ocp import CycloidGaussians, CycloidNetwork, CycloidSpline, PointToPoint, rollout
+from quietarm.metaheuristics import search
+from quietarm.metaheuristics.objective.population import PopulationObjective
+from quietarm.metaheuristics.objective.problem import MoveProblem
+from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+from quietarm.ocp import CycloidGaussians, CycloidNetwork, CycloidSpline, PointToPoint, rollout
 
 TASKS = {
     "single link": PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8),

@@ -24,8 +24,8 @@ from small_searches import (
     run,
 )
 
-from metaheuristics import CONSTRICTION, search
-from ocp import CycloidPolynomial, Front, PointToPoint, resimulate, rollout
+from quietarm.metaheuristics import CONSTRICTION, search
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, resimulate, rollout
 
 # -- what a front is --
 
@@ -179,9 +179,9 @@ def test_selecting(method):
 
 LARGE = """
 import math
-from metaheuristics import search
-from models import ArmOnFlexibleLink
-from ocp import PointToPoint
+from quietarm.metaheuristics import search
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import PointToPoint
 
 task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
 front = search(task, "nsga2", bound=0.5, population=10_000, generations=1)

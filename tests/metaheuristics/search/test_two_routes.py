@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from small_searches import ARM, HALF, SINGLE_LINK, SIXTH, found, pi
 
-from metaheuristics import PAPER_BOX, search
-from ocp import (
+from quietarm.metaheuristics import PAPER_BOX, search
+from quietarm.ocp import (
     PointToPoint,
     epsilon_front,
     plan_move,

@@ -7,10 +7,10 @@ from math import pi
 
 import pytest
 
-from metaheuristics import search
-from metaheuristics.objective.claims import check_figures
-from models import ArmOnFlexibleLink
-from ocp import (
+from quietarm.metaheuristics import search
+from quietarm.metaheuristics.objective.claims import check_figures
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     PointToPoint,

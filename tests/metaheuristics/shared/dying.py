@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from ocp import CycloidPolynomial
+from quietarm.ocp import CycloidPolynomial
 
 ORDER = "QUIETARM_TEST_ORDER_TO_DIE"
 """Environment variable with the path of a file: one process takes it away, and dies."""

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import CycloidPolynomial
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial
 
 pi = math.pi
 PROFILE = CycloidPolynomial(6)

@@ -4,9 +4,9 @@ import os
 import signal
 from pathlib import Path
 
-from metaheuristics.objective.population import PopulationObjective
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint
+from quietarm.metaheuristics.objective.population import PopulationObjective
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint
 
 
 def add(known, say):
@@ -27,7 +27,7 @@ def exhaust(known, say):
 
 def built(known, say):
     """Which worker it is, and how often it has built the same objective of a population."""
-    from ocp.program.batch import batch
+    from quietarm.ocp.program.batch import batch
 
     task = PointToPoint(SingleLinkManipulator(), 0.5, 0.8)
     PopulationObjective(task, CycloidPolynomial(2))([[0.0, 0.0]])

@@ -8,11 +8,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from metaheuristics import PopulationObjective, search
-from metaheuristics.objective.population import CANDIDATE_STEPS
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import PointToPoint
-from ocp.answers.encoding import plain
+from quietarm.metaheuristics import PopulationObjective, search
+from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import PointToPoint
+from quietarm.ocp.answers.encoding import plain
 
 pi = math.pi
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()

@@ -17,15 +17,15 @@ import dying
 import pytest
 import small_pieces
 
-import metaheuristics.sharing.cluster as cluster
-import metaheuristics.sharing.workers as workers_module
-from metaheuristics import search, search_many
-from metaheuristics.ensemble import LostSeedsError, one_seed
-from metaheuristics.sharing.pieces import Listener, LostPieceError, Piece
-from metaheuristics.sharing.running import run_pieces
-from metaheuristics.sharing.workers import Workers
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, QuietarmError
+import quietarm.metaheuristics.sharing.cluster as cluster
+import quietarm.metaheuristics.sharing.workers as workers_module
+from quietarm.metaheuristics import search, search_many
+from quietarm.metaheuristics.ensemble import LostSeedsError, one_seed
+from quietarm.metaheuristics.sharing.pieces import Listener, LostPieceError, Piece
+from quietarm.metaheuristics.sharing.running import run_pieces
+from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError
 
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
 SMALL = {"bound": 0.2, "population": 8, "generations": 3}

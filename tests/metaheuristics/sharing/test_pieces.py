@@ -4,10 +4,10 @@ import signal
 
 import pytest
 
-from metaheuristics.sharing.pieces import InterruptedPiece, Listener, Piece
-from metaheuristics.sharing.running import run_pieces
-from ocp import QuietarmError, SolverFailedError
-from ocp.base.interrupts import note_interrupts
+from quietarm.metaheuristics.sharing.pieces import InterruptedPiece, Listener, Piece
+from quietarm.metaheuristics.sharing.running import run_pieces
+from quietarm.ocp import QuietarmError, SolverFailedError
+from quietarm.ocp.base.interrupts import note_interrupts
 
 
 def failing(done, say):

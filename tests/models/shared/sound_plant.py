@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from models import Plant, parameter
+from quietarm.models import Plant, parameter
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 
 import pytest
 
-from ocp import (
+from quietarm.ocp import (
     MAX_TERMS,
     CycloidPolynomial,
     FileFormatError,
@@ -17,8 +17,8 @@ from ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from ocp.answers.documents import read_document, write_document
-from ocp.answers.encoding import plain, typed
+from quietarm.ocp.answers.documents import read_document, write_document
+from quietarm.ocp.answers.encoding import plain, typed
 
 
 @pytest.fixture(scope="module")

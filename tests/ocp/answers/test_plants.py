@@ -5,8 +5,8 @@ import json
 
 import pytest
 
-from models import Plant, load_plant_file
-from ocp import FileFormatError, Plan, PointToPoint, evaluate_coefficients
+from quietarm.models import Plant, load_plant_file
+from quietarm.ocp import FileFormatError, Plan, PointToPoint, evaluate_coefficients
 
 
 @pytest.fixture

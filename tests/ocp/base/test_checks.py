@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ocp.base.checks import finite, listed, positive, whole
+from quietarm.ocp.base.checks import finite, listed, positive, whole
 
 NUMBERS = [1, 1.5, np.float32(1.5), np.float64(1.5), np.int16(2), Fraction(3, 2)]
 NOT_NUMBERS = [True, np.bool_(True), "1.5", None, [1.5], 1j, Decimal("1.5"), np.array([1.5])]

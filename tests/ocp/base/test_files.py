@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from ocp.base.files import check_writable, read_whole, write_whole
+from quietarm.ocp.base.files import check_writable, read_whole, write_whole
 
 
 def _left_over(folder):

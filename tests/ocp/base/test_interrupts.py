@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from models import ArmOnFlexibleLink
-from ocp import CycloidPolynomial, PointToPoint, rollout
-from ocp.base.interrupts import keep_interrupts, note_interrupts
-from ocp.simulation import collocation, residual
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import CycloidPolynomial, PointToPoint, rollout
+from quietarm.ocp.base.interrupts import keep_interrupts, note_interrupts
+from quietarm.ocp.simulation import collocation, residual
 
 ROOT = Path(__file__).parents[3]
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ocp.base.names import has_no, unknown
+from quietarm.ocp.base.names import has_no, unknown
 
 
 @pytest.mark.parametrize(

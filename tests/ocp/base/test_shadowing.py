@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from ocp.base.shadowing import refuse_shadow
+from quietarm.ocp.base.shadowing import refuse_shadow
 
 ROOT = Path(__file__).parents[3]
 
@@ -22,7 +22,7 @@ def _import_beside(file):
     file.parent.mkdir(exist_ok=True)
     file.write_text("x = 1\n")
     script = file.parents[file.parent.name == "models"] / "script.py"
-    script.write_text("import ocp\n")  # the script's own folder comes first on the path
+    script.write_text("from quietarm import ocp\n")  # the script's own folder comes first on the path
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     return subprocess.run(
         [sys.executable, script], capture_output=True, text=True, check=False, env=environment

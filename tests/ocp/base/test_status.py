@@ -2,7 +2,7 @@
 
 import pytest
 
-from ocp import SolveStatus
+from quietarm.ocp import SolveStatus
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import sys
 import threading
 from contextlib import suppress
 
-from ocp.base.threads import one_at_a_time, silent_errors
+from quietarm.ocp.base.threads import one_at_a_time, silent_errors
 
 
 def test_only_one_thread_is_inside_at_a_time():
@@ -64,9 +64,9 @@ def test_what_other_threads_say_is_heard(capsys):
 AT_ONCE = """
 from concurrent.futures import ThreadPoolExecutor
 from math import pi
-from metaheuristics import MoveFunction
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, epsilon_front, plan_move
+from quietarm.metaheuristics import MoveFunction
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front, plan_move
 
 def found(number):
     task = PointToPoint(SingleLinkManipulator(omega=10.0 + number), pi / 6, 0.8)

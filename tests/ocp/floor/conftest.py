@@ -4,8 +4,8 @@ from functools import cache
 
 import pytest
 
-from ocp import energy_floor
-from ocp.floor import search
+from quietarm.ocp import energy_floor
+from quietarm.ocp.floor import search
 
 
 @pytest.fixture

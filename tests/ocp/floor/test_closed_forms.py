@@ -7,8 +7,8 @@ from typing import ClassVar
 import pytest
 from floor_moves import SHORT
 
-from models import Plant, parameter
-from ocp import (
+from quietarm.models import Plant, parameter
+from quietarm.ocp import (
     PointToPoint,
     energy_floor,
 )

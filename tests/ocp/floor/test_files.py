@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from floor_moves import ARM, SHORT
 
-from ocp import (
+from quietarm.ocp import (
     FileFormatError,
     Floor,
 )

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-import ocp.floor.search as search
-from ocp import Floor, energy_floor
+import quietarm.ocp.floor.search as search
+from quietarm.ocp import Floor, energy_floor
 
 pytestmark = pytest.mark.usefixtures("coarse")
 

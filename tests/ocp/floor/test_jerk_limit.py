@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models import SingleLinkManipulator
-from ocp import Floor, InfeasibleTaskError, PointToPoint, energy_floor, plan_move
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import Floor, InfeasibleTaskError, PointToPoint, energy_floor, plan_move
 
 # A joint beside a link that nothing excites.
 RIGID = SingleLinkManipulator(alpha1=0.02, alpha2=0.0, beta1=0.0, c=0.03)

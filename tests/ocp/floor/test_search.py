@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 from floor_moves import ARM, SHORT
 
-from models import ArmOnFlexibleLink
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import (
     InfeasibleTaskError,
     PointToPoint,
     SolverFailedError,
     SolveStatus,
     energy_floor,
 )
-from ocp.floor.answer import Level
-from ocp.floor.program import FloorProgram, FreeSolution
+from quietarm.ocp.floor.answer import Level
+from quietarm.ocp.floor.program import FloorProgram, FreeSolution
 
 ROOT = Path(__file__).parents[3]
 GUARD = 240
@@ -262,7 +262,7 @@ def test_settings_out_of_range_are_refused(settings, named):
 def test_ctrl_c_ends_it_on_the_first_grid():
     # The first grid has a thousand starts: it is not done when the signal comes, nor anywhere near.
     code = (
-        "import math; from ocp import *; from models import *\n"
+        "import math; from quietarm.ocp import *; from quietarm.models import *\n"
         "task = PointToPoint(SingleLinkManipulator(), math.pi / 2, 1.0)\n"
         "print('begun', flush=True)\n"
         "print(energy_floor(task, starts=1000).complete)\n"

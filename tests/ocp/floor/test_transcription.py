@@ -9,7 +9,7 @@ from derivatives import (
     functions_of,
 )
 
-from ocp.floor.transcription import FreeProgram
+from quietarm.ocp.floor.transcription import FreeProgram
 
 STEPS = 3
 LIMITED = {

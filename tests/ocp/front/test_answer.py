@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_fronts import front, points
 
-from ocp import (
+from quietarm.ocp import (
     FrontPoint,
     Generation,
     non_dominated,
     reference_corner,
 )
-from ocp.answers.provenance import versions
+from quietarm.ocp.answers.provenance import versions
 
 # -- selecting --
 

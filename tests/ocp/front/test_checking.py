@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 from front_moves import CASES
 
-from ocp import CycloidPolynomial, SolverFailedError, resimulate
-from ocp.answers.provenance import SolveSettings
-from ocp.front import checking
-from ocp.front.sweep import Sweep
-from ocp.program.solution import STILL
+from quietarm.ocp import CycloidPolynomial, SolverFailedError, resimulate
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.front import checking
+from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.program.solution import STILL
 
 
 @pytest.fixture(scope="module", params=CASES)

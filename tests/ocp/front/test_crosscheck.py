@@ -8,7 +8,7 @@ import pytest
 from front_moves import CASES
 from made_fronts import front as made_by_hand
 
-from ocp import CycloidPolynomial, cross_check, epsilon_front
+from quietarm.ocp import CycloidPolynomial, cross_check, epsilon_front
 
 
 @pytest.fixture(scope="module", params=["sqp", "ipopt"])

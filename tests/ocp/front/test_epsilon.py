@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from front_moves import CASES
 
-from models import ArmOnFlexibleLink
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     InfeasibleTaskError,
@@ -19,12 +19,12 @@ from ocp import (
     resimulate,
     weighted_front,
 )
-from ocp.answers.provenance import SolveSettings
-from ocp.base.status import SolveStatus
-from ocp.front.sweep import SAME, Sweep
-from ocp.plan.starts import first_steps
-from ocp.program import solving
-from ocp.program.solution import STILL
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.front.sweep import SAME, Sweep
+from quietarm.ocp.plan.starts import first_steps
+from quietarm.ocp.program import solving
+from quietarm.ocp.program.solution import STILL
 
 POINTS = 12
 

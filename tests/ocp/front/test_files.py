@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_fronts import front, points
 
-from models import ArmOnFlexibleLink
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import (
     CycloidPolynomial,
     FileFormatError,
     Front,
@@ -21,8 +21,8 @@ from ocp import (
     non_dominated,
     plan_move,
 )
-from ocp.answers.encoding import plain
-from ocp.answers.provenance import versions
+from quietarm.ocp.answers.encoding import plain
+from quietarm.ocp.answers.provenance import versions
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.float32])

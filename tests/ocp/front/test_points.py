@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_fronts import points
 
-from ocp import (
+from quietarm.ocp import (
     non_dominated,
 )
 

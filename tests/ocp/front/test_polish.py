@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import ocp.front.assembly
-from models import ArmOnFlexibleLink
-from ocp import (
+import quietarm.ocp.front.assembly
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     FrontPoint,
@@ -19,10 +19,10 @@ from ocp import (
     polish_front,
     resimulate,
 )
-from ocp.answers.provenance import SolveSettings
-from ocp.base.status import SolveStatus
-from ocp.front.sweep import Sweep
-from ocp.plan.solver import first_steps
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.plan.solver import first_steps
 
 TASK, BOUND, PROFILE = (
     PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8),
@@ -127,13 +127,13 @@ def test_an_empty_front_is_refused(rough):
 
 
 def test_ctrl_c_after_the_last_point_loses_none(rough, monkeypatch):
-    corner = ocp.front.assembly.reference_corner
+    corner = quietarm.ocp.front.assembly.reference_corner
 
     def interrupted(task):
         signal.raise_signal(signal.SIGINT)
         return corner(task)
 
-    monkeypatch.setattr(ocp.front.assembly, "reference_corner", interrupted)
+    monkeypatch.setattr(quietarm.ocp.front.assembly, "reference_corner", interrupted)
     few = replace(rough, points=rough.points[:2])
     polish = polish_front(few)
     assert polish.complete

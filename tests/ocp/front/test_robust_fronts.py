@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     FailedPoint,
     Front,
@@ -21,12 +21,12 @@ from ocp import (
     weighted_front,
     with_errors,
 )
-from ocp.answers.provenance import SolveSettings
-from ocp.front import robust
-from ocp.front.robust import EXCESS, held_between, on_same_samples
-from ocp.front.sweep import Sweep
-from ocp.robustness.uncertain import on_assumed, with_samples
-from studies.comparison.measures import compare_fronts
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.front import robust
+from quietarm.ocp.front.robust import EXCESS, held_between, on_same_samples
+from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.robustness.uncertain import on_assumed, with_samples
+from quietarm.studies.comparison.measures import compare_fronts
 
 RANGE, POINTS = 0.15, 3
 PROFILE = CycloidPolynomial(4)

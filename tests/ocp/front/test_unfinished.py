@@ -7,18 +7,18 @@ from types import SimpleNamespace
 import pytest
 from front_moves import CASES
 
-from ocp import (
+from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     SolverFailedError,
     epsilon_front,
     weighted_front,
 )
-from ocp.base.status import SolveStatus
-from ocp.front import checking, weighted
-from ocp.front.ends import find_ends
-from ocp.front.sweep import InterruptedSolveError, Sweep
-from ocp.program.stack import Stack
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.front import checking, weighted
+from quietarm.ocp.front.ends import find_ends
+from quietarm.ocp.front.sweep import InterruptedSolveError, Sweep
+from quietarm.ocp.program.stack import Stack
 
 
 def test_an_end_that_fails_its_check_can_be_kept(monkeypatch, tmp_path):

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     SolveSettings,
@@ -17,8 +17,8 @@ from ocp import (
     resimulate,
     weighted_front,
 )
-from ocp.base.status import SolveStatus
-from ocp.front.sweep import Sweep
+from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.front.sweep import Sweep
 
 CASES = {
     "arm": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),

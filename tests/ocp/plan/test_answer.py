@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import (
     MAX_TERMS,
     CycloidPolynomial,
     Motion,
@@ -24,7 +24,7 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.answers.provenance import Provenance
+from quietarm.ocp.answers.provenance import Provenance
 
 # Table 1, N = 2.
 TWO_TERMS = [3.347e-3, -1.697e-1]

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     InfeasibleTaskError,
     PointToPoint,
@@ -17,9 +17,9 @@ from ocp import (
     plan_move,
     rollout,
 )
-from ocp.plan.feasibility import explain, least_peaks
-from ocp.program.program import Program
-from ocp.program.solution import Ask, Solution
+from quietarm.ocp.plan.feasibility import explain, least_peaks
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import Ask, Solution
 
 # Name, terms, task's limits, settings of the solve.
 CASES = {

@@ -5,9 +5,9 @@ from contextlib import suppress
 
 import pytest
 
-import ocp.plan.solver
-from ocp import CycloidGaussians, Plan, plan_move
-from ocp.program.stack import Stack
+import quietarm.ocp.plan.solver
+from quietarm.ocp import CycloidGaussians, Plan, plan_move
+from quietarm.ocp.program.stack import Stack
 
 GAUSSIANS = CycloidGaussians(2)
 
@@ -15,7 +15,7 @@ GAUSSIANS = CycloidGaussians(2)
 @pytest.fixture
 def ctrl_c_in(monkeypatch):
     """Let Ctrl-C come when a function is called for the nth time."""
-    owners = {"evaluate": Stack, "verified": ocp.plan.solver}
+    owners = {"evaluate": Stack, "verified": quietarm.ocp.plan.solver}
     known = {name: getattr(owner, name) for name, owner in owners.items()}
 
     def put(name, number):

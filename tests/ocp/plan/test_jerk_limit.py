@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ocp import (
+from quietarm.ocp import (
     CycloidPolynomial,
     FileFormatError,
     InfeasibleTaskError,

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ocp import CycloidPolynomial, PointToPoint, plan_move
-from ocp.task.quantities import QUANTITIES
+from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
+from quietarm.ocp.task.quantities import QUANTITIES
 
 MOVES = {
     "single link, back": ("single link", 0.2, -1.0, 0.7),

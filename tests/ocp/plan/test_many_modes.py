@@ -7,8 +7,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from models import Plant
-from ocp import CycloidPolynomial, PointToPoint, plan_move, resimulate
+from quietarm.models import Plant
+from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move, resimulate
 
 EXAMPLES = [(1, 0), (2, 1), (4, 0), (8, 0)]
 

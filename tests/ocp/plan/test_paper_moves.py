@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from ocp import PointToPoint, SolveStatus, plan_move, resimulate
+from quietarm.ocp import PointToPoint, SolveStatus, plan_move, resimulate
 
 pi = math.pi
 

@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     InfeasibleTaskError,
     Plan,
@@ -21,10 +21,10 @@ from ocp import (
     resimulate,
     with_errors,
 )
-from ocp.plan import robust
-from ocp.plan.solver import plan_at_samples
-from ocp.robustness.uncertain import on_assumed
-from ocp.robustness.worst import peaks_between
+from quietarm.ocp.plan import robust
+from quietarm.ocp.plan.solver import plan_at_samples
+from quietarm.ocp.robustness.uncertain import on_assumed
+from quietarm.ocp.robustness.worst import peaks_between
 
 RANGE = 0.1
 

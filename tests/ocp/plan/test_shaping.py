@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from models import ArmOnFlexibleLink, DualLinkManipulator, JointMotion, SingleLinkManipulator
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, JointMotion, SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     FileFormatError,
     InfeasibleTaskError,
@@ -25,7 +25,7 @@ from ocp import (
     sample_trajectory,
     shaped_cycloid,
 )
-from ocp.simulation.residual import vibrations
+from quietarm.ocp.simulation.residual import vibrations
 
 pi = math.pi
 LINEAR = SingleLinkManipulator(beta2=0.0, zeta=0.0)

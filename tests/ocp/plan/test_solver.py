@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     SolveSettings,
@@ -19,8 +19,8 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.plan.starts import PLAN_STEPS, start_coefficients
-from ocp.task.point_to_point import LIMITS
+from quietarm.ocp.plan.starts import PLAN_STEPS, start_coefficients
+from quietarm.ocp.task.point_to_point import LIMITS
 
 pi = math.pi
 
@@ -104,8 +104,8 @@ def test_two_calls_give_identical_coefficients(tasks):
 
 def test_another_process_gives_identical_coefficients():
     text = (
-        "import math; from models import ArmOnFlexibleLink as Arm;"
-        "from ocp import *;"
+        "import math; from quietarm.models import ArmOnFlexibleLink as Arm;"
+        "from quietarm.ocp import *;"
         "task = PointToPoint(Arm(), math.pi / 2, 0.8);"
         "print(plan_move(task, CycloidPolynomial(4), bound=0.5).coefficients)"
     )

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from ocp import CycloidPolynomial, InfeasibleTaskError, PointToPoint, SolveSettings
-from ocp.plan.starts import FINER_STEPS, PLAN_STEPS, first_steps, from_starts, start_coefficients
-from ocp.program.program import Program
-from ocp.program.solution import RESIDUAL, Ask
+from quietarm.ocp import CycloidPolynomial, InfeasibleTaskError, PointToPoint, SolveSettings
+from quietarm.ocp.plan.starts import FINER_STEPS, PLAN_STEPS, first_steps, from_starts, start_coefficients
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import RESIDUAL, Ask
 
 PROFILE = CycloidPolynomial(6)
 AT_REST = Ask({RESIDUAL: 0.0})

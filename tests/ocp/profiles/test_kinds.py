@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     PointToPoint,

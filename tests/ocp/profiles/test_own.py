@@ -8,9 +8,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from models import JointMotion
-from ocp import JointProfile, Plan, PointToPoint, plan_move, resimulate, rollout
-from ocp.program.batch import batch
+from quietarm.models import JointMotion
+from quietarm.ocp import JointProfile, Plan, PointToPoint, plan_move, resimulate, rollout
+from quietarm.ocp.program.batch import batch
 
 pi = math.pi
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ocp import MAX_TERMS, CycloidPolynomial
-from ocp.profiles.joint_profile import JointProfile, known_profiles
+from quietarm.ocp import MAX_TERMS, CycloidPolynomial
+from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
 
 angles = st.floats(-2 * math.pi, 2 * math.pi)
 durations = st.floats(0.1, 10.0)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 from scipy.optimize import least_squares
 
-from ocp import (
+from quietarm.ocp import (
     CycloidGaussians,
     CycloidNetwork,
     CycloidPolynomial,
@@ -26,10 +26,10 @@ from ocp import (
     resimulate,
     rollout,
 )
-from ocp.answers.provenance import SolveSettings
-from ocp.plan.starts import start_coefficients
-from ocp.profiles.spline import DEGREE, b_splines
-from ocp.profiles.units import SHARPEST
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.plan.starts import start_coefficients
+from quietarm.ocp.profiles.spline import DEGREE, b_splines
+from quietarm.ocp.profiles.units import SHARPEST
 
 UNITS = {"gaussians": CycloidGaussians, "network": CycloidNetwork}
 FAMILIES = {**UNITS, "spline": CycloidSpline}

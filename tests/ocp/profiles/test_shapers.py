@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ocp import CycloidPolynomial, ShapedCycloid
-from ocp.profiles.shaped_cycloid import LEAST_SHARE
-from ocp.profiles.shapers import SHAPERS, convolved
+from quietarm.ocp import CycloidPolynomial, ShapedCycloid
+from quietarm.ocp.profiles.shaped_cycloid import LEAST_SHARE
+from quietarm.ocp.profiles.shapers import SHAPERS, convolved
 
 pi = math.pi
 names = pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, Plan, PointToPoint, evaluate_coefficients
-from ocp.profiles.joint_profile import known_profiles
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, evaluate_coefficients
+from quietarm.ocp.profiles.joint_profile import known_profiles
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
-"""What the tests of `ocp.program` share."""
+"""What the tests of `quietarm.ocp.program` share."""
 
 import pytest
 
-from ocp import CycloidPolynomial
-from ocp.program.program import Program
+from quietarm.ocp import CycloidPolynomial
+from quietarm.ocp.program.program import Program
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ocp import (
+from quietarm.ocp import (
     CycloidGaussians,
     CycloidNetwork,
     CycloidPolynomial,
@@ -14,9 +14,9 @@ from ocp import (
     rollout,
     with_errors,
 )
-from ocp.program.batch import batch
-from ocp.program.sqp import WIDTHS
-from ocp.task.point_to_point import LIMITS
+from quietarm.ocp.program.batch import batch
+from quietarm.ocp.program.sqp import WIDTHS
+from quietarm.ocp.task.point_to_point import LIMITS
 
 QUANTITIES = tuple(limit.removesuffix("_limit") for limit in LIMITS)
 MOVES = np.array([[0.0, math.pi / 2, 0.8], [-0.4, 1.1, 0.7], [0.3, -1.0, 1.0]])

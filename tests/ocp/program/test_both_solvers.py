@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, SolveStatus, UncertainPlant, rollout
-from ocp.program.program import Program
-from ocp.program.solution import RESIDUAL, Ask
-from ocp.program.solving import SOLVERS, Row, solve
-from ocp.task.point_to_point import LIMITS
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, SolveStatus, UncertainPlant, rollout
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import RESIDUAL, Ask
+from quietarm.ocp.program.solving import SOLVERS, Row, solve
+from quietarm.ocp.task.point_to_point import LIMITS
 
 pi, STEPS, TERMS = math.pi, 48, 6
 PROFILE = CycloidPolynomial(TERMS)

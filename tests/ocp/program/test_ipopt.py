@@ -11,8 +11,8 @@ THREADS = """
 import os
 before = dict(os.environ)
 from math import pi
-from models import SingleLinkManipulator
-from ocp import PointToPoint, plan_move
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import PointToPoint, plan_move
 import numpy, casadi
 def threads():
     return len(os.listdir("/proc/self/task"))

@@ -11,8 +11,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from ocp.program.quadratic import Model
-from ocp.program.sqp import SHARP, End, minimise
+from quietarm.ocp.program.quadratic import Model
+from quietarm.ocp.program.sqp import SHARP, End, minimise
 
 INF = np.inf
 

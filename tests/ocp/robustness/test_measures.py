@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from models import DualLinkManipulator, SingleLinkManipulator
-from ocp import (
+from quietarm.models import DualLinkManipulator, SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     evaluate_robustness,
@@ -16,8 +16,8 @@ from ocp import (
     shaped_cycloid,
     with_errors,
 )
-from ocp.robustness.population import ErrorPopulation
-from ocp.simulation.residual import MOST_SAMPLES
+from quietarm.ocp.robustness.population import ErrorPopulation
+from quietarm.ocp.simulation.residual import MOST_SAMPLES
 
 LINEAR = SingleLinkManipulator(beta2=0.0, zeta=0.0)
 RANGES = {

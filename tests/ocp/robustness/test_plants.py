@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from models import (
+from quietarm.models import (
     ArmOnFlexibleLink,
     DualLinkManipulator,
     JointMotion,
@@ -17,9 +17,9 @@ from models import (
     SingleLinkManipulator,
     parameter,
 )
-from ocp import evaluate_robustness, with_errors
-from ocp.simulation.errors import checked_ranges
-from ocp.simulation.residual import vibrations
+from quietarm.ocp import evaluate_robustness, with_errors
+from quietarm.ocp.simulation.errors import checked_ranges
+from quietarm.ocp.simulation.residual import vibrations
 
 PLANTS = [SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()]
 plants = pytest.mark.parametrize("plant", PLANTS, ids=lambda plant: plant.name)

@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from models import DualLinkManipulator, SingleLinkManipulator
-from ocp import (
+from quietarm.models import DualLinkManipulator, SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     FileFormatError,
     Plan,
@@ -22,9 +22,9 @@ from ocp import (
     rollout,
     with_errors,
 )
-from ocp.robustness.population import ErrorPopulation
-from ocp.robustness.uncertain import on_assumed, with_samples
-from ocp.robustness.worst import peaks_between
+from quietarm.ocp.robustness.population import ErrorPopulation
+from quietarm.ocp.robustness.uncertain import on_assumed, with_samples
+from quietarm.ocp.robustness.worst import peaks_between
 
 MOVE = [0.003347, -0.1697]  # the paper's, N = 2
 

@@ -2,8 +2,8 @@
 
 import math
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import (
     PointToPoint,
 )
 

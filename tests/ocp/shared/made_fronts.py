@@ -2,8 +2,8 @@
 
 import math
 
-from models import ArmOnFlexibleLink
-from ocp import (
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     FrontPoint,

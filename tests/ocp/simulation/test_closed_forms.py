@@ -7,14 +7,14 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     resimulate,
 )
-from ocp.profiles.joint_profile import JointProfile
-from ocp.simulation.cvodes import rest_of
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.simulation.cvodes import rest_of
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)

@@ -6,9 +6,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from models import ArmOnFlexibleLink, DualLinkManipulator, JointMotion, SingleLinkManipulator
-from ocp import CycloidPolynomial
-from ocp.simulation.collocation import (
+from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, JointMotion, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial
+from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
     NODES,

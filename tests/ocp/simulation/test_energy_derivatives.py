@@ -9,8 +9,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
-from ocp.simulation.objective import (
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     energy_derivatives,
     resolved_energy,

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from models import JointMotion
-from ocp import CycloidPolynomial, resimulate
-from ocp.floor.grid import finer, first_grid
-from ocp.profiles.free_motion import FreeMotion
-from ocp.simulation.piecewise import PiecewiseMotion
-from ocp.simulation.resimulation import resimulated
+from quietarm.models import JointMotion
+from quietarm.ocp import CycloidPolynomial, resimulate
+from quietarm.ocp.floor.grid import finer, first_grid
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import resimulated
 
 
 def simulate(task, free):

@@ -7,8 +7,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from ocp import CycloidPolynomial, JointProfile, PointToPoint, resimulate, rollout
-from ocp.simulation.collocation import GAUSS_NODES, end_to_end, mesh
+from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint, resimulate, rollout
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, end_to_end, mesh
 
 SIX = [-1.889e-3, -1.427e-1, -4.247e-2, -1.187e-1, 4.800e-2, -1.890e-1]  # the paper's Table 1
 

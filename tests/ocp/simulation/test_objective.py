@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models import JointMotion, SingleLinkManipulator
-from ocp import Motion, PointToPoint
-from ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
-from ocp.simulation.objective import beyond_quadratic, resolved_energy
-from ocp.task.quantities import QUANTITIES
+from quietarm.models import JointMotion, SingleLinkManipulator
+from quietarm.ocp import Motion, PointToPoint
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
+from quietarm.ocp.simulation.objective import beyond_quadratic, resolved_energy
+from quietarm.ocp.task.quantities import QUANTITIES
 
 numbers = st.floats(-10.0, 10.0)
 

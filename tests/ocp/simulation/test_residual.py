@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import PointToPoint, residual_matrix
-from ocp.simulation.residual import (
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import PointToPoint, residual_matrix
+from quietarm.ocp.simulation.residual import (
     MOST_SAMPLES,
     RADIANS_A_SAMPLE,
     extreme_rows,

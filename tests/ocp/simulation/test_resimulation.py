@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from third_opinion import COEFFICIENTS
 
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     SolverFailedError,

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, resimulate, rollout, symbolic_rollout
-from ocp.simulation.piecewise import PiecewiseMotion
-from ocp.simulation.resimulation import resimulated
-from ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, resimulate, rollout, symbolic_rollout
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)

@@ -6,8 +6,8 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from ocp import CycloidPolynomial, PointToPoint, SolverFailedError, sample_trajectory
-from ocp.simulation import cvodes
+from quietarm.ocp import CycloidPolynomial, PointToPoint, SolverFailedError, sample_trajectory
+from quietarm.ocp.simulation import cvodes
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)

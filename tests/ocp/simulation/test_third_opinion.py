@@ -8,13 +8,13 @@ import pytest
 from scipy.integrate import simpson, solve_ivp
 from third_opinion import ARM, SINGLE_LINK, ThirdOpinion, two_links
 
-from ocp import (
+from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     resimulate,
     sample_trajectory,
 )
-from ocp.simulation.cvodes import rest_of
+from quietarm.ocp.simulation.cvodes import rest_of
 
 pi = math.pi
 _RANDOM = np.random.default_rng(20)

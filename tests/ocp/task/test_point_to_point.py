@@ -8,10 +8,10 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import PointToPoint
-from ocp.task.point_to_point import LIMITS
-from ocp.task.quantities import QUANTITIES
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import PointToPoint
+from quietarm.ocp.task.point_to_point import LIMITS
+from quietarm.ocp.task.quantities import QUANTITIES
 
 PLANT = SingleLinkManipulator()
 NOT_POSITIVE = [0, 0.0, -0.0, -0.8, math.nan, math.inf, -math.inf]

@@ -4,9 +4,9 @@ from dataclasses import fields
 
 import pytest
 
-from models import ArmOnFlexibleLink, JointMotion
-from ocp import Motion, PointToPoint
-from ocp.task.quantities import QUANTITIES, ask_for_jerk
+from quietarm.models import ArmOnFlexibleLink, JointMotion
+from quietarm.ocp import Motion, PointToPoint
+from quietarm.ocp.task.quantities import QUANTITIES, ask_for_jerk
 
 
 def test_every_quantity_has_a_limit_in_a_task_and_a_peak_in_a_motion():

@@ -2,8 +2,8 @@
 
 import pytest
 
-from studies.animation import animate
-from studies.figures import Line
+from quietarm.studies.animation import animate
+from quietarm.studies.figures import Line
 
 
 @pytest.fixture(scope="session")

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from models import ArmOnFlexibleLink
-from ocp import PointToPoint, QuietarmError, evaluate_coefficients
-from studies.animation import animate
-from studies.animation.cast import cast_of
-from studies.animation.clock import Clock, end_of
-from studies.figures import Line
-from studies.figures.motion import lines_of
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import PointToPoint, QuietarmError, evaluate_coefficients
+from quietarm.studies.animation import animate
+from quietarm.studies.animation.cast import cast_of
+from quietarm.studies.animation.clock import Clock, end_of
+from quietarm.studies.figures import Line
+from quietarm.studies.figures.motion import lines_of
 
 
 def opened(content):

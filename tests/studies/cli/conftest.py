@@ -4,11 +4,11 @@ import signal
 
 import pytest
 
-import studies.cli.commands.moves.evaluate
-import studies.cli.commands.moves.plan
-import studies.reproduction.recompute
-import studies.runs.searching
-from studies.display.search_progress import SearchDisplay
+import quietarm.studies.cli.commands.moves.evaluate
+import quietarm.studies.cli.commands.moves.plan
+import quietarm.studies.reproduction.recompute
+import quietarm.studies.runs.searching
+from quietarm.studies.display.search_progress import SearchDisplay
 
 
 @pytest.fixture(autouse=True)
@@ -50,11 +50,11 @@ def no_solve(monkeypatch):
     def solve(*arguments, **settings):
         pytest.fail("a solve was begun")
 
-    monkeypatch.setattr(studies.cli.commands.moves.plan, "plan_move", solve)
-    monkeypatch.setattr(studies.cli.commands.moves.evaluate, "evaluate_coefficients", solve)
+    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", solve)
+    monkeypatch.setattr(quietarm.studies.cli.commands.moves.evaluate, "evaluate_coefficients", solve)
     for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
-        monkeypatch.setattr(studies.runs.searching, name, solve)
-    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", solve)
+        monkeypatch.setattr(quietarm.studies.runs.searching, name, solve)
+    monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", solve)
 
 
 @pytest.fixture

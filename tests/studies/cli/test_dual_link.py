@@ -7,9 +7,9 @@ from functools import partial
 
 import pytest
 
-import studies.study.pieces
-from models import DualLinkManipulator
-from ocp import Front, Plan, PointToPoint, energy_floor
+import quietarm.studies.study.pieces
+from quietarm.models import DualLinkManipulator
+from quietarm.ocp import Front, Plan, PointToPoint, energy_floor
 
 MOVE = "dual-link --target pi/2 --duration 0.9"
 TASK = PointToPoint(DualLinkManipulator(), math.pi / 2, 0.9)
@@ -78,7 +78,7 @@ def test_floor(done, tmp_path):
 
 def test_study(done, tmp_path, monkeypatch):
     quick = partial(energy_floor, starts=1, tolerance=0.1)  # a floor is found in a test above
-    monkeypatch.setattr(studies.study.pieces, "energy_floor", quick)
+    monkeypatch.setattr(quietarm.studies.study.pieces, "energy_floor", quick)
     done(
         f"study {MOVE} --acceleration-limit 60 --bound 0.5 --terms 5 --points 3 --runs 1 {SMALL} "
         "--method nsga2 --output s.html --fronts fronts --quiet"

@@ -7,23 +7,23 @@ import sys
 import pytest
 from lines import QUIETARM
 
-import studies.cli.commands.moves.evaluate
-import studies.cli.commands.moves.floor
-import studies.cli.commands.moves.plan
-import studies.contest.imported
-import studies.contest.work
-import studies.reproduction.recompute
-import studies.runs.animating
-import studies.runs.foreign
-import studies.runs.loading
-import studies.runs.polishing
-import studies.runs.problems
-import studies.runs.robustness
-import studies.runs.searching
-import studies.study.work
-from models import __version__
-from ocp import InfeasibleTaskError
-from studies.cli import quietarm
+import quietarm.studies.cli.commands.moves.evaluate
+import quietarm.studies.cli.commands.moves.floor
+import quietarm.studies.cli.commands.moves.plan
+import quietarm.studies.contest.imported
+import quietarm.studies.contest.work
+import quietarm.studies.reproduction.recompute
+import quietarm.studies.runs.animating
+import quietarm.studies.runs.foreign
+import quietarm.studies.runs.loading
+import quietarm.studies.runs.polishing
+import quietarm.studies.runs.problems
+import quietarm.studies.runs.robustness
+import quietarm.studies.runs.searching
+import quietarm.studies.study.work
+from quietarm.models import __version__
+from quietarm.ocp import InfeasibleTaskError
+from quietarm.studies.cli import quietarm
 
 COMMANDS = sorted(quietarm.commands)
 
@@ -61,7 +61,7 @@ def test_no_command_is_answered_with_help(call):
     assert err == ""
 
 
-@pytest.mark.parametrize("launcher", [[QUIETARM], [sys.executable, "-m", "studies"]])
+@pytest.mark.parametrize("launcher", [[QUIETARM], [sys.executable, "-m", "quietarm"]])
 def test_the_installed_command_says_its_version(launcher):
     ran = subprocess.run([*launcher, "--version"], capture_output=True, text=True, timeout=60)
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, f"quietarm, version {__version__}\n", "")
@@ -78,23 +78,23 @@ def test_examples_in_the_help_are_read_without_complaint(
         reached.append(settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(studies.cli.commands.moves.plan, "plan_move", note)
-    monkeypatch.setattr(studies.cli.commands.moves.evaluate, "evaluate_coefficients", note)
-    monkeypatch.setattr(studies.runs.searching, "search", note)
-    monkeypatch.setattr(studies.runs.searching, "search_many", note)
-    monkeypatch.setattr(studies.runs.loading, "load_front", note)
-    monkeypatch.setattr(studies.runs.polishing, "run_polish", note)
-    monkeypatch.setattr(studies.runs.animating, "run_animate", note)
-    monkeypatch.setattr(studies.runs.problems, "run_problems", note)
-    monkeypatch.setattr(studies.runs.foreign, "read_found", note)
-    monkeypatch.setattr(studies.runs.robustness, "run_robustness", note)
-    monkeypatch.setattr(studies.study.work, "run_study", note)
-    monkeypatch.setattr(studies.contest.imported, "named_files", lambda given: {})
-    monkeypatch.setattr(studies.contest.work, "set_up", note)
-    monkeypatch.setattr(studies.cli.commands.moves.floor, "energy_floor", note)
+    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", note)
+    monkeypatch.setattr(quietarm.studies.cli.commands.moves.evaluate, "evaluate_coefficients", note)
+    monkeypatch.setattr(quietarm.studies.runs.searching, "search", note)
+    monkeypatch.setattr(quietarm.studies.runs.searching, "search_many", note)
+    monkeypatch.setattr(quietarm.studies.runs.loading, "load_front", note)
+    monkeypatch.setattr(quietarm.studies.runs.polishing, "run_polish", note)
+    monkeypatch.setattr(quietarm.studies.runs.animating, "run_animate", note)
+    monkeypatch.setattr(quietarm.studies.runs.problems, "run_problems", note)
+    monkeypatch.setattr(quietarm.studies.runs.foreign, "read_found", note)
+    monkeypatch.setattr(quietarm.studies.runs.robustness, "run_robustness", note)
+    monkeypatch.setattr(quietarm.studies.study.work, "run_study", note)
+    monkeypatch.setattr(quietarm.studies.contest.imported, "named_files", lambda given: {})
+    monkeypatch.setattr(quietarm.studies.contest.work, "set_up", note)
+    monkeypatch.setattr(quietarm.studies.cli.commands.moves.floor, "energy_floor", note)
     for name in ("epsilon", "weighted"):
         let_sweep(name, note)
-    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", note)
+    monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", note)
     shown = examples(out)
     assert shown
     for example in shown:

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from models import Plant, SingleLinkManipulator, known_plants, load_plant_file
-from ocp import Front, Plan, PointToPoint, evaluate_coefficients
-from studies.cli.application import COMMANDS
+from quietarm.models import Plant, SingleLinkManipulator, known_plants, load_plant_file
+from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients
+from quietarm.studies.cli.application import COMMANDS
 
 MOVE = "--target 1 --duration 3"
 GIVEN = "--coefficients=0.1 --quiet"

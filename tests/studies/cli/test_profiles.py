@@ -3,8 +3,8 @@
 import pytest
 from lines import MOVE
 
-from models import SingleLinkManipulator
-from ocp import (
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import (
     CycloidGaussians,
     CycloidNetwork,
     CycloidSpline,
@@ -14,8 +14,8 @@ from ocp import (
     ShapedCycloid,
     SolveStatus,
 )
-from ocp.profiles.cycloid import Cycloid
-from studies.registry.profiles import profile_of
+from quietarm.ocp.profiles.cycloid import Cycloid
+from quietarm.studies.registry.profiles import profile_of
 
 
 @pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from studies.cli.quantities import (
+from quietarm.studies.cli.quantities import (
     literal,
     parse_angle,
     parse_coefficients,

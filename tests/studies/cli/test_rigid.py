@@ -3,7 +3,7 @@
 import pytest
 from lines import MOVE
 
-from ocp import Front, Plan
+from quietarm.ocp import Front, Plan
 
 RIGID = f"{MOVE} --set beta1=0 --quiet"
 ENDS = "--bound 0.2 --terms 2 --points 3 --starts 1"

@@ -5,8 +5,8 @@ import json
 import pytest
 from lines import MOVE
 
-from models import SingleLinkManipulator
-from ocp import Plan
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import Plan
 
 
 @pytest.mark.parametrize("columns", ["1", "20", "45", "80", "0", "-5", "many"])

@@ -9,23 +9,23 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-import studies.comparison.measures
-import studies.runs.reports.comparison
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import (
+import quietarm.studies.comparison.measures
+import quietarm.studies.runs.reports.comparison
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     UncertainPlant,
     epsilon_front,
     evaluate_coefficients,
 )
-from studies.comparison.measures import FILL
-from studies.comparison.staircase import evenly_spaced, filled
-from studies.comparison.tables import units
-from studies.runs.reports.comparison import with_floor
+from quietarm.studies.comparison.measures import FILL
+from quietarm.studies.comparison.staircase import evenly_spaced, filled
+from quietarm.studies.comparison.tables import units
+from quietarm.studies.runs.reports.comparison import with_floor
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
-compare = partial(studies.comparison.measures.compare_fronts, fill=0)
+compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)
 # Corners are (10 mm, 1 J); `good` and `poor` stand in conftest.py.
 
 
@@ -277,7 +277,7 @@ def test_the_number_of_points_does_not_decide(real):
     thinned = dataclasses.replace(real, points=real.points[::2], method="thinned")
     whole, few = (
         group.runs[0]
-        for group in studies.comparison.measures.compare_fronts([real, thinned]).groups
+        for group in quietarm.studies.comparison.measures.compare_fronts([real, thinned]).groups
     )
     lost_as_found = whole.hypervolume_found - few.hypervolume_found
     assert lost_as_found > 0.004
@@ -302,7 +302,7 @@ def test_the_floor_is_the_assumed_plants_and_says_so(good, poor, uncertain, monk
         asked.append(task)
         return SimpleNamespace(complete=True, energy=0.3)
 
-    monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", floor_of)
+    monkeypatch.setattr(quietarm.studies.runs.reports.comparison, "energy_floor", floor_of)
     comparison, task = compare([good, poor]), good.task
     if uncertain:
         uncertain_task = dataclasses.replace(

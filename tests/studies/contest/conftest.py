@@ -5,9 +5,9 @@ import shutil
 import pytest
 from small_contest import LINE
 
-from studies.contest import problems
-from studies.contest.report import files, page
-from studies.display.html_page import element
+from quietarm.studies.contest import problems
+from quietarm.studies.contest.report import files, page
+from quietarm.studies.display.html_page import element
 
 
 def _small(patch):
@@ -37,7 +37,7 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture(scope="session")
 def held(tmp_path_factory):
     """The folder of a small contest."""
-    from studies.cli.application import quietarm
+    from quietarm.studies.cli.application import quietarm
 
     place = tmp_path_factory.mktemp("contest") / "held"
     with pytest.MonkeyPatch.context() as patch:

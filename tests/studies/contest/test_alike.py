@@ -5,11 +5,11 @@ import json
 import pytest
 from small_contest import LINE, METHODS, NAME
 
-import studies.contest.asked as asked
-from studies.contest.folder import Contents
-from studies.contest.measures import arenas_of
-from studies.contest.report.notes import unequal
-from studies.contest.report.paragraph import methods_paragraph
+import quietarm.studies.contest.asked as asked
+from quietarm.studies.contest.folder import Contents
+from quietarm.studies.contest.measures import arenas_of
+from quietarm.studies.contest.report.notes import unequal
+from quietarm.studies.contest.report.paragraph import methods_paragraph
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

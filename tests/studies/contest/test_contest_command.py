@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from small_contest import LINE, METHODS, NAME, found, rows_of
 
-import studies.contest.measures as measures
-import studies.contest.work as work
-from metaheuristics.budget.run import search_within
-from studies.contest.folder import Folder
+import quietarm.studies.contest.measures as measures
+import quietarm.studies.contest.work as work
+from quietarm.metaheuristics.budget.run import search_within
+from quietarm.studies.contest.folder import Folder
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from small_contest import LINE, NAME, OTHER, TINY, area, least_energy, rows_of
 
-from studies.contest.folder import Contents
-from studies.contest.measures import arenas_of
-from studies.contest.report import files
-from studies.contest.report.citations import bibtex
-from studies.contest.report.paragraph import methods_paragraph
-from studies.contest.statistics import pairs_on
+from quietarm.studies.contest.folder import Contents
+from quietarm.studies.contest.measures import arenas_of
+from quietarm.studies.contest.report import files
+from quietarm.studies.contest.report.citations import bibtex
+from quietarm.studies.contest.report.paragraph import methods_paragraph
+from quietarm.studies.contest.statistics import pairs_on
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from small_contest import NAME, TINY, documents
 
-from ocp import evaluate_coefficients, plan_move
-from studies.contest import landscape
-from studies.contest.landscape import LEVEL, _correlation, _different, landscape_of
+from quietarm.ocp import evaluate_coefficients, plan_move
+from quietarm.studies.contest import landscape
+from quietarm.studies.contest.landscape import LEVEL, _correlation, _different, landscape_of
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_minima_and_their_correlation_by_hand():
 def test_explain_adds_the_landscape_once(call, copy, monkeypatch):
     from small_contest import LINE
 
-    from studies.contest.report import files, page
+    from quietarm.studies.contest.report import files, page
 
     monkeypatch.setattr(landscape, "STARTS", 3)
     monkeypatch.setattr(landscape, "BOXES", (2.0,))

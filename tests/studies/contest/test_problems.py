@@ -3,10 +3,10 @@
 import pytest
 from small_contest import LINE, NAME, documents, rows_of
 
-from metaheuristics import PROBLEMS
-from studies.contest.folder import Contents
-from studies.contest.problems import Yardstick, problems_of
-from studies.paper.printed import CONDITIONS
+from quietarm.metaheuristics import PROBLEMS
+from quietarm.studies.contest.folder import Contents
+from quietarm.studies.contest.problems import Yardstick, problems_of
+from quietarm.studies.paper.printed import CONDITIONS
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -7,14 +7,14 @@ from dataclasses import replace
 import pytest
 from small_contest import NAME, rows_of
 
-from studies.contest.folder import Contents
-from studies.contest.measures import Arena, Field, arenas_of
-from studies.contest.report import page
-from studies.contest.report.figures import draw_ranks, ranks_figure
-from studies.contest.report.files import report_files
-from studies.contest.report.page import contest_page
-from studies.contest.statistics import ranking_over
-from studies.display.html_page import element
+from quietarm.studies.contest.folder import Contents
+from quietarm.studies.contest.measures import Arena, Field, arenas_of
+from quietarm.studies.contest.report import page
+from quietarm.studies.contest.report.figures import draw_ranks, ranks_figure
+from quietarm.studies.contest.report.files import report_files
+from quietarm.studies.contest.report.page import contest_page
+from quietarm.studies.contest.statistics import ranking_over
+from quietarm.studies.display.html_page import element
 
 MISSING = {
     "vepso": (0.20, 0.21, 0.22, 0.23, 0.24),

@@ -5,11 +5,11 @@ import json
 import pytest
 from small_contest import LINE, METHODS, NAME, OTHER, documents
 
-import studies.contest.work as work
-from metaheuristics.budget.run import search_within
-from metaheuristics.problems.catalogue import problem_of
-from studies.contest.asked import Contest
-from studies.contest.names import label_of, name_of
+import quietarm.studies.contest.work as work
+from quietarm.metaheuristics.budget.run import search_within
+from quietarm.metaheuristics.problems.catalogue import problem_of
+from quietarm.studies.contest.asked import Contest
+from quietarm.studies.contest.names import label_of, name_of
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -7,8 +7,8 @@ import signal
 import pytest
 from small_contest import LINE, found
 
-from studies.contest.folder import Contents
-from studies.contest.runs import Run
+from quietarm.studies.contest.folder import Contents
+from quietarm.studies.contest.runs import Run
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -4,7 +4,7 @@ import matplotlib as mpl
 import pytest
 from matplotlib.figure import Figure
 
-from studies.display.pictures import save_figure
+from quietarm.studies.display.pictures import save_figure
 
 
 def test_a_picture_that_cannot_be_drawn_is_told_in_one_line(tmp_path, monkeypatch):

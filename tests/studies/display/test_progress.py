@@ -6,7 +6,7 @@ import time
 import pytest
 from rich.console import Console
 
-from studies.display.progress import count, progress
+from quietarm.studies.display.progress import count, progress
 
 
 def console(**settings):

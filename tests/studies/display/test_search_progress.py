@@ -10,11 +10,11 @@ from itertools import repeat
 import pytest
 from rich.console import Console
 
-import studies.display.progress
-import studies.display.search_progress
-from metaheuristics import SearchProgress
-from ocp import Generation
-from studies.display.search_progress import search_display
+import quietarm.studies.display.progress
+import quietarm.studies.display.search_progress
+from quietarm.metaheuristics import SearchProgress
+from quietarm.ocp import Generation
+from quietarm.studies.display.search_progress import search_display
 
 # 120 of 500 generations in 3 s: 380 are left, at 40 a second 9.5 s
 NOW = SearchProgress(
@@ -38,7 +38,7 @@ def drawn(terminal):
 def clock(monkeypatch):
     """A clock that a test sets, for the plain lines."""
     now = [0.0]
-    monkeypatch.setattr(studies.display.search_progress.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(quietarm.studies.display.search_progress.time, "perf_counter", lambda: now[0])
     return now
 
 
@@ -138,7 +138,7 @@ def test_quiet_shows_nothing(terminal, front_of):
 
 def test_before_the_first_line_it_says_that_it_begins(monkeypatch):
     # as while workers start
-    monkeypatch.setattr(studies.display.progress, "pauses", lambda: repeat(0.01))
+    monkeypatch.setattr(quietarm.studies.display.progress, "pauses", lambda: repeat(0.01))
     pipe = console()
     with search_display(pipe) as display:
         for _ in range(1000):

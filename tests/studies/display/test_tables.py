@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from studies.display.tables import Column, Table, print_table
+from quietarm.studies.display.tables import Column, Table, print_table
 
 TABLE = Table(
     "Two moves",

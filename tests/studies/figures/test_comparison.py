@@ -9,19 +9,19 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-import studies.comparison.measures
-import studies.runs.loading
-import studies.runs.reports.comparison
-from models import ArmOnFlexibleLink
-from ocp import PointToPoint
-from studies.comparison.tables import runs_table, tables
-from studies.display.words import title_of
-from studies.figures.comparison import BANDS, PANELS, comparison_figure, looks, panel_figure
-from studies.paper.points import paper_points
-from studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
-from studies.paper.tasks import condition_of
+import quietarm.studies.comparison.measures
+import quietarm.studies.runs.loading
+import quietarm.studies.runs.reports.comparison
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import PointToPoint
+from quietarm.studies.comparison.tables import runs_table, tables
+from quietarm.studies.display.words import title_of
+from quietarm.studies.figures.comparison import BANDS, PANELS, comparison_figure, looks, panel_figure
+from quietarm.studies.paper.points import paper_points
+from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
+from quietarm.studies.paper.tasks import condition_of
 
-compare = partial(studies.comparison.measures.compare_fronts, fill=0)
+compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from ocp import Generation
-from studies.display.pictures import save_figure
-from studies.figures import draw_fronts, draw_hypervolume, draw_seed_energies, front_figure
+from quietarm.ocp import Generation
+from quietarm.studies.display.pictures import save_figure
+from quietarm.studies.figures import draw_fronts, draw_hypervolume, draw_seed_energies, front_figure
 
 
 def history(*shares):

@@ -6,8 +6,8 @@ from functools import partial
 import pytest
 from matplotlib.figure import Figure
 
-from ocp import Polish, evaluate_robustness
-from studies import figures
+from quietarm.ocp import Polish, evaluate_robustness
+from quietarm.studies import figures
 
 
 @pytest.mark.parametrize(

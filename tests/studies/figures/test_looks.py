@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from studies.figures import COLOURS, look
+from quietarm.studies.figures import COLOURS, look
 
 # Machado, Oliveira and Fernandes, IEEE TVCG 15 (2009), table of severity 1.0; linear sRGB.
 SIGHT = {

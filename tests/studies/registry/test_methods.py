@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from metaheuristics import PRESETS
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, polish_front
-from studies.registry.methods import (
+from quietarm.metaheuristics import PRESETS
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, polish_front
+from quietarm.studies.registry.methods import (
     EPSILON,
     METHODS,
     NSGA2,

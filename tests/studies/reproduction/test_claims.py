@@ -5,13 +5,13 @@ import re
 
 import pytest
 
-from studies.paper.printed import (
+from quietarm.studies.paper.printed import (
     ARM_HALF,
     ARM_WHOLE,
     ROWS,
     SINGLE_LINK_SIXTH,
 )
-from studies.reproduction.claims import claims
+from quietarm.studies.reproduction.claims import claims
 
 
 def costing(plan, **figures):

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from studies.display.words import move_of
-from studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
-from studies.reproduction.claims import claims
-from studies.reproduction.floor_dots import floor_dots
-from studies.reproduction.floor_table import (
+from quietarm.studies.display.words import move_of
+from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
+from quietarm.studies.reproduction.claims import claims
+from quietarm.studies.reproduction.floor_dots import floor_dots
+from quietarm.studies.reproduction.floor_table import (
     FREE,
     IN_BOX,
     PAPER,
@@ -22,8 +22,8 @@ from studies.reproduction.floor_table import (
     floor_tables,
     multiples,
 )
-from studies.reproduction.pieces import SEARCHES
-from studies.reproduction.report import print_reproduction
+from quietarm.studies.reproduction.pieces import SEARCHES
+from quietarm.studies.reproduction.report import print_reproduction
 
 TERMS = (2, 4, 6, 8, 10)
 

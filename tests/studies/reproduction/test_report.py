@@ -7,14 +7,14 @@ import re
 import pytest
 from rich.console import Console
 
-from studies.figures import BLUE, GREEN, RED
-from studies.figures.looks import ORANGE
-from studies.paper.printed import (
+from quietarm.studies.figures import BLUE, GREEN, RED
+from quietarm.studies.figures.looks import ORANGE
+from quietarm.studies.paper.printed import (
     ARM_HALF,
     SINGLE_LINK_SIXTH,
 )
-from studies.reproduction.claims import claims
-from studies.reproduction.report import (
+from quietarm.studies.reproduction.claims import claims
+from quietarm.studies.reproduction.report import (
     against_earlier,
     print_reproduction,
     redrawn,

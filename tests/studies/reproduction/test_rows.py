@@ -5,8 +5,8 @@ from itertools import pairwise, product
 
 import pytest
 
-from ocp import CycloidPolynomial, SolveStatus, plan_move
-from studies.paper.printed import (
+from quietarm.ocp import CycloidPolynomial, SolveStatus, plan_move
+from quietarm.studies.paper.printed import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
     ARM_WHOLE,
@@ -18,8 +18,8 @@ from studies.paper.printed import (
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
 )
-from studies.reproduction.pieces import SEARCHES, pieces_of_paper
-from studies.reproduction.recompute import recompute_paper
+from quietarm.studies.reproduction.pieces import SEARCHES, pieces_of_paper
+from quietarm.studies.reproduction.recompute import recompute_paper
 
 LAST_DIGIT = {2: 1e-4, 5: 1e-3}
 """The last digit that Tables 2 and 5 print [J]."""

@@ -13,9 +13,9 @@ EVERY_FILE = "--output plan.json --csv move.csv --figure move.png"
 COARSELY = [
     sys.executable,
     "-c",
-    "from ocp.floor import search; search.FIRST_INTERVALS = 24\n"
-    "from studies.display import search_progress; search_progress.PLAIN_SECONDS = 0.1\n"
-    "from studies.cli import main; main()",
+    "from quietarm.ocp.floor import search; search.FIRST_INTERVALS = 24\n"
+    "from quietarm.studies.display import search_progress; search_progress.PLAIN_SECONDS = 0.1\n"
+    "from quietarm.studies.cli import main; main()",
 ]
 """The command as a process, which says where a search is without delay, and finds coarser
 floors: how low these are is asked in tests/ocp/floor.

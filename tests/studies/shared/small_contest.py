@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from metaheuristics import problem_of
+from quietarm.metaheuristics import problem_of
 
 NAME, OTHER = "single-link-30deg-0.8s-2-terms", "arm-on-flexible-link-90deg-0.8s-2-terms"
 TINY = problem_of(NAME)

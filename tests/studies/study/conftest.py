@@ -3,10 +3,10 @@
 import pytest
 from small_study import CASES, FLOOR, QUICK
 
-import studies.study.pieces as study_pieces
-from studies.display.html_page import element
-from studies.study import page
-from studies.study.work import run_study
+import quietarm.studies.study.pieces as study_pieces
+from quietarm.studies.display.html_page import element
+from quietarm.studies.study import page
+from quietarm.studies.study.work import run_study
 
 
 @pytest.fixture(autouse=True)

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from small_study import FLOOR, QUICK
 
-import studies.study.findings as findings_module
-from studies.comparison.measures import compare_fronts
-from studies.study.findings import case_findings, findings, percent, percents
-from studies.study.page import method_lines
-from studies.study.pieces import StudySettings
+import quietarm.studies.study.findings as findings_module
+from quietarm.studies.comparison.measures import compare_fronts
+from quietarm.studies.study.findings import case_findings, findings, percent, percents
+from quietarm.studies.study.page import method_lines
+from quietarm.studies.study.pieces import StudySettings
 
 # What it says
 

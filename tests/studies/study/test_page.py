@@ -10,10 +10,10 @@ import pytest
 from matplotlib.figure import Figure
 from small_study import CASES, QUICK
 
-from studies.study.files import page_file
-from studies.study.overview import draw_study_gaps
-from studies.study.page import study_page
-from studies.study.work import Study
+from quietarm.studies.study.files import page_file
+from quietarm.studies.study.overview import draw_study_gaps
+from quietarm.studies.study.page import study_page
+from quietarm.studies.study.work import Study
 
 
 @pytest.fixture(scope="module")
@@ -125,7 +125,7 @@ def test_a_page_that_cannot_be_drawn_is_not_half_written(small, tmp_path, monkey
     def fail(*given):
         raise RuntimeError("drawing failed")
 
-    monkeypatch.setattr("studies.study.files.study_page", fail)
+    monkeypatch.setattr("quietarm.studies.study.files.study_page", fail)
     path, write = page_file(small, tmp_path / "study.html")
     with pytest.raises(RuntimeError, match="drawing failed"):
         write(path)

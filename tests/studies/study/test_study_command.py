@@ -3,12 +3,12 @@
 import pytest
 from small_study import QUICK
 
-import studies.study.work as study_module
-from ocp import Front
-from studies.paper.printed import CONDITIONS
-from studies.study.files import _file_name, front_files
-from studies.study.findings import case_findings, findings
-from studies.study.work import Study
+import quietarm.studies.study.work as study_module
+from quietarm.ocp import Front
+from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.study.files import _file_name, front_files
+from quietarm.studies.study.findings import case_findings, findings
+from quietarm.studies.study.work import Study
 
 # The command
 

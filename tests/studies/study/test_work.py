@@ -7,25 +7,25 @@ import pytest
 from small_study import CASES, METHODS, QUICK
 from small_study import FLOOR as FLOOR_FOUND
 
-import metaheuristics.ensemble as ensemble
-import studies.study.pieces as study_pieces
-import studies.study.work as study_module
-from metaheuristics import search
-from metaheuristics.sharing.pieces import INTERRUPTED, Done
-from ocp import (
+import quietarm.metaheuristics.ensemble as ensemble
+import quietarm.studies.study.pieces as study_pieces
+import quietarm.studies.study.work as study_module
+from quietarm.metaheuristics import search
+from quietarm.metaheuristics.sharing.pieces import INTERRUPTED, Done
+from quietarm.ocp import (
     CycloidPolynomial,
     InfeasibleTaskError,
     PointToPoint,
     QuietarmError,
     SolverFailedError,
 )
-from studies.comparison.measures import compare_fronts
-from studies.paper.case import Case
-from studies.paper.printed import CONDITIONS
-from studies.study.findings import case_findings
-from studies.study.page import study_page
-from studies.study.pieces import FLOOR, Key, StudySettings
-from studies.study.work import Study, amount_of_work, run_study
+from quietarm.studies.comparison.measures import compare_fronts
+from quietarm.studies.paper.case import Case
+from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.study.findings import case_findings
+from quietarm.studies.study.page import study_page
+from quietarm.studies.study.pieces import FLOOR, Key, StudySettings
+from quietarm.studies.study.work import Study, amount_of_work, run_study
 
 # What is run
 

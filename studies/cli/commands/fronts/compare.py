@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from studies.cli.options import FOLDER, INPUT, plant_file_option, quiet_option
-from studies.display.progress import working
+from quietarm.studies.cli.options import FOLDER, INPUT, plant_file_option, quiet_option
+from quietarm.studies.display.progress import working
 
 
 @click.command()
@@ -45,12 +45,12 @@ def compare(
       quietarm compare nsga2.json vepso.json
       quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
     """  # noqa: D301  # \b is click's: do not rewrap
-    from ocp import QuietarmError
-    from ocp.base.printable import printable
-    from studies.comparison.measures import FILL, compare_fronts
-    from studies.display.saving import finish
-    from studies.runs.loading import load_front
-    from studies.runs.reports.comparison import (
+    from quietarm.ocp import QuietarmError
+    from quietarm.ocp.base.printable import printable
+    from quietarm.studies.comparison.measures import FILL, compare_fronts
+    from quietarm.studies.display.saving import finish
+    from quietarm.studies.runs.loading import load_front
+    from quietarm.studies.runs.reports.comparison import (
         comparison_files,
         print_comparison,
         with_floor,

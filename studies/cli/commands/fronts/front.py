@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
-from metaheuristics import PRESETS
-from studies.cli.arguments import refuse_idle, task_of
-from studies.cli.options import (
+from quietarm.metaheuristics import PRESETS
+from quietarm.studies.cli.arguments import refuse_idle, task_of
+from quietarm.studies.cli.options import (
     INPUT,
     NUMBER,
     OUTPUT,
@@ -28,9 +28,9 @@ from studies.cli.options import (
     terms_option,
     workers_options,
 )
-from studies.registry.methods import METHODS, WEIGHTED, Kind, methods_of
-from studies.registry.profiles import profile_of
-from studies.runs.files import FrontFiles
+from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, methods_of
+from quietarm.studies.registry.profiles import profile_of
+from quietarm.studies.runs.files import FrontFiles
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
@@ -155,12 +155,12 @@ def front(
     task = task_of(rest)
     options["profile"] = profile_of(profile, task, terms)
     if method.kind is Kind.GRADIENT:
-        from studies.runs.sweeping import run_sweep as run
+        from quietarm.studies.runs.sweeping import run_sweep as run
 
         if options.get("weights"):
             refuse_idle(context, "--weights", {"points": ("weights that the sweep chooses",)})
     else:
-        from studies.runs.searching import run_front as run
+        from quietarm.studies.runs.searching import run_front as run
 
         options["settings"] = settings_of_one(options.pop("setting"))
     run(task, method, options, FrontFiles(output, csv_file, figure), quiet)

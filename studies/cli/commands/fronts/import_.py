@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
-from ocp.base.printable import printable
-from studies.cli.arguments import task_of
-from studies.cli.options import (
+from quietarm.ocp.base.printable import printable
+from quietarm.studies.cli.arguments import task_of
+from quietarm.studies.cli.options import (
     INPUT,
     NUMBER,
     OUTPUT,
@@ -19,8 +19,8 @@ from studies.cli.options import (
     quiet_option,
     task_options,
 )
-from studies.registry.profiles import FAMILIES
-from studies.runs.files import FrontFiles
+from quietarm.studies.registry.profiles import FAMILIES
+from quietarm.studies.runs.files import FrontFiles
 
 
 @click.command("import")
@@ -60,8 +60,8 @@ def import_(
       quietarm import found.mat arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 \\
           --method "my swarm" --output front.json --figure front.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    from studies.runs.foreign import read_found
-    from studies.runs.importing import run_import
+    from quietarm.studies.runs.foreign import read_found
+    from quietarm.studies.runs.importing import run_import
 
     task = task_of(rest)
     found = read_found(file)

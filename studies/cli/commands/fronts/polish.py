@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from studies.cli.options import INPUT, OUTPUT, PICTURE, WHOLE, plant_file_option, quiet_option
-from studies.runs.files import FrontFiles
+from quietarm.studies.cli.options import INPUT, OUTPUT, PICTURE, WHOLE, plant_file_option, quiet_option
+from quietarm.studies.runs.files import FrontFiles
 
 
 @click.command()
@@ -43,6 +43,6 @@ def polish(
       quietarm polish front.json
       quietarm polish front.json --points 50 --output polished.json --figure polished.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    from studies.runs.polishing import run_polish
+    from quietarm.studies.runs.polishing import run_polish
 
     run_polish(front, points, FrontFiles(output, csv_file, figure), quiet)

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
-from studies.cli.options import FOLDER, Parsed, quiet_option
+from quietarm.studies.cli.options import FOLDER, Parsed, quiet_option
 
 
 def _named(text: str) -> str:
-    from metaheuristics.problems.catalogue import problem_of
+    from quietarm.metaheuristics.problems.catalogue import problem_of
 
     return problem_of(text).name
 
@@ -32,6 +32,6 @@ def problems(names: tuple[str, ...], again: bool, output: Path | None, quiet: bo
       quietarm problems single-link-30deg-0.8s --output fronts
       quietarm problems --again --output fronts
     """  # noqa: D301  # \b is click's: do not rewrap
-    from studies.runs.problems import run_problems
+    from quietarm.studies.runs.problems import run_problems
 
     run_problems(names, again, output, quiet)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from studies.cli.options import INPUT, NUMBER, SHARE, STATE, WHOLE, plant_file_option, quiet_option
+from quietarm.studies.cli.options import INPUT, NUMBER, SHARE, STATE, WHOLE, plant_file_option, quiet_option
 
 
 @click.command()
@@ -44,7 +44,7 @@ def animate(
       quietarm animate plan.json zvd.json --speed 25% --output slowly.gif
       quietarm animate plan.json --deflection-scale 5 --width 1200 --output move.gif
     """  # noqa: D301  # \b is click's: do not rewrap
-    from studies.runs.animating import run_animate
+    from quietarm.studies.runs.animating import run_animate
 
     run_animate(
         plans, output, speed=speed, deflection_scale=deflection_scale,

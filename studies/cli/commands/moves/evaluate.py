@@ -8,9 +8,9 @@ from typing import Any
 import click
 from rich.console import Console
 
-from ocp import evaluate_coefficients
-from studies.cli.arguments import plan_files, refuse_idle, split_options
-from studies.cli.options import (
+from quietarm.ocp import evaluate_coefficients
+from quietarm.studies.cli.arguments import plan_files, refuse_idle, split_options
+from quietarm.studies.cli.options import (
     COEFFICIENTS,
     output_options,
     profile_option,
@@ -18,10 +18,10 @@ from studies.cli.options import (
     robust_option,
     task_options,
 )
-from studies.display.progress import working
-from studies.display.saving import finish
-from studies.registry.profiles import FAMILIES, profile_of
-from studies.runs.reports.plan import print_plan
+from quietarm.studies.display.progress import working
+from quietarm.studies.display.saving import finish
+from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.runs.reports.plan import print_plan
 
 
 @click.command()

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import click
 from rich.console import Console
 
-from ocp import energy_floor
-from ocp.base.interrupts import note_interrupts
-from studies.cli.arguments import task_of
-from studies.cli.options import NUMBER, OUTPUT, PICTURE, WHOLE, quiet_option, task_options
-from studies.display.progress import working
-from studies.display.saving import drawing, finish, interruption
-from studies.runs.files import refuse_same_file
-from studies.runs.reports.floor import plan_beside, print_floor
+from quietarm.ocp import energy_floor
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.studies.cli.arguments import task_of
+from quietarm.studies.cli.options import NUMBER, OUTPUT, PICTURE, WHOLE, quiet_option, task_options
+from quietarm.studies.display.progress import working
+from quietarm.studies.display.saving import drawing, finish, interruption
+from quietarm.studies.runs.files import refuse_same_file
+from quietarm.studies.runs.reports.floor import plan_beside, print_floor
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,7 +64,7 @@ def floor(
             plan = plan_beside(found) if found.complete else None
 
     def picture() -> Figure:
-        from studies.figures import floor_figure
+        from quietarm.studies.figures import floor_figure
 
         return floor_figure(found, plan)
 

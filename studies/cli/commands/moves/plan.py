@@ -7,10 +7,10 @@ from typing import Any
 import click
 from rich.console import Console
 
-from ocp import plan_move
-from ocp.program.solving import Solver
-from studies.cli.arguments import plan_files, refuse_idle, split_options
-from studies.cli.options import (
+from quietarm.ocp import plan_move
+from quietarm.ocp.program.solving import Solver
+from quietarm.studies.cli.arguments import plan_files, refuse_idle, split_options
+from quietarm.studies.cli.options import (
     LENGTH,
     NUMBER,
     WHOLE,
@@ -25,12 +25,12 @@ from studies.cli.options import (
     task_options,
     terms_option,
 )
-from studies.display.progress import working
-from studies.display.saving import finish, interruption
-from studies.display.words import print_lines
-from studies.registry.methods import METHODS, Kind, methods_of
-from studies.registry.profiles import FAMILIES, profile_of
-from studies.runs.reports.plan import print_plan
+from quietarm.studies.display.progress import working
+from quietarm.studies.display.saving import finish, interruption
+from quietarm.studies.display.words import print_lines
+from quietarm.studies.registry.methods import METHODS, Kind, methods_of
+from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.runs.reports.plan import print_plan
 
 GRADIENT = "gradient"
 OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "setting", "polish")
@@ -104,7 +104,7 @@ def plan(
                 solver=solver,
             )  # fmt: skip
     else:
-        from studies.runs.searching import plan_by_search
+        from quietarm.studies.runs.searching import plan_by_search
 
         found = plan_by_search(
             task, METHODS[method], motions, bound, residual_limit, seed, polish, quiet,

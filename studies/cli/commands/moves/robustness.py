@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from studies.cli.options import FOLDER, INPUT, SHARE, WHOLE, plant_file_option, quiet_option
+from quietarm.studies.cli.options import FOLDER, INPUT, SHARE, WHOLE, plant_file_option, quiet_option
 
 
 @click.command(context_settings={"ignore_unknown_options": True})
@@ -47,7 +47,7 @@ def robustness(
       quietarm robustness plan.json zvd.json --frequency 20% --output robust
       quietarm robustness plan.json --omega 10% --alpha1 5% --samples 100000
     """  # noqa: D301  # \b is click's: do not rewrap
-    from studies.runs.robustness import run_robustness
+    from quietarm.studies.runs.robustness import run_robustness
 
     named: dict[str, float] = {}
     for name, shares in {"frequency": frequency, "damping": damping}.items():

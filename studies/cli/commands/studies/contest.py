@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 from rich.console import Console
 
-from studies.cli.options import (
+from quietarm.studies.cli.options import (
     FOLDER,
     WHOLE,
     method_settings_option,
@@ -18,7 +18,7 @@ from studies.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from metaheuristics.sharing.pieces import Done
+    from quietarm.metaheuristics.sharing.pieces import Done
 
 
 @click.command()
@@ -87,23 +87,23 @@ def contest(
       quietarm contest single-link-30deg-0.8s --runs 5 --evaluations 5000 --output small
       quietarm contest single-link-30deg-0.8s --runs 5 --import "my swarm=results" --output small
     """  # noqa: D301  # \b is click's: do not rewrap
-    from metaheuristics.sharing.workers import Workers
-    from ocp import QuietarmError
-    from studies.contest.asked import Contest
-    from studies.contest.folder import Contents, Folder
-    from studies.contest.imported import named_files
-    from studies.contest.measures import arenas_of
-    from studies.contest.problems import problems_of
-    from studies.contest.report.files import check_places, report_files
-    from studies.contest.report.notes import not_alike, wrong_claims
-    from studies.contest.report.tables import summary_table
-    from studies.contest.statistics import why_none
-    from studies.contest.work import pieces_of, run_contest, set_up
-    from studies.display.progress import progress, working
-    from studies.display.saving import Together, finish
-    from studies.display.tables import print_table
-    from studies.display.words import print_lines
-    from studies.runs.files import warn_of_workers
+    from quietarm.metaheuristics.sharing.workers import Workers
+    from quietarm.ocp import QuietarmError
+    from quietarm.studies.contest.asked import Contest
+    from quietarm.studies.contest.folder import Contents, Folder
+    from quietarm.studies.contest.imported import named_files
+    from quietarm.studies.contest.measures import arenas_of
+    from quietarm.studies.contest.problems import problems_of
+    from quietarm.studies.contest.report.files import check_places, report_files
+    from quietarm.studies.contest.report.notes import not_alike, wrong_claims
+    from quietarm.studies.contest.report.tables import summary_table
+    from quietarm.studies.contest.statistics import why_none
+    from quietarm.studies.contest.work import pieces_of, run_contest, set_up
+    from quietarm.studies.display.progress import progress, working
+    from quietarm.studies.display.saving import Together, finish
+    from quietarm.studies.display.tables import print_table
+    from quietarm.studies.display.words import print_lines
+    from quietarm.studies.runs.files import warn_of_workers
 
     names = tuple(name.strip() for name in methods.split(","))
     asked = Contest(

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from studies.cli.options import FOLDER, WHOLE, quiet_option, workers_at_hand_options
+from quietarm.studies.cli.options import FOLDER, WHOLE, quiet_option, workers_at_hand_options
 
 
 @click.command()
@@ -31,18 +31,18 @@ def reproduce(
       quietarm reproduce --output results
       quietarm reproduce --output results --workers 1
     """  # noqa: D301  # \b is click's: do not rewrap
-    from metaheuristics.sharing.pieces import InterruptedPiece
-    from metaheuristics.sharing.workers import Workers, cores_at_hand
-    from ocp import QuietarmError
-    from studies.display.progress import progress
-    from studies.display.saving import finish, inside
-    from studies.display.words import print_lines
-    from studies.reproduction.claims import claims
-    from studies.reproduction.pieces import pieces_of_paper
-    from studies.reproduction.recompute import recompute_paper
-    from studies.reproduction.report import print_reproduction, reproduction_files
-    from studies.reproduction.unfinished import FILE, unfinished_table
-    from studies.runs.files import warn_of_workers
+    from quietarm.metaheuristics.sharing.pieces import InterruptedPiece
+    from quietarm.metaheuristics.sharing.workers import Workers, cores_at_hand
+    from quietarm.ocp import QuietarmError
+    from quietarm.studies.display.progress import progress
+    from quietarm.studies.display.saving import finish, inside
+    from quietarm.studies.display.words import print_lines
+    from quietarm.studies.reproduction.claims import claims
+    from quietarm.studies.reproduction.pieces import pieces_of_paper
+    from quietarm.studies.reproduction.recompute import recompute_paper
+    from quietarm.studies.reproduction.report import print_reproduction, reproduction_files
+    from quietarm.studies.reproduction.unfinished import FILE, unfinished_table
+    from quietarm.studies.runs.files import warn_of_workers
 
     if workers is None:
         workers = cores_at_hand() if scheduler is None else 1

@@ -10,9 +10,9 @@ import click
 from click.core import ParameterSource
 from rich.console import Console
 
-from metaheuristics import PRESETS
-from studies.cli.arguments import task_of
-from studies.cli.options import (
+from quietarm.metaheuristics import PRESETS
+from quietarm.studies.cli.arguments import task_of
+from quietarm.studies.cli.options import (
     FOLDER,
     INPUT,
     NUMBER,
@@ -25,7 +25,7 @@ from studies.cli.options import (
     task_options,
     workers_options,
 )
-from studies.registry.methods import PAPERS
+from quietarm.studies.registry.methods import PAPERS
 
 
 def _not_required(command: click.Command) -> click.Command:
@@ -86,18 +86,18 @@ def study(
       quietarm study single-link --target 30deg --duration 0.8 --torque-limit 0.2 --fronts fronts
       quietarm study single-link --target 30deg --duration 0.8 --method smsemoa --method gde3
     """  # noqa: D301  # \b is click's: do not rewrap
-    from ocp import QuietarmError
-    from studies.display.progress import progress
-    from studies.display.saving import Together, finish
-    from studies.display.words import counted
-    from studies.paper.case import Case
-    from studies.paper.printed import CONDITIONS
-    from studies.runs.files import refuse_same_file, warn_of_workers
-    from studies.runs.loading import load_front
-    from studies.study.files import front_files, page_file
-    from studies.study.findings import case_findings, findings
-    from studies.study.pieces import StudySettings
-    from studies.study.work import amount_of_work, run_study
+    from quietarm.ocp import QuietarmError
+    from quietarm.studies.display.progress import progress
+    from quietarm.studies.display.saving import Together, finish
+    from quietarm.studies.display.words import counted
+    from quietarm.studies.paper.case import Case
+    from quietarm.studies.paper.printed import CONDITIONS
+    from quietarm.studies.runs.files import refuse_same_file, warn_of_workers
+    from quietarm.studies.runs.loading import load_front
+    from quietarm.studies.study.files import front_files, page_file
+    from quietarm.studies.study.findings import case_findings, findings
+    from quietarm.studies.study.pieces import StudySettings
+    from quietarm.studies.study.work import amount_of_work, run_study
 
     refuse_same_file([("--output", output), ("--fronts", fronts)])
     names = ("terms", "points", "runs", "seed", "workers", "scheduler", "population", "generations")

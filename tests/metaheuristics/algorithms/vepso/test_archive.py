@@ -10,8 +10,8 @@ from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 from target_problems import Constrained, States, Targets, Undefined
 
-from metaheuristics.algorithms.velocity import VelocityRule
-from metaheuristics.algorithms.vepso import VEPSO, least_crowded
+from quietarm.metaheuristics.algorithms.velocity import VelocityRule
+from quietarm.metaheuristics.algorithms.vepso import VEPSO, least_crowded
 
 # -- archive --
 

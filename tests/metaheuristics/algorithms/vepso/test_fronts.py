@@ -6,8 +6,8 @@ import pytest
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
 
-from metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
-from metaheuristics.algorithms.vepso import VEPSO
+from quietarm.metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
+from quietarm.metaheuristics.algorithms.vepso import VEPSO
 
 # The paper takes 100 particles in a swarm and 200 iterations; fewer are run where they are enough.
 # IGD is the mean distance of the true front to the archive, HV the archive's hypervolume over the

@@ -10,14 +10,14 @@ from hypothesis.extra.numpy import arrays
 from pymoo.optimize import minimize
 from target_problems import States, Targets, step
 
-from metaheuristics.algorithms.velocity import (
+from quietarm.metaheuristics.algorithms.velocity import (
     CONSTRICTION,
     INERTIA_2002,
     VelocityRule,
     clip,
     reflect,
 )
-from metaheuristics.algorithms.vepso import VEPSO
+from quietarm.metaheuristics.algorithms.vepso import VEPSO
 
 
 @pytest.mark.parametrize("n_obj", [2, 3, 4])

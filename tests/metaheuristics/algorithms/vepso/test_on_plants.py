@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from small_searches import HALF, LIMITED, SIXTH
 
-from metaheuristics import PAPER_BOX, PopulationObjective, search
-from ocp import CycloidPolynomial, resimulate, rollout
+from quietarm.metaheuristics import PAPER_BOX, PopulationObjective, search
+from quietarm.ocp import CycloidPolynomial, resimulate, rollout
 
 TASKS = {
     "single link": SIXTH,

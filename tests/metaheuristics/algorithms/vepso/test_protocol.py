@@ -11,13 +11,13 @@ from pymoo.optimize import minimize
 from pymoo.problems import get_problem
 from target_problems import Targets
 
-from metaheuristics.algorithms.velocity import (
+from quietarm.metaheuristics.algorithms.velocity import (
     CONSTRICTION,
     INERTIA_2002,
     PAPER_GROUP,
     VelocityRule,
 )
-from metaheuristics.algorithms.vepso import VEPSO
+from quietarm.metaheuristics.algorithms.vepso import VEPSO
 
 # -- arguments --
 

@@ -9,8 +9,8 @@ from pymoo.problems import get_problem
 from states import same
 from target_problems import Constrained, States, Targets, Undefined, step
 
-from metaheuristics.algorithms.velocity import INERTIA_2002
-from metaheuristics.algorithms.vepso import VEPSO
+from quietarm.metaheuristics.algorithms.velocity import INERTIA_2002
+from quietarm.metaheuristics.algorithms.vepso import VEPSO
 
 
 def plain(value):

@@ -10,8 +10,8 @@ import sys
 import pytest
 from lines import EVERY_FILE, MOVE
 
-from ocp import Plan
-from studies.reproduction.pieces import pieces_of_paper
+from quietarm.ocp import Plan
+from quietarm.studies.reproduction.pieces import pieces_of_paper
 
 INTERRUPTED = "quietarm: interrupted; nothing was written"
 GUARD = 120
@@ -22,21 +22,21 @@ GUARD = 120
 # The solver waits for the signal: no start is solved for 200 iterations of a twentieth of a second.
 ANNOUNCED = """
 import time
-import studies.cli
-import studies.cli.commands.moves.plan
-import studies.display.progress
-from ocp.program import sqp
+import quietarm.studies.cli
+import quietarm.studies.cli.commands.moves.plan
+import quietarm.studies.display.progress
+from quietarm.ocp.program import sqp
 
 sqp._Run.iterate = lambda run: time.sleep(0.05)
-studies.display.progress.SILENT_SECONDS = 1e6
-solve = studies.cli.commands.moves.plan.plan_move
+quietarm.studies.display.progress.SILENT_SECONDS = 1e6
+solve = quietarm.studies.cli.commands.moves.plan.plan_move
 
 def announced(*arguments, **settings):
     print("begun", flush=True)
     return solve(*arguments, **settings)
 
-studies.cli.commands.moves.plan.plan_move = announced
-studies.cli.main()
+quietarm.studies.cli.commands.moves.plan.plan_move = announced
+quietarm.studies.cli.main()
 """
 
 
@@ -58,8 +58,8 @@ def interrupt(process, delay):
 # The same, which says so when the first start is solved, and waits for the signal then.
 AT_THE_FIRST = """
 import time
-import studies.cli
-from ocp.program import sqp
+import quietarm.studies.cli
+from quietarm.ocp.program import sqp
 
 iterate, solved = sqp._Run.iterate, []
 
@@ -71,7 +71,7 @@ def announced(run):
         time.sleep(1)
 
 sqp._Run.iterate = announced
-studies.cli.main()
+quietarm.studies.cli.main()
 """
 
 
@@ -120,7 +120,7 @@ def test_ctrl_c_keeps_the_best_of_the_starts_that_were_solved(solving):
 
 def test_ctrl_c_ends_a_reproduction_and_keeps_what_was_solved(folder):
     process = subprocess.Popen(
-        [sys.executable, "-m", "studies", "reproduce", "--workers", "1", "--output", "results"],
+        [sys.executable, "-m", "quietarm", "reproduce", "--workers", "1", "--output", "results"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -11,7 +11,7 @@ HEAVY = {"matplotlib", "moocore", "pymoo", "scipy"}
 NOTED = """
 import sys
 sys.argv[0] = "quietarm"
-from studies.cli import main
+from quietarm.studies.cli import main
 try:
     main()
 finally:
@@ -39,14 +39,14 @@ def of_gradient(found):
 def test_help_and_version_load_no_command(tmp_path, line):
     found = loaded(line, tmp_path)
     assert found.isdisjoint(HEAVY)
-    assert not [name for name in found if name.startswith("studies.cli.commands")]
+    assert not [name for name in found if name.startswith("quietarm.studies.cli.commands")]
 
 
 def test_the_help_of_a_command_loads_no_other(tmp_path):
     found = loaded("plan --help", tmp_path)
     assert found.isdisjoint(HEAVY)
-    commands = [name for name in found if name.startswith("studies.cli.commands.")]
-    assert sorted(commands) == ["studies.cli.commands.moves", "studies.cli.commands.moves.plan"]
+    commands = [name for name in found if name.startswith("quietarm.studies.cli.commands.")]
+    assert sorted(commands) == ["quietarm.studies.cli.commands.moves", "quietarm.studies.cli.commands.moves.plan"]
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_a_matplotlibrc_that_is_broken_is_told_in_a_line(tmp_path, content, said
     (tmp_path / "matplotlibrc").write_bytes(content)
     line = f"evaluate {MOVE} --coefficients=0 --quiet --output p.json --figure m.png"
     ran = subprocess.run(
-        [sys.executable, "-m", "studies", *line.split()],
+        [sys.executable, "-m", "quietarm", *line.split()],
         cwd=tmp_path, capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert (ran.stderr, ran.returncode) == (f"quietarm: {said}\n", 0 if drawn else 2)

@@ -2,7 +2,7 @@
 
 from lines import MOVE, run
 
-from ocp import Front
+from quietarm.ocp import Front
 
 
 def test_its_workers_share_the_runs(folder):

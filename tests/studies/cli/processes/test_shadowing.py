@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from lines import MOVE, run
 
-import studies.cli
+import quietarm.studies.cli
 
 
 @pytest.mark.parametrize("package", ["ocp", "studies"])
@@ -27,7 +27,7 @@ def test_a_users_own_models_is_named_as_what_is_in_the_way(folder, package, shad
 
 def test_a_users_own_models_that_is_loaded_already_is_named_too(folder):
     (folder / "models.py").write_text("class Car: ...\n")
-    (folder / "script.py").write_text("import models\nimport ocp\n")
+    (folder / "script.py").write_text("from quietarm import models\nimport ocp\n")
     ran = subprocess.run([sys.executable, "script.py"], capture_output=True, text=True, timeout=60)
     assert ran.returncode == 1
     assert ran.stderr.splitlines()[-1].startswith(f"ImportError: {folder / 'models.py'} takes")
@@ -43,7 +43,7 @@ def with_on_path(folder, line):
     """Run the command with a folder of the user's on PYTHONPATH."""
     path = os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
     return subprocess.run(
-        [sys.executable, "-P", "-m", "studies", *line.split(), "--quiet"],
+        [sys.executable, "-P", "-m", "quietarm", *line.split(), "--quiet"],
         capture_output=True, text=True, timeout=60, env={**os.environ, "PYTHONPATH": path},
     )  # fmt: skip
 
@@ -85,7 +85,7 @@ def test_a_file_on_the_path_with_the_name_of_a_package_is_told_in_one_line(folde
 def test_what_the_first_import_would_need_is_told_too(folder, shadow):
     (folder / shadow).parent.mkdir(exist_ok=True)
     (folder / shadow).write_text("x = 1\n")
-    script = Path(studies.cli.__file__).with_name("quietarm")
+    script = Path(quietarm.studies.cli.__file__).with_name("quietarm")
     path = os.pathsep.join([str(folder), *filter(None, sys.path)])
     ran = subprocess.run(
         [sys.executable, "-S", "-P", script, "problems"],

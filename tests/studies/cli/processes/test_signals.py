@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from lines import MOVE
 
-import studies.cli
-import studies.runs.reports.comparison
-from ocp import Front
+import quietarm.studies.cli
+import quietarm.studies.runs.reports.comparison
+from quietarm.ocp import Front
 
 SEARCH = "--bound 0.2 --population 20 --generations 20"
 STUDY = (
@@ -114,7 +114,7 @@ def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder,
     assert call(f"{line} epsilon --output a.json")[0] == 0
     assert call(f"{line} weighted --output b.json")[0] == 0
     monkeypatch.setattr(
-        studies.runs.reports.comparison,
+        quietarm.studies.runs.reports.comparison,
         "energy_floor",
         lambda task: signal.raise_signal(signal.SIGINT),
     )
@@ -124,7 +124,7 @@ def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder,
 
 
 def test_ctrl_c_while_the_plan_beside_it_is_looked_for_keeps_the_floor(call, folder, monkeypatch):
-    command = import_module("studies.cli.commands.moves.floor")
+    command = import_module("quietarm.studies.cli.commands.moves.floor")
     beside = command.plan_beside
 
     def interrupted(floor):
@@ -150,11 +150,11 @@ class Signalling:
 
 sys.meta_path.insert(0, Signalling())
 sys.argv = ["quietarm", *{words!r}]
-from studies.cli import main
+from quietarm.studies.cli import main
 main()
 """
-LOADED = ["pathlib", "ocp", "casadi", "models", "click", "studies.cli", "rich.console",
-          "studies.cli.commands.moves.plan", "studies.display.words"]  # fmt: skip
+LOADED = ["pathlib", "ocp", "casadi", "models", "click", "quietarm.studies.cli", "rich.console",
+          "quietarm.studies.cli.commands.moves.plan", "quietarm.studies.display.words"]  # fmt: skip
 
 
 # One handler is for both: SIGTERM comes at the beginning, in the middle and at the end.
@@ -174,7 +174,7 @@ def test_while_it_is_loaded_it_ends_in_a_line(folder, module, number):
 
 
 def test_ctrl_c_is_answered_before_anything_else_is_loaded():
-    script = Path(studies.cli.__file__).with_name("quietarm")
+    script = Path(quietarm.studies.cli.__file__).with_name("quietarm")
     code = (
         "import sys; known = {*sys.modules, '_signal'}\n"
         "class End:\n"
@@ -186,12 +186,12 @@ def test_ctrl_c_is_answered_before_anything_else_is_loaded():
     ran = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=GUARD
     )
-    assert set(ran.stderr.split()) == {"studies", "studies.early"}
+    assert set(ran.stderr.split()) == {"studies", "quietarm.studies.early"}
 
 
 def test_a_library_that_is_loaded_leaves_signals_alone():
     code = (
-        "import signal, studies.cli\n"
+        "import signal, quietarm.studies.cli\n"
         "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler\n"
         "assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL\n"
     )
@@ -229,7 +229,7 @@ def test_a_signal_that_the_shell_ignores_stays_ignored(folder):
 
 
 AT_END = (
-    "import os, signal, studies.cli;"
+    "import os, signal, quietarm.studies.cli;"
     "[os.kill(os.getpid(), s) for s in (signal.SIGINT, signal.SIGHUP)];"
-    "studies.cli.main()"
+    "quietarm.studies.cli.main()"
 )

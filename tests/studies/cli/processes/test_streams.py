@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from lines import COARSELY, MOVE
 
-from ocp import Plan
+from quietarm.ocp import Plan
 
 EVALUATE = f"evaluate {MOVE} --coefficients=0.003347,-0.1697 --quiet"  # the paper's Table 1
 FULL = Path("/dev/full")
@@ -30,7 +30,7 @@ def fronts(front_of, tmp_path_factory):
     """A front that holds what it says, found by the gradient in a moment."""
     where = tmp_path_factory.mktemp("fronts")
     ran = subprocess.run(
-        [sys.executable, "-m", "studies", *shlex.split(f"front {MOVE} --method epsilon --quiet"),
+        [sys.executable, "-m", "quietarm", *shlex.split(f"front {MOVE} --method epsilon --quiet"),
          *shlex.split("--terms 2 --points 3 --bound 0.3 --output a.json")],
         cwd=where, capture_output=True, text=True, timeout=240, check=False,
     )  # fmt: skip
@@ -124,7 +124,7 @@ def test_one_output_that_cannot_be_written_takes_no_other_with_it(call, folder, 
 def test_what_a_plant_file_writes_by_other_means_is_no_answer(folder):
     (folder / "loud.py").write_text(
         "import os\n"
-        "from models import SingleLinkManipulator\n"
+        "from quietarm.models import SingleLinkManipulator\n"
         "class Loud(SingleLinkManipulator):\n"
         "    name = 'loud'\n"
         "os.write(1, b'by its number\\n')\n"

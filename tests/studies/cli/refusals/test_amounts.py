@@ -8,7 +8,7 @@ from itertools import islice
 import pytest
 from lines import MOVE
 
-from studies.display import progress
+from quietarm.studies.display import progress
 
 FRONT = f"front {MOVE} --bound 0.2 --method"
 HUGE = "100000000000"
@@ -58,9 +58,9 @@ def test_a_table_that_would_be_too_long_is_refused_first(call):
 
 SLOW = """
 import time
-import studies.cli
-import studies.cli.commands.moves.plan as command
-import studies.display.progress as progress
+import quietarm.studies.cli
+import quietarm.studies.cli.commands.moves.plan as command
+import quietarm.studies.display.progress as progress
 
 assert progress.SILENT_SECONDS == 2.0
 progress.SILENT_SECONDS = 0.01
@@ -80,7 +80,7 @@ def noted(console, *lines):
 
 progress.print_lines = noted
 command.plan_move = slow
-studies.cli.main()
+quietarm.studies.cli.main()
 """
 
 

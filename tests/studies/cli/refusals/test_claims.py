@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from lines import MOVE
 
-from metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, PointToPoint, epsilon_front
-from ocp.base import files
+from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front
+from quietarm.ocp.base import files
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +106,7 @@ def test_a_checkpoint_that_its_plant_does_not_bear_out_is_refused(call, figure):
 # Lines given to the command one after another; the statuses with which they end.
 ONE_AFTER_ANOTHER = """
 import sys
-from studies.cli import main
+from quietarm.studies.cli import main
 
 for line in sys.argv[1:]:
     try:

@@ -3,7 +3,7 @@
 import pytest
 from lines import MOVE
 
-from studies.cli.application import COMMANDS
+from quietarm.studies.cli.application import COMMANDS
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 
 import pytest
 
-from studies.paper.printed import SINGLE_LINK_SIXTH
-from studies.reproduction.side_by_side.picture import systems_figure
+from quietarm.studies.paper.printed import SINGLE_LINK_SIXTH
+from quietarm.studies.reproduction.side_by_side.picture import systems_figure
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,9 @@
 
 import pytest
 
-from ocp import evaluate_coefficients
-from studies.paper.points import residual_level
-from studies.paper.printed import (
+from quietarm.ocp import evaluate_coefficients
+from quietarm.studies.paper.points import residual_level
+from quietarm.studies.paper.printed import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
     ARM_WHOLE,
@@ -16,8 +16,8 @@ from studies.paper.printed import (
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
 )
-from studies.registry.methods import NSGA2, VEPSO
-from studies.reproduction.side_by_side.results import searched
+from quietarm.studies.registry.methods import NSGA2, VEPSO
+from quietarm.studies.reproduction.side_by_side.results import searched
 
 SYSTEMS = [
     "plain cycloid", "ZV", "ZVD", "EI", "paper", "network", "Gaussians", "spline", "VEPSO",

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from studies.reproduction.side_by_side.table import (
+from quietarm.studies.reproduction.side_by_side.table import (
     all_systems,
     print_systems,
     seconds_in_words,

@@ -7,12 +7,12 @@ import re
 
 import pytest
 
-import studies.comparison.measures
-import studies.runs.loading
-import studies.runs.reports.comparison
-from metaheuristics.objective.claims import check_figures
-from ocp import FrontPoint, SolverFailedError, evaluate_coefficients
-from studies.paper.printed import ARM_HALF
+import quietarm.studies.comparison.measures
+import quietarm.studies.runs.loading
+import quietarm.studies.runs.reports.comparison
+from quietarm.metaheuristics.objective.claims import check_figures
+from quietarm.ocp import FrontPoint, SolverFailedError, evaluate_coefficients
+from quietarm.studies.paper.printed import ARM_HALF
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
 FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
@@ -23,7 +23,7 @@ def files(good, poor, tmp_path, monkeypatch):
     """Two files, in the folder of the test."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
-    monkeypatch.setattr(studies.runs.loading, "check_figures", lambda front, name: None)
+    monkeypatch.setattr(quietarm.studies.runs.loading, "check_figures", lambda front, name: None)
     good.save("good.json")
     poor.save("poor.json")
     return tmp_path
@@ -71,7 +71,7 @@ def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     class Found:
         energy, complete = 0.1234, True
 
-    monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", lambda task: Found())
+    monkeypatch.setattr(quietarm.studies.runs.reports.comparison, "energy_floor", lambda task: Found())
     code, out, _ = call("compare good.json poor.json --as-found")
     assert code == 0
     assert "arrive at rest, not of polynomials only, is 0.1234 J" in " ".join(out.split())
@@ -81,7 +81,7 @@ def test_a_floor_that_is_not_found_is_no_obstacle(call, files, monkeypatch):
     def fail(task):
         raise SolverFailedError("no start ended at an optimum")
 
-    monkeypatch.setattr(studies.runs.reports.comparison, "energy_floor", fail)
+    monkeypatch.setattr(quietarm.studies.runs.reports.comparison, "energy_floor", fail)
     code, out, err = call("compare good.json poor.json --as-found")
     assert (code, err) == (0, "no floor: no start ended at an optimum\n")
     assert "Floor" not in out

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import studies.runs.searching
-from metaheuristics import search
-from metaheuristics.ensemble import LostSeedsError
-from metaheuristics.sharing.pieces import Done, LostPieceError
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, Front, PointToPoint
-from studies.display.search_progress import SearchDisplay
+import quietarm.studies.runs.searching
+from quietarm.metaheuristics import search
+from quietarm.metaheuristics.ensemble import LostSeedsError
+from quietarm.metaheuristics.sharing.pieces import Done, LostPieceError
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint
+from quietarm.studies.display.search_progress import SearchDisplay
 
 MOVE = "single-link --target 30deg --duration 0.8 --bound 0.2 --terms 2"
 SMALL = f"front {MOVE} --method vepso --population 8 --generations 4"
@@ -124,12 +124,12 @@ def test_the_seeds_that_arrive_still_are_counted(call, monkeypatch, front_of):
         front_of([(0.5, energy), (5, 0.1)] if energy else [(5, 0.1)], seed=seed)
         for seed, energy in enumerate((0.25, None, 0.75))
     ]
-    monkeypatch.setattr(studies.runs.searching, "search_many", lambda *_, **__: fronts)
+    monkeypatch.setattr(quietarm.studies.runs.searching, "search_many", lambda *_, **__: fronts)
     _, out, _ = call(f"{SMALL} --runs 3")
     assert out.splitlines()[-1] == (
         "energy at 1 mm: median 0.5 J, quartiles 0.375 to 0.625 J; 2 of 3 seeds reach 1 mm"
     )
-    monkeypatch.setattr(studies.runs.searching, "search_many", lambda *_, **__: [fronts[1]] * 3)
+    monkeypatch.setattr(quietarm.studies.runs.searching, "search_many", lambda *_, **__: [fronts[1]] * 3)
     _, out, _ = call(f"{SMALL} --runs 3")
     assert out.splitlines()[-1] == "energy at 1 mm: none; 0 of 3 seeds reach 1 mm"
 
@@ -158,7 +158,7 @@ def test_what_is_found_beside_a_process_that_died_is_written(call, monkeypatch, 
         lost = Done(answers=fronts, failures={1: LostPieceError("its worker died 3 times")})
         raise LostSeedsError(lost, [fronts[0]], 2)
 
-    monkeypatch.setattr(studies.runs.searching, "search_many", lose)
+    monkeypatch.setattr(quietarm.studies.runs.searching, "search_many", lose)
     code, out, err = call(f"{SMALL} --runs 2 --workers 2 --output f.json")
     assert (code, out.splitlines()[-1]) == (1, "wrote f-seed0.json")
     assert err == (
@@ -172,7 +172,7 @@ def test_what_is_found_beside_a_process_that_died_is_written(call, monkeypatch, 
 def test_more_workers_than_cores_are_warned_of(call, monkeypatch, front_of, workers, warned):
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
     monkeypatch.setattr(
-        studies.runs.searching, "search_many", lambda *_, **__: [front_of([(1, 0.2)])]
+        quietarm.studies.runs.searching, "search_many", lambda *_, **__: [front_of([(1, 0.2)])]
     )
     _, _, err = call(f"{SMALL} --runs 2 --workers {workers}")
     assert ("2 workers will share 1 core\n" in err) == warned

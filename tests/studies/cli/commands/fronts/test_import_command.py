@@ -10,9 +10,9 @@ import pytest
 import scipy.io
 from lines import MOVE
 
-from metaheuristics import problem_of
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, Front, PointToPoint, rollout
+from quietarm.metaheuristics import problem_of
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, rollout
 
 IMPORT = f"{MOVE} --quiet"
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)

@@ -5,12 +5,12 @@ import math
 import pytest
 from lines import MOVE
 
-import studies.runs.searching
-import studies.study.work
-from metaheuristics import PRESETS, search
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, Front, Plan, PointToPoint
-from studies.study.page import method_lines
+import quietarm.studies.runs.searching
+import quietarm.studies.study.work
+from quietarm.metaheuristics import PRESETS, search
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint
+from quietarm.studies.study.page import method_lines
 
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
 FRONT = f"front {MOVE} --bound 0.2 --terms 2"
@@ -47,7 +47,7 @@ def test_a_plan_by_any_method_with_settings(call, monkeypatch):
         asked.update(given, method=method)
         return directly(method, settings=given["settings"])
 
-    monkeypatch.setattr(studies.runs.searching, "search", small)
+    monkeypatch.setattr(quietarm.studies.runs.searching, "search", small)
     line = f"plan {MOVE} --bound 0.2 --terms 2 --method spea2 --setting normalise=false"
     code, _, err = call(f"{line} --residual-limit 50mm --quiet --output p.json")
     assert (code, err) == (0, "")
@@ -64,7 +64,7 @@ def test_a_study_of_the_methods_that_are_asked_for(call, monkeypatch):
         asked.append(settings)
         raise ValueError("enough")
 
-    monkeypatch.setattr(studies.study.work, "run_study", at_once)
+    monkeypatch.setattr(quietarm.studies.study.work, "run_study", at_once)
     line = "study --method smsemoa --method nsga2 --method smsemoa --setting smsemoa.mutation=1"
     call(f"{line} --quiet")
     (settings,) = asked

@@ -2,9 +2,9 @@
 
 import pytest
 
-from metaheuristics import PROBLEMS, problem_of
-from metaheuristics.problems import catalogue
-from ocp import Front
+from quietarm.metaheuristics import PROBLEMS, problem_of
+from quietarm.metaheuristics.problems import catalogue
+from quietarm.ocp import Front
 
 SMALL = "single-link-30deg-0.8s-2-terms"
 THIRD = "single-link-30deg-0.8s-torque"

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models import ArmOnFlexibleLink
-from ocp import CycloidPolynomial, FailedPoint, Front, PointToPoint, epsilon_front, weighted_front
-from ocp.front.points import LEVELS
-from studies.figures.sweep import sweep_figure
+from quietarm.models import ArmOnFlexibleLink
+from quietarm.ocp import CycloidPolynomial, FailedPoint, Front, PointToPoint, epsilon_front, weighted_front
+from quietarm.ocp.front.points import LEVELS
+from quietarm.studies.figures.sweep import sweep_figure
 
 MOVE = "arm-on-flexible-link --target 90deg --duration 0.8 --terms 3"
 TASK, PROFILE = PointToPoint(ArmOnFlexibleLink(), np.pi / 2, 0.8), CycloidPolynomial(3)

@@ -6,9 +6,9 @@ import signal
 import pytest
 from PIL import Image
 
-import studies.runs.animating
-from ocp import PointToPoint, evaluate_coefficients
-from studies.animation import stage
+import quietarm.studies.runs.animating
+from quietarm.ocp import PointToPoint, evaluate_coefficients
+from quietarm.studies.animation import stage
 
 SMALL = "--width 240 --frames-per-second 4 --quiet"
 
@@ -32,13 +32,13 @@ def test_plans_of_different_plants_and_durations_share_a_picture(call, folder):
 
 
 def test_a_plan_alone_stands_beside_the_plain_cycloid(call, monkeypatch):
-    drawn, animate = [], studies.runs.animating.animate
+    drawn, animate = [], quietarm.studies.runs.animating.animate
 
     def note(motions, **settings):
         drawn.append((motions, settings))
         return animate(motions, **settings)
 
-    monkeypatch.setattr(studies.runs.animating, "animate", note)
+    monkeypatch.setattr(quietarm.studies.runs.animating, "animate", note)
     line = "animate plan.json --speed 200% --deflection-scale 3 --output move.gif"
     code, _, err = call(f"{line} --width 240 --frames-per-second 4")
     assert (code, err.splitlines()[-1]) == (0, "4 of 4 frames")

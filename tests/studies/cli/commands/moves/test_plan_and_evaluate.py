@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 from lines import EVERY_FILE, MOVE, PLAN, TWO_TERMS, run
 
-import studies.cli.commands.moves.evaluate
-import studies.cli.commands.moves.floor
-import studies.cli.commands.moves.plan
-import studies.reproduction.recompute
-import studies.runs.loading
-import studies.runs.polishing
-import studies.runs.searching
-import studies.study.work
-from ocp import InfeasibleTaskError, Plan
-from ocp.task.quantities import QUANTITIES
+import quietarm.studies.cli.commands.moves.evaluate
+import quietarm.studies.cli.commands.moves.floor
+import quietarm.studies.cli.commands.moves.plan
+import quietarm.studies.reproduction.recompute
+import quietarm.studies.runs.loading
+import quietarm.studies.runs.polishing
+import quietarm.studies.runs.searching
+import quietarm.studies.study.work
+from quietarm.ocp import InfeasibleTaskError, Plan
+from quietarm.ocp.task.quantities import QUANTITIES
 
 
 @pytest.fixture(scope="module")
@@ -153,7 +153,7 @@ def test_every_limit_reaches_the_solver(monkeypatch, call):
         asked.update(task=task, profile=profile, settings=settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(studies.cli.commands.moves.plan, "plan_move", note)
+    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", note)
     call(
         f"plan {MOVE} --torque-limit 0.2 --speed-limit 1.5 --acceleration-limit 9 "
         "--jerk-limit 700 --deflection-limit 80mm --residual-window 500ms --residual-limit 1mm "
@@ -176,7 +176,7 @@ def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call)
         asked.update(task=task, profile=profile, settings=settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(studies.cli.commands.moves.plan, "plan_move", note)
+    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", note)
     call(f"plan {MOVE}")
     assert (asked["task"].start, asked["task"].limits) == (0.0, {})
     assert asked["task"].residual_window == 1.0
@@ -212,7 +212,7 @@ def test_a_reason_of_several_lines_is_put_on_one(refused, monkeypatch):
     def end(*arguments, **settings):
         raise InfeasibleTaskError("no way\n  at all")
 
-    monkeypatch.setattr(studies.cli.commands.moves.plan, "plan_move", end)
+    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", end)
     assert refused(f"{PLAN} {EVERY_FILE}", status=1) == "quietarm: no way at all\n"
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-import studies.runs.searching
-from metaheuristics import search
-from models import SingleLinkManipulator
-from ocp import CycloidPolynomial, Plan, PointToPoint
+import quietarm.studies.runs.searching
+from quietarm.metaheuristics import search
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint
 
 MOVE = "single-link --target 30deg --duration 0.8 --bound 0.2 --terms 2"
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
@@ -24,7 +24,7 @@ def quick(monkeypatch):
     def small(task, method, **settings):
         return search(task, method, population=20, generations=30, **settings)
 
-    monkeypatch.setattr(studies.runs.searching, "search", small)
+    monkeypatch.setattr(quietarm.studies.runs.searching, "search", small)
 
 
 def test_a_plan_by_search_is_the_cheapest_point_within_the_limit(call, quick):

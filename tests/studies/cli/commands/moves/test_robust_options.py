@@ -8,11 +8,11 @@ import pytest
 from lines import MOVE, TWO_TERMS
 from rich.console import Console
 
-from models import SingleLinkManipulator
-from ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
-from ocp.answers.provenance import SolveSettings
-from ocp.front.robust import EXCESS
-from studies.runs.reports.plan import print_plan
+from quietarm.models import SingleLinkManipulator
+from quietarm.ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
+from quietarm.ocp.answers.provenance import SolveSettings
+from quietarm.ocp.front.robust import EXCESS
+from quietarm.studies.runs.reports.plan import print_plan
 
 
 def test_a_robust_plan_says_where_it_leaves_most(call):

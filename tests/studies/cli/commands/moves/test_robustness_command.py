@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from metaheuristics.objective import claims
-from models import ArmOnFlexibleLink, SingleLinkManipulator
-from ocp import (
+from quietarm.metaheuristics.objective import claims
+from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
+from quietarm.ocp import (
     PointToPoint,
     SolverFailedError,
     UncertainPlant,
@@ -18,8 +18,8 @@ from ocp import (
     plan_move,
     shaped_cycloid,
 )
-from studies.figures import draw_robustness, robustness_figure
-from studies.runs import robustness as work
+from quietarm.studies.figures import draw_robustness, robustness_figure
+from quietarm.studies.runs import robustness as work
 
 FILES = {"report.md", "robustness.csv", "sweeps.csv", "samples.csv", "robustness.png"}
 RANGES = {"frequency": 0.1, "damping": 0.5}
@@ -113,7 +113,7 @@ def test_errors_of_parameters_stand_between_plans_and_options(call):
 
 def test_dashes_stand_for_underscores(call, folder):
     (folder / "crane.py").write_text(CRANE)
-    from models import load_plant_file
+    from quietarm.models import load_plant_file
 
     [kind] = load_plant_file(folder / "crane.py").values()
     evaluate_coefficients(PointToPoint(kind(), 1.0, 1.0), []).save("crane.json")
@@ -126,7 +126,7 @@ CRANE = """
 from dataclasses import dataclass
 from typing import ClassVar
 
-from models import Plant
+from quietarm.models import Plant
 
 
 @dataclass(frozen=True)

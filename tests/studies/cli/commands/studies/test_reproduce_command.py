@@ -5,20 +5,20 @@ from pathlib import Path
 
 import pytest
 
-import studies.cli.commands.moves.evaluate
-import studies.cli.commands.moves.floor
-import studies.cli.commands.moves.plan
-import studies.reproduction.recompute
-import studies.runs.loading
-import studies.runs.polishing
-import studies.runs.searching
-import studies.study.work
-from metaheuristics.sharing import workers
-from metaheuristics.sharing.workers import Workers
-from ocp import QuietarmError
-from studies.paper.printed import ROWS
-from studies.reproduction.pieces import pieces_of_paper
-from studies.reproduction.report import reproduction_files
+import quietarm.studies.cli.commands.moves.evaluate
+import quietarm.studies.cli.commands.moves.floor
+import quietarm.studies.cli.commands.moves.plan
+import quietarm.studies.reproduction.recompute
+import quietarm.studies.runs.loading
+import quietarm.studies.runs.polishing
+import quietarm.studies.runs.searching
+import quietarm.studies.study.work
+from quietarm.metaheuristics.sharing import workers
+from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.ocp import QuietarmError
+from quietarm.studies.paper.printed import ROWS
+from quietarm.studies.reproduction.pieces import pieces_of_paper
+from quietarm.studies.reproduction.report import reproduction_files
 
 
 @pytest.fixture
@@ -29,7 +29,7 @@ def reproduced(reproduction, monkeypatch):
         begin("the only solve")
         return reproduction
 
-    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", at_once)
+    monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", at_once)
 
 
 def test_reproduce_prints_every_printed_and_recomputed_energy(call, reproduced, reproduction):
@@ -62,7 +62,7 @@ def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(
     # what is in the files: tests/studies/reproduction
     every = reproduction_files
     monkeypatch.setattr(
-        "studies.reproduction.report.reproduction_files",
+        "quietarm.studies.reproduction.report.reproduction_files",
         lambda *given: [(path, Path.touch) for path, _ in every(*given)],
     )
     (folder / "results").mkdir()
@@ -84,7 +84,7 @@ def test_reproduce_is_shared_by_as_many_workers_as_are_asked_for(call, reproduct
         asked.append((seeds, workers))
         return reproduction
 
-    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", note)
+    monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", note)
     assert call("reproduce --quiet --workers 2 --seeds 5")[0] == 0
     assert call("reproduce --quiet --workers 1")[0] == 0
     assert asked == [(5, Workers(2)), (1, Workers())]
@@ -98,7 +98,7 @@ def test_by_default_it_takes_the_cores_at_hand(call, monkeypatch, dask):
         asked.append(where)
         raise QuietarmError("this is enough")
 
-    monkeypatch.setattr(studies.reproduction.recompute, "recompute_paper", note)
+    monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", note)
     monkeypatch.setattr(workers.os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
     monkeypatch.setattr(workers.os, "cpu_count", lambda: 2)
     monkeypatch.setattr(workers, "find_spec", lambda _: object() if dask else None)
@@ -108,7 +108,7 @@ def test_by_default_it_takes_the_cores_at_hand(call, monkeypatch, dask):
 
 def test_reproduce_makes_the_folder(call, reproduced, folder, monkeypatch):
     every = reproduction_files
-    report = "studies.reproduction.report.reproduction_files"
+    report = "quietarm.studies.reproduction.report.reproduction_files"
     monkeypatch.setattr(report, lambda *given: [f for f in every(*given) if f[0].suffix == ".md"])
     code, _, _ = call("reproduce --output results")
     assert code == 0
