@@ -46,9 +46,6 @@ import casadi as ca
 import numpy as np
 import rockit
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
-from rich.table import Table
-from rockit.sampling_method import FunctionGrid
-
 from quietarm.models import ArmOnFlexibleLink, JointMotion
 from quietarm.ocp import CycloidPolynomial, PointToPoint, energy_floor
 from quietarm.ocp.floor.grid import first_grid
@@ -57,6 +54,8 @@ from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
+from rich.table import Table
+from rockit.sampling_method import FunctionGrid
 
 try:
     import yapss

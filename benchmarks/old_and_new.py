@@ -244,9 +244,14 @@ def modes() -> dict:
 def robust() -> dict:
     """Random machines whose frequency is uncertain."""
     import numpy as np
-
     from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-    from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, UncertainPlant, plan_move
+    from quietarm.ocp import (
+        CycloidPolynomial,
+        PointToPoint,
+        QuietarmError,
+        UncertainPlant,
+        plan_move,
+    )
     from quietarm.ocp import evaluate_coefficients as evaluate
 
     plants = (
@@ -292,10 +297,10 @@ def robust() -> dict:
 def moves() -> dict:
     """Many moves of one plant."""
     import numpy as np
-
-    from quietarm import ocp
     from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
     from quietarm.ocp import PointToPoint, plan_move
+
+    from quietarm import ocp
 
     def many(plant) -> dict:
         random = np.random.default_rng(1)
@@ -358,7 +363,6 @@ def searches() -> dict:
 def population() -> dict:
     """The objective of many candidates."""
     import numpy as np
-
     from quietarm.metaheuristics import PopulationObjective
     from quietarm.ocp import CycloidPolynomial
 
@@ -425,7 +429,6 @@ def many_seeds(task, terms: int, bound: float | None, seeds: int) -> dict:
 def links(count: int):
     """Flexible links on one hub, invented; 8, 15, 22, ... rad/s: told apart within 1 s."""
     import numpy as np
-
     from quietarm.models import Plant, parameter
 
     frequencies = (8.0 + 7.0 * np.arange(count)).tolist()

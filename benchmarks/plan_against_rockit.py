@@ -47,9 +47,6 @@ import numpy as np
 import rockit
 from old_and_new import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
-from rich.table import Table
-from rockit.sampling_method import FunctionGrid
-
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from quietarm.ocp.program.ipopt import OPTIONS
 from quietarm.ocp.program.program import Program
@@ -57,6 +54,8 @@ from quietarm.ocp.program.solution import ENERGY, RESIDUAL, Ask, Solution
 from quietarm.ocp.program.solving import Row, solve
 from quietarm.ocp.simulation.collocation import NODES, mesh
 from quietarm.ocp.simulation.resimulation import resimulate
+from rich.table import Table
+from rockit.sampling_method import FunctionGrid
 
 PROFILE = CycloidPolynomial(6)
 STEPS = (16, 24, 32, 50, 100, 200)

@@ -48,11 +48,10 @@ from numpy.typing import NDArray
 from parts.measuring import console, forget_compiled, machine, timed
 from parts.population.equations import PLANT, PROFILE, TASK
 from parts.population.rows import CANDIDATES, SHARE, Method, methods
-from rich.table import Table
-
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.program.batch import batch
+from rich.table import Table
 
 SECOND_TASK = PointToPoint(PLANT, start=-pi / 2, target=pi / 4, duration=1.0)
 BOX, MANY = 0.5, 10_000

@@ -22,8 +22,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from parts.measuring import console, machine
-from rich.table import Table
-
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import (
     Plan,
@@ -34,6 +32,7 @@ from quietarm.ocp import (
     plan_move,
     shaped_cycloid,
 )
+from rich.table import Table
 
 LINK, ARM, LINKS = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
 MOVES = {

@@ -18,8 +18,6 @@ from time import perf_counter, process_time
 
 import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
-from rich.table import Table
-
 from quietarm.metaheuristics import PRESETS, PopulationObjective, search, search_many
 from quietarm.metaheuristics.ensemble import energies_at, energy_at
 from quietarm.ocp import evaluate_coefficients
@@ -31,6 +29,7 @@ from quietarm.studies.paper.printed import (
     ROWS,
     SINGLE_LINK_SIXTH,
 )
+from rich.table import Table
 
 METHODS = {"vepso": SINGLE_LINK_SIXTH, "nsga2": ARM_HALF}
 TARGETS = {"vepso": 2.0, "nsga2": 10.0}

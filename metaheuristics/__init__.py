@@ -4,13 +4,10 @@
 libraries, `algorithms` and `runs`. It may import `ocp` and `models`.
 """
 
-# ruff: noqa: I001  # ocp first: it finds a user's file that shadows models
 from __future__ import annotations
 
 from importlib import import_module
 from typing import TYPE_CHECKING
-
-from quietarm import ocp  # noqa: F401  # pyright: ignore[reportUnusedImport]
 
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset
 from quietarm.metaheuristics.algorithms.velocity import (

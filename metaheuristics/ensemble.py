@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
-
 from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.search import search

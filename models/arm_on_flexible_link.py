@@ -8,7 +8,6 @@ from typing import ClassVar
 
 import casadi as ca
 import numpy as np
-
 from quietarm.models.drawing import TIP_SLOPE, Body, flexible_link, rigid_link
 from quietarm.models.joint_motion import Expression, JointMotion
 from quietarm.models.plant import Plant, parameter

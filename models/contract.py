@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.models.joint_motion import Expression, JointMotion
 
 if TYPE_CHECKING:

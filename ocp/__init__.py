@@ -5,13 +5,13 @@ The rooms, each of which may import those before it: `base`, `task`, `profiles`,
 `models`; what a user needs is here.
 """
 
-# ruff: noqa: E402  # the check must come before anything that imports models
-from quietarm.ocp.base.shadowing import refuse_shadow
-
-refuse_shadow("models")
-
 from quietarm.ocp.answers.provenance import SolveSettings, Verification
-from quietarm.ocp.base.errors import FileFormatError, InfeasibleTaskError, QuietarmError, SolverFailedError
+from quietarm.ocp.base.errors import (
+    FileFormatError,
+    InfeasibleTaskError,
+    QuietarmError,
+    SolverFailedError,
+)
 from quietarm.ocp.base.status import SolveStatus
 from quietarm.ocp.floor.answer import Floor, FloorSettings
 from quietarm.ocp.floor.search import energy_floor

@@ -2,6 +2,7 @@
 
 import re
 import subprocess
+import sys
 import tomllib
 from importlib import import_module, metadata
 from pathlib import Path
@@ -10,12 +11,13 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
-
 from quietarm.models import __version__
+
+import quietarm
 
 ROOT = Path(__file__).parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-PACKAGES = ["models", "ocp", "metaheuristics", "studies"]
+PACKAGES = ["quietarm", "models", "ocp", "metaheuristics", "studies"]
 PINS = (ROOT / "constraints.txt").read_text().splitlines()
 REQUIREMENTS = {
     "runtime": PYPROJECT["project"]["dependencies"],
@@ -49,17 +51,49 @@ def test_the_changelog_begins_with_this_version():
     assert headings[0] == __version__
 
 
-def test_the_wheel_holds_the_four_packages():
-    assert PYPROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"] == PACKAGES
-    top = {path.name for path in ROOT.iterdir() if (path / "__init__.py").is_file()}
-    assert top == set(PACKAGES)
+def test_what_is_installed_stands_under_one_name():
+    tops = {path.parts[0] for path in metadata.files("quietarm")}
+    ours = {top for top in tops if top != ".." and not top.endswith((".dist-info", ".pth"))}
+    assert ours <= {"quietarm"}  # nothing where a checkout is installed to be edited
+    wheel = PYPROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]
+    assert wheel["only-include"] == PACKAGES
+    assert {path.name for path in ROOT.iterdir() if (path / "__init__.py").is_file()} == set(
+        PACKAGES
+    )
+    for package in PACKAGES[1:]:
+        assert wheel["sources"][package] == f"quietarm/{package}"
+        assert (
+            Path(import_module(f"quietarm.{package}").__file__).parent / "__init__.py"
+        ).is_file()
 
 
-@pytest.mark.parametrize("package", PACKAGES)
-def test_every_package_says_that_it_is_typed(package):
-    installed = Path(import_module(package).__file__).parent
-    for folder in (ROOT / package, installed):
-        assert (folder / "py.typed").is_file()
+def test_it_says_that_it_is_typed():
+    assert (Path(quietarm.__file__).parent / "py.typed").is_file()
+
+
+def test_a_script_works_beside_files_of_the_packages_names(tmp_path):
+    for name in PACKAGES[1:]:
+        (tmp_path / f"{name}.py").write_text(f"mine = {name!r}\n")
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import models, ocp, studies\n"
+        "import quietarm as qa\n"
+        "task = qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8)\n"
+        "print(models.mine, ocp.mine, studies.mine, qa.plan_move(task).status.name)\n"
+    )
+    ran = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=120)
+    assert (ran.stdout, ran.stderr) == ("models ocp studies OPTIMAL\n", "")
+
+
+def test_every_public_name_is_one_of_quietarm():
+    packages = ["models", "ocp", "metaheuristics", "studies.figures"]
+    for package in packages:
+        module = import_module(f"quietarm.{package}")
+        for name in module.__all__:
+            assert getattr(quietarm, name) is getattr(module, name)
+            assert name in dir(quietarm)
+    with pytest.raises(AttributeError, match="'plan_mve'"):
+        quietarm.plan_mve  # noqa: B018
 
 
 def test_the_licence_is_mit_and_shipped():
@@ -69,16 +103,12 @@ def test_the_licence_is_mit_and_shipped():
     assert any(path.name == "LICENSE" for path in metadata.files("quietarm"))
 
 
-def test_the_command_is_the_script_of_studies():
-    (script,) = PYPROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["shared-scripts"]
-    (installed,) = (  # beside the one in the package
-        path
-        for path in metadata.files("quietarm")
-        if path.name == "quietarm" and path.parent.name == "bin"
+def test_the_command_is_a_script_and_a_module():
+    assert PYPROJECT["project"]["scripts"] == {"quietarm": "quietarm.studies.cli:main"}
+    ran = subprocess.run(
+        [sys.executable, "-m", "quietarm", "--version"], capture_output=True, text=True, timeout=60
     )
-    lines = (ROOT / script).read_text().splitlines()
-    assert installed.locate().read_text().splitlines()[1:] == lines[1:]
-    assert lines[0] == "#!python"  # pip puts its own Python there
+    assert ran.stdout == f"quietarm, version {__version__}\n"
 
 
 @pytest.mark.parametrize("pin", PINS)

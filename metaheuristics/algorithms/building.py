@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
-
 from quietarm.metaheuristics.algorithms.presets import Preset
 from quietarm.metaheuristics.algorithms.settings import Value
 

@@ -15,7 +15,6 @@ from pymoo.operators.mutation.pm import PM
 from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.selection.tournament import TournamentSelection
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
-
 from quietarm.metaheuristics.algorithms.states import (
     POPULATION_ARRAYS,
     array_of,

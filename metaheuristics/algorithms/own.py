@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 
 from pymoo.core.algorithm import Algorithm
-
 from quietarm.metaheuristics.algorithms.presets import PRESETS
 
 

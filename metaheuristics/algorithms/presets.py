@@ -292,5 +292,5 @@ _ALL = (
 
 PRESETS: Mapping[str, Preset] = {preset.name: preset for preset in _ALL}
 """By name. Section 3.1: 100 particles in a swarm, 200 iterations. Section 3.2: population 200, 500
-generations, crossover 0.8, mutation 0.01 (`quietarm.metaheuristics.algorithms.nsga2`). All other settings
+generations, crossover 0.8, mutation 0.01 (`nsga2.py`). All other settings
 are pymoo's defaults."""

@@ -14,7 +14,6 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.population import Population
-
 from quietarm.ocp.base.checks import finite, whole
 
 POPULATION_ARRAYS = ("X", "F", "G", "H")

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 import numpy as np
-
 from quietarm.ocp.base.checks import not_negative, positive
 
 Array = np.ndarray

@@ -27,7 +27,6 @@ from pymoo.core.population import Population
 from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.util.display.multi import MultiObjectiveOutput
-
 from quietarm.metaheuristics.algorithms.states import (
     POPULATION_ARRAYS,
     array_of,
@@ -36,7 +35,12 @@ from quietarm.metaheuristics.algorithms.states import (
     population_of,
     restore_generator,
 )
-from quietarm.metaheuristics.algorithms.velocity import BOUNDARIES, CONSTRICTION, Array, VelocityRule
+from quietarm.metaheuristics.algorithms.velocity import (
+    BOUNDARIES,
+    CONSTRICTION,
+    Array,
+    VelocityRule,
+)
 from quietarm.metaheuristics.objective.problem import UNUSABLE
 from quietarm.ocp.base.checks import positive, whole
 

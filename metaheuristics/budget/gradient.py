@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics.budget.problem import BudgetProblem
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.front.sweep import Sweep

@@ -8,7 +8,6 @@ from typing import Any
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics.budget.record import Mark, Scale, Visits, marks_of
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.objective.problem import UNUSABLE, MoveProblem

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp import Front
 from quietarm.ocp.base.ranges import Count, NotNegative, Positive
 

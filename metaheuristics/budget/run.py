@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.budget.record import Mark, Scale, Visits
 from quietarm.metaheuristics.runs.settings import search_versions
@@ -20,7 +19,6 @@ from quietarm.ocp.base.names import unknown
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
-
     from quietarm.metaheuristics.budget.problem import BudgetProblem
 
 MOST_EVALUATIONS = 10_000_000

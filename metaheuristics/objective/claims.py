@@ -9,7 +9,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.ocp import Front, FrontPoint, JointProfile, Plan, PointToPoint
 from quietarm.ocp.answers.provenance import AGREEMENT, REST

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.base.checks import real_array, whole
 from quietarm.ocp.base.interrupts import keep_interrupts

@@ -1,4 +1,4 @@
 """Moves as problems for any optimiser, and a catalogue of named ones with their exact fronts.
 
-It may import `quietarm.metaheuristics.objective` and `ocp`, and knows nothing of algorithms and runs.
+It may import `objective` and `ocp`, and knows nothing of algorithms and runs.
 """

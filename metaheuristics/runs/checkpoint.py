@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.answers.documents import content_of, read_bytes
 from quietarm.ocp.base.files import write_whole

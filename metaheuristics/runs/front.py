@@ -8,7 +8,6 @@ from dataclasses import asdict, replace
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics.algorithms.provenance import flat
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.runs.loop import Loop

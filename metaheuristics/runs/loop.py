@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.termination.max_gen import MaximumGenerationTermination
-
 from quietarm.metaheuristics.algorithms.states import array_of, count_of, number_of, part_of
 from quietarm.metaheuristics.objective.claims import check_points
 from quietarm.metaheuristics.objective.population import PopulationObjective

@@ -21,7 +21,6 @@ from dask import config
 from distributed import Client, LocalCluster, rpc
 from distributed.comm.addressing import get_address_host_port
 from distributed.utils import get_mp_context
-
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.answers.provenance import versions

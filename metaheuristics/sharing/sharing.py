@@ -12,10 +12,15 @@ from typing import Any
 from uuid import uuid4
 
 from distributed import Client, Future, KilledWorker
-
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.sharing.cluster import Cluster, connected
-from quietarm.metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, LostPieceError, Piece
+from quietarm.metaheuristics.sharing.pieces import (
+    INTERRUPTED,
+    Done,
+    Listener,
+    LostPieceError,
+    Piece,
+)
 from quietarm.metaheuristics.sharing.worker import do_piece
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import Front, QuietarmError

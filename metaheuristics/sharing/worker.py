@@ -9,7 +9,6 @@ from dataclasses import asdict
 from typing import Any
 
 from distributed import get_worker
-
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.sharing.pieces import Done, Piece, Say
 from quietarm.ocp import Front

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
-
 from quietarm.ocp.answers.encoding import typed
 from quietarm.ocp.base.errors import FileFormatError
 from quietarm.ocp.base.files import read_whole, write_whole

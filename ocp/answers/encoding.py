@@ -15,7 +15,6 @@ from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
-
 from quietarm.models import Plant, known_plants
 from quietarm.ocp.answers.plants import (
     PLANT_FILE,

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from msgspec import Meta
-
 from quietarm.models import Plant, file_of_plant, known_plants
 
 PLANT_FILE = "plant_file"

@@ -10,7 +10,6 @@ from typing import Generic, Literal, TypeVar
 
 import casadi as ca
 import numpy as np
-
 from quietarm.models import __version__
 from quietarm.ocp.base.checks import finite, of_kind, positive, whole
 from quietarm.ocp.base.ranges import CountFromOne, NotNegative

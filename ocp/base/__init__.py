@@ -1,5 +1,4 @@
 """What everything else stands on: checks, errors, files, Ctrl-C, processes, how a solve ended.
 
-Knows nothing of moves. May import no other room, and `shadowing` not even `models`: it must run
-before anything else does.
+Knows nothing of moves. May import no other room.
 """

@@ -1,4 +1,4 @@
-"""Types of numbers within a range, for entries of files: see `quietarm.ocp.answers.documents.typed`."""
+"""Types of numbers within a range, for entries of files: see `answers.documents.typed`."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class Level:
 
 @dataclass(frozen=True)
 class FloorSettings:
-    """What was asked of the search beyond the task; see `quietarm.ocp.energy_floor` for the meanings.
+    """What was asked of the search beyond the task; see `energy_floor` for the meanings.
 
     Raises
     ------

@@ -8,7 +8,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.models import Plant
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.status import SolveStatus

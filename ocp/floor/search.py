@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 import numpy as np
-
 from quietarm.ocp.answers.provenance import Provenance, Verification
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.base.interrupts import note_interrupts

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.simulation.collocation import NODES, NodeState, step
 from quietarm.ocp.task.quantities import QUANTITIES

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.models import Plant
 from quietarm.ocp.floor.step_model import JOINT, LiftedStep, groups_of
 from quietarm.ocp.floor.symbols import split

@@ -11,7 +11,6 @@ from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.ocp.answers.provenance import Setting, settings_given, versions
 from quietarm.ocp.answers.saved import Saved
 from quietarm.ocp.base.checks import not_negative, of_kind

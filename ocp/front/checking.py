@@ -6,7 +6,6 @@ import time
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.ocp.front.points import FailedPoint, FrontPoint

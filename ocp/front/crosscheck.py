@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-
 from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
 from quietarm.ocp.base.checks import finite
 from quietarm.ocp.base.threads import one_at_a_time

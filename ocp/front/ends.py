@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, SAMPLING, care_of, checked, front_point
 from quietarm.ocp.front.points import FailedPoint, FrontPoint

@@ -7,7 +7,6 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-
 from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
 from quietarm.ocp.base.checks import listed, positive, report_given
 from quietarm.ocp.base.interrupts import note_interrupts

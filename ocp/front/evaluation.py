@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.ocp.base.checks import positive
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.front.points import FrontPoint, non_dominated

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from numbers import Real
 
 import numpy as np
-
 from quietarm.ocp.base.checks import listed, of_kind
 from quietarm.ocp.base.ranges import Count, NotNegative, Share
 from quietarm.ocp.base.readonly import ReadOnlyDict

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.base.checks import finite, of_kind, report_given
 from quietarm.ocp.base.threads import one_at_a_time

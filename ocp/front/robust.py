@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.answers.provenance import REST
 from quietarm.ocp.base.checks import of_kind
 from quietarm.ocp.front.answer import Front

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.plan.starts import first_steps, start_coefficients
 from quietarm.ocp.profiles.joint_profile import JointProfile

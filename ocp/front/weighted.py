@@ -6,7 +6,6 @@ import reprlib
 from collections.abc import Sequence
 
 import numpy as np
-
 from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
 from quietarm.ocp.base.checks import finite, listed, report_given
 from quietarm.ocp.base.threads import one_at_a_time

@@ -13,7 +13,6 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-
 from quietarm.ocp.answers.motion_answer import MotionAnswer
 from quietarm.ocp.answers.provenance import Provenance, Setting, SolveSettings, Verification
 from quietarm.ocp.base.checks import positive

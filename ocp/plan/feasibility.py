@@ -7,7 +7,6 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.base.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.base.status import SolveStatus
 from quietarm.ocp.plan.verification import Checked

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.program.batch import Values, batch
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.simulation.rollout import default_steps

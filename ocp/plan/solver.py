@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.ocp.answers.provenance import Provenance, SolveSettings, Verification
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.base.interrupts import note_interrupts

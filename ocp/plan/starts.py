@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.plan.feasibility import explain, least_peaks
 from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS

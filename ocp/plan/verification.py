@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Solution

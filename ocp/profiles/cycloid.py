@@ -10,7 +10,6 @@ from typing import ClassVar, Self
 
 import casadi as ca
 import numpy as np
-
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
 

@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import casadi as ca
 import numpy as np
-
 from quietarm.models import Expression
 from quietarm.ocp.profiles.units import REACH, CycloidOfUnits, Range, side_by_side
 

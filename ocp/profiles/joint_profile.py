@@ -12,7 +12,6 @@ from typing import Any, ClassVar
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.base.checks import real_array
 

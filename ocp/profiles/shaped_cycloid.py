@@ -10,7 +10,6 @@ from typing import ClassVar
 
 import casadi as ca
 import numpy as np
-
 from quietarm.models import Expression
 from quietarm.ocp.base.checks import finite, positive
 from quietarm.ocp.profiles.joint_profile import JointProfile

@@ -9,7 +9,6 @@ from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.models import Expression
 from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
 

@@ -17,7 +17,6 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.models import Plant
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import casadi as ca
-
 from quietarm.models import Expression
 
 

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
-
 from quietarm.models import Plant
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.elementwise import elementwise

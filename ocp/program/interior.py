@@ -14,7 +14,6 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.ocp.program.ipopt import OPTIONS, Point, ipopt_of_functions, run_ipopt
 from quietarm.ocp.program.quadratic import Model

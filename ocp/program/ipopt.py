@@ -11,7 +11,6 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import silent_errors
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import casadi as ca
-
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import end_to_end

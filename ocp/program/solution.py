@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.base.status import SolveStatus
 
 ENERGY, RESIDUAL = "energy", "residual"

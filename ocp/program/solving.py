@@ -8,7 +8,6 @@ from typing import Literal, NamedTuple, get_args
 import daqp
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.base.status import SolveStatus
 from quietarm.ocp.program.batch import Derivatives
 from quietarm.ocp.program.interior import interior_point

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.program.batch import Derivatives
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.quadratic import Model

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.ocp.base.checks import not_negative, report_given, whole
 from quietarm.ocp.base.readonly import ReadOnlyDict
 from quietarm.ocp.base.threads import one_at_a_time

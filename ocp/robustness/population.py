@@ -13,7 +13,6 @@ from itertools import pairwise
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile

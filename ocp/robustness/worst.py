@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.ocp.base.ranges import NotNegative
 from quietarm.ocp.base.readonly import ReadOnlyDict
 from quietarm.ocp.profiles.joint_profile import JointProfile

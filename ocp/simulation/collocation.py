@@ -17,7 +17,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-
 from quietarm.models import Expression, JointMotion, Plant
 
 NODES = 3

@@ -14,7 +14,6 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.base.interrupts import keep_interrupts

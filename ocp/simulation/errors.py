@@ -10,7 +10,6 @@ from numbers import Real
 
 import casadi as ca
 import numpy as np
-
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.contract import outputs_of
 from quietarm.ocp.base.checks import of_kind, positive

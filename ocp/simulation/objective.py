@@ -10,7 +10,6 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
 from quietarm.ocp.task.point_to_point import PointToPoint

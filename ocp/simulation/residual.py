@@ -9,7 +9,6 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.base.checks import of_kind, whole
 from quietarm.ocp.base.interrupts import keep_interrupts

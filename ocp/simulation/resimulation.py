@@ -18,7 +18,6 @@ from functools import cached_property, lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from quietarm.models import Plant
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import one_at_a_time

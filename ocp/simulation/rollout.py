@@ -10,7 +10,6 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
-
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.base.checks import whole
 from quietarm.ocp.base.interrupts import keep_interrupts

@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.models import Body, Plant
 from quietarm.ocp import Floor, Plan, Trajectory
 from quietarm.ocp.base.checks import positive

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp.base.checks import positive
 from quietarm.studies.figures import Line
 

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
-
 from quietarm.ocp import QuietarmError
 
 Picture = NDArray[np.uint8]

@@ -12,7 +12,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import SubFigure
 from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
-
 from quietarm.models import Body
 from quietarm.ocp.base.printable import printable
 from quietarm.studies.animation.cast import Actor, Array

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 from keyword import iskeyword
 
 import click
-
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.base.files import written
 from quietarm.ocp.base.interrupts import as_ctrl_c
@@ -19,7 +17,6 @@ from quietarm.ocp.base.printable import printable
 from quietarm.studies.cli.drawing_words import matplotlib_in_one_line
 from quietarm.studies.cli.refusals import in_our_words
 from quietarm.studies.cli.streams import patient_streams
-from quietarm.studies.early import in_the_way, ready
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
@@ -39,7 +36,7 @@ COMMANDS = {
     "reproduce": ("studies", "Recompute the paper."),
 }
 """The room of each command and what it does. `NAME` is the function `NAME` of
-`quietarm.studies.cli.commands.ROOM.NAME`, with an underscore behind it where NAME is a word of Python's."""
+`commands.ROOM.NAME`, with an underscore behind it where NAME is a word of Python's."""
 
 
 class LazyGroup(click.Group):
@@ -109,9 +106,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         0 when done; 1 where there is no answer, or not the whole of it: a solve failed or the work
         was interrupted; 2 for bad input, or a file that cannot be read or written.
     """
-    loaded_by_itself = ready()
     written.clear()
-    if loaded_by_itself:  # pictures go to files: no window, whatever the user's notebooks use
+    if arguments is None:  # pictures go to files: no window, whatever the user's notebooks use
         os.environ["MPLBACKEND"] = "agg"
     try:
         with patient_streams() as out, as_ctrl_c(), matplotlib_in_one_line():
@@ -124,8 +120,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 )
     except KeyboardInterrupt:  # one more, while the first was being answered
         status = NOT_SOLVED
-    if loaded_by_itself:  # nothing is left to be stopped
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.exit(status)
 
 
@@ -143,11 +137,6 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
         return _complain(f"interrupted; {_what_is_kept()}", NOT_SOLVED)
-    except (ImportError, AttributeError) as error:  # of what is loaded only where it is needed
-        told = in_the_way(error)
-        if told is None:
-            raise
-        return _complain(told, BAD_INPUT)
     except MemoryError:
         return _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
     except OSError as error:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
-
 from quietarm.ocp import Plan, PointToPoint
 from quietarm.ocp.plan.answer import ticks_of_move
 from quietarm.studies.cli.options import bare_angles

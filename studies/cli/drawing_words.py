@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import click
-
 from quietarm.ocp.base.printable import printable
 
 

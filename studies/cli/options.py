@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import click
-
 from quietarm.models import Plant, load_plant_file
 from quietarm.ocp.base.files import check_folder, check_writable
 from quietarm.ocp.base.names import unknown

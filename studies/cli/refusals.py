@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 
 import click
-
 from quietarm.ocp.base.names import nearest
 
 _OF_CLICK = (

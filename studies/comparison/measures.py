@@ -10,7 +10,6 @@ from numbers import Real
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp import Front, PointToPoint
 from quietarm.ocp.base.checks import listed, not_negative, of_kind, positive, whole

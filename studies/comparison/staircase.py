@@ -8,7 +8,6 @@ from math import ceil
 import moocore
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics.objective.claims import objective_of
 from quietarm.ocp import Front
 

@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics import NamedProblem, PopulationObjective
 from quietarm.ocp import QuietarmError, plan_move
 from quietarm.ocp.answers.provenance import SolveSettings

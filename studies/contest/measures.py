@@ -10,7 +10,6 @@ from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics.budget.record import CORNER
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp.front.points import LEVELS

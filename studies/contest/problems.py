@@ -9,7 +9,6 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.metaheuristics import PROBLEMS, NamedProblem, problem_of
 from quietarm.metaheuristics.budget.record import CORNER, Scale
 from quietarm.ocp import CycloidPolynomial, Front

@@ -9,7 +9,6 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.studies.contest.measures import Arena, methods_in
 
 Array = NDArray[np.float64]

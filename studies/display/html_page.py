@@ -8,7 +8,6 @@ from collections.abc import Iterable
 from html import escape
 
 from matplotlib.figure import Figure
-
 from quietarm.studies.display.pictures import as_written
 from quietarm.studies.display.tables import Table
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from typing import Protocol, TypeVar
 
+from quietarm.studies.display.words import print_lines
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -19,8 +20,6 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
-
-from quietarm.studies.display.words import print_lines
 
 Display = TypeVar("Display")
 

@@ -10,13 +10,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.base.files import unwritable
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.words import print_lines
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,13 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from math import isnan
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn
-
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
 from quietarm.studies.display.progress import PLAIN_SECONDS, shown, ticking
 from quietarm.studies.display.words import millimetres, print_lines
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 _WIDE = 120
 """A terminal of this many columns shows every figure with its name."""

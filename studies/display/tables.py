@@ -8,13 +8,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from quietarm.ocp.base.files import write_whole
+from quietarm.studies.display.words import print_lines
 from rich import box
 from rich.console import Console
 from rich.table import Table as ScreenTable
 from rich.text import Text
-
-from quietarm.ocp.base.files import write_whole
-from quietarm.studies.display.words import print_lines
 
 Cell = str | int | float | None
 _WIDEST = 10_000

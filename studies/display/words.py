@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import fields
 from math import degrees
 
-from rich.console import Console
-
 from quietarm.models import Plant
 from quietarm.ocp import PointToPoint, UncertainPlant
 from quietarm.ocp.base.printable import printable
 from quietarm.ocp.task.quantities import QUANTITIES
+from rich.console import Console
 
 
 def print_lines(console: Console, *lines: str) -> None:

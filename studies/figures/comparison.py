@@ -12,12 +12,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
-
 from quietarm.ocp.base.names import unknown
 from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.comparison.staircase import within
 from quietarm.studies.display.words import title_of
-from quietarm.studies.figures.axes import TITLE, axes_or_new, legend_of, logarithmic_residuals, new_figure
+from quietarm.studies.figures.axes import (
+    TITLE,
+    axes_or_new,
+    legend_of,
+    logarithmic_residuals,
+    new_figure,
+)
 from quietarm.studies.figures.given import comparison_given
 from quietarm.studies.figures.looks import Look, look
 from quietarm.studies.paper.points import PaperPoint

@@ -8,11 +8,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hypervolumes
 from quietarm.ocp import Front
 from quietarm.studies.display.words import millimetres, title_of
-from quietarm.studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
+from quietarm.studies.figures.axes import (
+    STAIRS,
+    axes_or_new,
+    name_objectives,
+    scale_residuals,
+    side_by_side,
+)
 from quietarm.studies.figures.given import fronts_given, seeds_given
 from quietarm.studies.figures.looks import BLUE, look
 from quietarm.studies.registry.methods import method_of

@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-
 from quietarm.ocp import Floor, Plan, Trajectory, evaluate_coefficients
 from quietarm.ocp.answers.motion_answer import MotionAnswer
 from quietarm.ocp.base.checks import of_kind

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
 from quietarm.ocp import Robustness, Sweep
 from quietarm.ocp.base.names import has_no
 from quietarm.ocp.robustness.measures import TOLERATED

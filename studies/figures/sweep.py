@@ -6,11 +6,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT
 from quietarm.studies.display.words import millimetres, title_of
-from quietarm.studies.figures.axes import STAIRS, axes_or_new, name_objectives, scale_residuals, side_by_side
+from quietarm.studies.figures.axes import (
+    STAIRS,
+    axes_or_new,
+    name_objectives,
+    scale_residuals,
+    side_by_side,
+)
 from quietarm.studies.figures.given import front_given, polished_given
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.registry.methods import method_of

@@ -6,13 +6,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, NullLocator
-
 from quietarm.studies.display.words import move_of
 from quietarm.studies.figures.axes import axes_or_new, new_figure
 from quietarm.studies.figures.looks import BLUE, GREEN, PINK, RED
 from quietarm.studies.paper.printed import CONDITIONS
 from quietarm.studies.registry.methods import NSGA2, VEPSO
-from quietarm.studies.reproduction.floor_table import FREE, IN_BOX, PAPER, SERIES, Multiple, multiples
+from quietarm.studies.reproduction.floor_table import (
+    FREE,
+    IN_BOX,
+    PAPER,
+    SERIES,
+    Multiple,
+    multiples,
+)
 from quietarm.studies.reproduction.recompute import Reproduction
 
 _COLOURS = {

@@ -9,10 +9,6 @@ from math import isfinite
 from pathlib import Path
 
 from matplotlib.figure import Figure
-from rich.console import Console
-from rich.padding import Padding
-from rich.text import Text
-
 from quietarm.ocp import Plan
 from quietarm.ocp.base.files import write_whole
 from quietarm.studies.display.saving import File, drawing, inside
@@ -33,6 +29,9 @@ from quietarm.studies.reproduction.side_by_side.table import (
     print_systems,
     systems_in_markdown,
 )
+from rich.console import Console
+from rich.padding import Padding
+from rich.text import Text
 
 _MILLIMETRES = "{:.3g}".format
 _SECONDS = "{:.2f}".format

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
-
 from quietarm.studies.animation import animate
 from quietarm.studies.animation.clock import Clock, end_of
 from quietarm.studies.animation.formats import check_format, format_of
@@ -15,6 +13,7 @@ from quietarm.studies.display.saving import finish
 from quietarm.studies.display.words import print_lines
 from quietarm.studies.figures import Line
 from quietarm.studies.runs.loading import load_plans
+from rich.console import Console
 
 
 def run_animate(

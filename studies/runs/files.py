@@ -47,7 +47,9 @@ def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
 
 def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
     """Warn where more workers start than there are cores; no more start than pieces of work."""
-    from quietarm.metaheuristics.sharing.workers import Workers  # a plan by the gradient needs no workers
+    from quietarm.metaheuristics.sharing.workers import (
+        Workers,  # a plan by the gradient needs no workers
+    )
 
     cores, workers = os.cpu_count() or 1, Workers(workers).local(pieces)
     if workers > cores:

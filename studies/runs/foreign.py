@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.answers.documents import read_bytes
 from quietarm.ocp.base.files import MOST_BYTES

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
-
 from quietarm.metaheuristics import MoveFunction
 from quietarm.metaheuristics.objective.claims import FIGURES, agrees
 from quietarm.metaheuristics.objective.population import UNUSABLE
@@ -23,6 +21,7 @@ from quietarm.studies.display.words import print_lines
 from quietarm.studies.runs.files import FrontFiles
 from quietarm.studies.runs.foreign import MOST_MOTIONS, Found
 from quietarm.studies.runs.reports.search import print_fronts
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rich.console import Console
-
 from quietarm.ocp import Front, Gain, polish_front
 from quietarm.ocp.base.checks import whole
 from quietarm.studies.display.progress import count, working
@@ -19,6 +17,7 @@ from quietarm.studies.display.words import counted, millimetres, print_lines
 from quietarm.studies.runs.files import FrontFiles
 from quietarm.studies.runs.loading import load_front
 from quietarm.studies.runs.reports.sweep import failure_lines
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
-
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.ocp import Front
 from quietarm.studies.display.progress import progress
 from quietarm.studies.display.saving import Together, finish, inside, interruption
 from quietarm.studies.display.words import error_words, print_lines
+from rich.console import Console
 
 
 def run_problems(names: Sequence[str], again: bool, output: Path | None, quiet: bool) -> None:

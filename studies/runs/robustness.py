@@ -7,8 +7,6 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from rich.console import Console
-
 from quietarm.ocp import Plan, Robustness, evaluate_robustness
 from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.simulation.errors import checked_ranges
@@ -16,6 +14,7 @@ from quietarm.studies.display.progress import count
 from quietarm.studies.display.saving import finish, interruption
 from quietarm.studies.runs.loading import load_plans
 from quietarm.studies.runs.reports.robustness import Figured, print_robustness, robustness_files
+from rich.console import Console
 
 DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
 """The errors where none is asked for."""

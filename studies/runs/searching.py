@@ -8,8 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, LostSeedsError, search_many, seeds_of
 from quietarm.ocp import (
@@ -31,6 +29,7 @@ from quietarm.studies.display.search_progress import search_display
 from quietarm.studies.registry.methods import Method
 from quietarm.studies.runs.files import FrontFiles, refuse_same_file, warn_of_workers
 from quietarm.studies.runs.reports.search import print_fronts
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

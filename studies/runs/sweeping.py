@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
 from quietarm.ocp import (
     Front,
     PointToPoint,
@@ -17,6 +15,7 @@ from quietarm.studies.display.saving import drawing, finish, interruption
 from quietarm.studies.registry.methods import Method
 from quietarm.studies.runs.files import FrontFiles
 from quietarm.studies.runs.reports.sweep import failure_lines, print_sweep
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from math import isfinite
 
 import numpy as np
-
 from quietarm.studies.comparison.measures import Comparison, Group
 from quietarm.studies.comparison.staircase import within
 from quietarm.studies.display.words import millimetres, title_of

@@ -7,7 +7,6 @@ from math import isfinite, nan
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
-
 from quietarm.studies.display.tables import Cell, Column, Table
 from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.axes import axes_or_new, new_figure

@@ -5,7 +5,15 @@ from __future__ import annotations
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.comparison.tables import how_to_read, tables, units
-from quietarm.studies.display.html_page import Markup, bullets, element, joined, page, picture, table_element
+from quietarm.studies.display.html_page import (
+    Markup,
+    bullets,
+    element,
+    joined,
+    page,
+    picture,
+    table_element,
+)
 from quietarm.studies.display.words import counted, millimetres, title_of
 from quietarm.studies.figures.comparison import BANDS, PANELS, panel_figure
 from quietarm.studies.registry.methods import PAPERS, Method

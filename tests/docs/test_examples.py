@@ -10,10 +10,9 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
-
 import quietarm.studies.runs.reports.comparison
 import quietarm.studies.study.pieces
+from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Front, Plan, PointToPoint, energy_floor, evaluate_coefficients
 from quietarm.ocp.floor import search as floor_search
@@ -23,6 +22,7 @@ from quietarm.studies.cli import main
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
 BIN = Path(sys.executable).parent
+(SHORT,) = blocks("README", "python")
 (MOVE,) = blocks("moves", "python")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
@@ -41,6 +41,25 @@ def run_python(code, folder):
     )
     assert (ran.returncode, ran.stderr) == (0, "")
     return ran.stdout
+
+
+def test_the_short_example_plans_saves_and_draws(tmp_path):
+    printed = run_python(SHORT, tmp_path)
+    plan = Plan.load(tmp_path / "plan.json")
+    assert printed == f"{plan.energy:.4f} J, 0.000 mm\n"
+    assert plan.motion.peak_acceleration <= 40 * 1.001  # docs/accuracy.md
+    assert (tmp_path / "move.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_command_prints_what_the_page_shows(tmp_path):
+    (shown,) = blocks("README", "text")
+    line = next(block[0] for name, block in COMMAND_BLOCKS.items() if name.startswith("README"))
+    words = [str(BIN / "quietarm"), *shlex.split(line)[1:]]
+    ran = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=600)
+    printed = " ".join(ran.stdout.split())
+    for row in shown.strip().splitlines()[:-1]:
+        kept, _, _ = row.partition("e-")  # a residual of nothing has other digits elsewhere
+        assert " ".join(kept.split()[: 2 if kept != row else 3]) in printed
 
 
 def test_the_example_in_python_plans_saves_and_exports(tmp_path):
@@ -123,9 +142,9 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 7
+    assert sum(len(blocks(page, "python")) for page in others) == 8
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
-    assert set(languages) == {"console", "python"}
+    assert set(languages) == {"console", "python", "text"}
 
 
 SEARCH = ["--population", "20", "--generations", "5"]

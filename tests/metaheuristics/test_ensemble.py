@@ -9,11 +9,10 @@ import sys
 
 import numpy as np
 import pytest
+import quietarm.metaheuristics.ensemble as ensemble
 from hypothesis import given
 from hypothesis import strategies as st
 from pymoo.algorithms.moo.sms import SMSEMOA
-
-import quietarm.metaheuristics.ensemble as ensemble
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.ensemble import (
     SEARCH_RESIDUAL,
@@ -196,7 +195,9 @@ def test_a_script_that_has_no_main_guard_is_told_of_it(tmp_path):
         [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, timeout=600
     )
     last = ran.stderr.splitlines()[-1]
-    assert last.startswith("quietarm.ocp.base.errors.QuietarmError: the workers could not be started; ")
+    assert last.startswith(
+        "quietarm.ocp.base.errors.QuietarmError: the workers could not be started; "
+    )
     assert "run it under if __name__ == '__main__'" in last
 
 

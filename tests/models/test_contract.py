@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 import pytest
-from sound_plant import Sound
-
 from quietarm.models import Plant, SingleLinkManipulator, known_plants, parameter
 from quietarm.ocp import PointToPoint
+from sound_plant import Sound
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 

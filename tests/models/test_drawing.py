@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from sound_plant import Sound
-
 from quietarm.models import (
     ArmOnFlexibleLink,
     Body,
@@ -13,6 +11,7 @@ from quietarm.models import (
     rigid_link,
 )
 from quietarm.models.drawing import TIP_SLOPE, cantilever
+from sound_plant import Sound
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 

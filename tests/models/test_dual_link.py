@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
-
 from quietarm.models import DualLinkManipulator, JointMotion, known_plants
+from scipy.integrate import solve_ivp
 
 motions = st.floats(-10.0, 10.0)
 pairs = st.tuples(motions, motions)

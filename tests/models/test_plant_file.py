@@ -8,7 +8,6 @@ import sys
 from multiprocessing.reduction import ForkingPickler
 
 import pytest
-
 from quietarm.models import SingleLinkManipulator, file_of_plant, known_plants, load_plant_file
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")

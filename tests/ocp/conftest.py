@@ -4,7 +4,6 @@ import math
 from functools import cache
 
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
 

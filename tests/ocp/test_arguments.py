@@ -1,7 +1,6 @@
 """What every function asks of its arguments first."""
 
 import pytest
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lines import COARSELY
-
 from quietarm.metaheuristics import ensemble
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (

@@ -17,9 +17,8 @@ from parts.population.equations import (
     plant_at_arrays,
     plant_at_scalars,
 )
-from scipy.integrate import solve_ivp
-
 from quietarm.ocp.simulation.residual import residual_samples
+from scipy.integrate import solve_ivp
 
 
 def rates_in_floats(x: Numbers, a: Sequence[float]) -> Callable[..., Any]:

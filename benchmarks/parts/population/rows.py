@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from parts.population.equations import PROFILE, TASK, Values, numbers, peak_after
 from parts.population.marches import march_arrays, march_compiled
 from parts.population.one_by_one import integrate, rates_in_floats, rates_in_numpy
-
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.ocp import rollout
 from quietarm.ocp.simulation.collocation import mesh

@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
-
 from quietarm.studies.comparison.staircase import objectives, within
 from quietarm.studies.contest.measures import TARGETS, Arena, Outcome, quartiles
 from quietarm.studies.contest.names import label_of

@@ -10,10 +10,26 @@ from typing import TYPE_CHECKING
 from quietarm.ocp.base.files import check_inside, write_whole
 from quietarm.studies.contest.measures import Arena, methods_in
 from quietarm.studies.contest.report.citations import bibtex
-from quietarm.studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from quietarm.studies.contest.report.figures import (
+    anytime_figure,
+    attainment_figure,
+    looks_of,
+    ranks_figure,
+)
 from quietarm.studies.contest.report.page import contest_page
-from quietarm.studies.contest.report.tables import anytime_table, pairs_table, ranks_table, runs_table
-from quietarm.studies.contest.statistics import Ranking, pairs_on, ranking_on, ranking_over, why_none
+from quietarm.studies.contest.report.tables import (
+    anytime_table,
+    pairs_table,
+    ranks_table,
+    runs_table,
+)
+from quietarm.studies.contest.statistics import (
+    Ranking,
+    pairs_on,
+    ranking_on,
+    ranking_over,
+    why_none,
+)
 from quietarm.studies.display.saving import File, drawing, inside
 
 if TYPE_CHECKING:

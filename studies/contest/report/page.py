@@ -8,7 +8,12 @@ from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, methods_in
 from quietarm.studies.contest.names import label_of
 from quietarm.studies.contest.report.citations import bibtex
-from quietarm.studies.contest.report.figures import anytime_figure, attainment_figure, looks_of, ranks_figure
+from quietarm.studies.contest.report.figures import (
+    anytime_figure,
+    attainment_figure,
+    looks_of,
+    ranks_figure,
+)
 from quietarm.studies.contest.report.notes import missing_words, not_alike, unequal
 from quietarm.studies.contest.report.paragraph import methods_paragraph, settings_lines
 from quietarm.studies.contest.report.tables import (
@@ -16,8 +21,22 @@ from quietarm.studies.contest.report.tables import (
     summary_table,
     visits_table,
 )
-from quietarm.studies.contest.statistics import ALPHA, Ranking, pairs_on, ranking_on, ranking_over, why_none
-from quietarm.studies.display.html_page import Markup, bullets, element, page, picture, table_element
+from quietarm.studies.contest.statistics import (
+    ALPHA,
+    Ranking,
+    pairs_on,
+    ranking_on,
+    ranking_over,
+    why_none,
+)
+from quietarm.studies.display.html_page import (
+    Markup,
+    bullets,
+    element,
+    page,
+    picture,
+    table_element,
+)
 from quietarm.studies.display.words import counted, millimetres, title_of
 
 _ANYTIME = (

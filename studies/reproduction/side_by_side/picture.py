@@ -10,12 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, NullLocator
-
 from quietarm.studies.display.words import title_of
 from quietarm.studies.figures.axes import TITLE, new_figure
 from quietarm.studies.figures.looks import COLOURS
 from quietarm.studies.paper.case import Case
-from quietarm.studies.reproduction.side_by_side.results import CYCLOID, FLOOR, FREQUENCY_ERROR, System
+from quietarm.studies.reproduction.side_by_side.results import (
+    CYCLOID,
+    FLOOR,
+    FREQUENCY_ERROR,
+    System,
+)
 from quietarm.studies.reproduction.side_by_side.table import Systems
 
 _MARKS = "os^Dv<>"

@@ -10,7 +10,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from quietarm.metaheuristics.ensemble import energy_at
-from quietarm.ocp import Floor, Front, Motion, Plan, evaluate_coefficients, shaped_cycloid, with_errors
+from quietarm.ocp import (
+    Floor,
+    Front,
+    Motion,
+    Plan,
+    evaluate_coefficients,
+    shaped_cycloid,
+    with_errors,
+)
 from quietarm.ocp.profiles.shapers import SHAPERS
 from quietarm.ocp.simulation.errors import FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion

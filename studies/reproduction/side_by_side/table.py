@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from rich.console import Console
-
 from quietarm.studies.display.tables import Cell, Column, Table, print_table
 from quietarm.studies.paper.case import Case
 from quietarm.studies.reproduction.side_by_side.results import FREQUENCY_ERROR, System
+from rich.console import Console
 
 Systems = Mapping[Case, Sequence[System]]
 

@@ -6,8 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.base.printable import printable
@@ -19,6 +17,7 @@ from quietarm.studies.display.saving import File, drawing, inside
 from quietarm.studies.display.tables import print_table
 from quietarm.studies.display.words import title_of
 from quietarm.studies.paper.points import paper_points
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

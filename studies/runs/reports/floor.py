@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from rich.console import Console
-
 from quietarm.ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
 from quietarm.studies.display.tables import print_rows
 from quietarm.studies.runs.reports.plan import figure_rows, move_rows, stopped_words
+from rich.console import Console
 
 TERMS = 6
 """Terms of the plan that a floor is compared with."""

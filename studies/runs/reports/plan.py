@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-from rich.console import Console
-
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid
 from quietarm.ocp.answers.provenance import AGREEMENT
 from quietarm.ocp.plan.robust import EXCESS
@@ -14,6 +12,7 @@ from quietarm.ocp.task.quantities import QUANTITIES
 from quietarm.studies.display.tables import print_rows
 from quietarm.studies.display.words import millimetres, move_of, plant_words
 from quietarm.studies.runs.reports.worst import worst_in_words
+from rich.console import Console
 
 Row = tuple[str, str]
 _ROUNDING = 1e-12

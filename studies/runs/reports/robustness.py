@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
-
 from quietarm.ocp import Plan, Robustness, Sweep
 from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.base.printable import printable
@@ -17,6 +15,7 @@ from quietarm.ocp.robustness.measures import TOLERATED
 from quietarm.studies.display.saving import File, drawing, inside
 from quietarm.studies.display.tables import Cell, Column, Table, print_table
 from quietarm.studies.display.words import move_of, plant_words
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.console import Console
-
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from quietarm.ocp import Front
 from quietarm.studies.display.words import counted, millimetres, print_lines
 from quietarm.studies.runs.reports.worst import point_in_words
+from rich.console import Console
 
 
 def print_fronts(console: Console, fronts: Sequence[Front]) -> None:

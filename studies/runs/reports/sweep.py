@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from rich.console import Console
-
 from quietarm.metaheuristics.ensemble import energy_at
 from quietarm.ocp import CrossCheck, FailedPoint, Front, UncertainPlant
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT
@@ -11,6 +9,7 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.robust import EXCESS
 from quietarm.studies.display.words import counted, millimetres, print_lines
 from quietarm.studies.runs.reports.worst import point_in_words
+from rich.console import Console
 
 
 def print_sweep(

@@ -5,11 +5,10 @@ import itertools
 
 import numpy as np
 import pytest
-from small_searches import HALF, LIMITED, SIXTH, assert_is_a_front, exactly, one_line
-
 from quietarm.metaheuristics import PRESETS, search
 from quietarm.metaheuristics.algorithms.presets import preset_of
 from quietarm.ocp import rollout
+from small_searches import HALF, LIMITED, SIXTH, assert_is_a_front, exactly, one_line
 
 SMALL = {"population": 8, "generations": 4, "bound": 0.3}
 IN_TURN = list(zip(PRESETS, itertools.cycle([SIXTH, HALF])))

@@ -18,13 +18,12 @@ from pymoo.operators.mutation.pm import PM
 from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.problems import get_problem
 from pymoo.termination.max_gen import MaximumGenerationTermination
-from states import same
-
 from quietarm.metaheuristics import MoveProblem, PaperNSGA2, PopulationObjective
 from quietarm.metaheuristics.algorithms.nsga2 import ExactDuplicates
 from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint
+from states import same
 
 BOX = Problem(n_var=6, n_obj=2, xl=-0.5, xu=0.5)
 

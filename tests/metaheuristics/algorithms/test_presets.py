@@ -6,7 +6,6 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-
 from quietarm.metaheuristics import PRESETS, VEPSO, PaperNSGA2
 from quietarm.metaheuristics.algorithms import building
 from quietarm.metaheuristics.algorithms.presets import preset_of

@@ -15,10 +15,9 @@ from pymoo.algorithms.soo.nonconvex.pattern import PatternSearch
 from pymoo.algorithms.soo.nonconvex.pso import PSO
 from pymoo.operators.mutation.pm import PM
 from pymoo.util.ref_dirs import get_reference_directions
-from small_searches import HALF, LIMITED, assert_is_a_front, exactly, failing, one_line
-
 from quietarm.metaheuristics import INERTIA_2002, VEPSO, MoveProblem, PopulationObjective, search
 from quietarm.ocp import CycloidPolynomial, Front, rollout
+from small_searches import HALF, LIMITED, assert_is_a_front, exactly, failing, one_line
 
 
 def _moead():

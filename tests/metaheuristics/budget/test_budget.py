@@ -4,13 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from small_searches import BOUNDS, HALF, LIMITED, METHODS, SIXTH, SWARMS, TASKS
-
 from quietarm.metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
 from quietarm.metaheuristics.budget.record import CORNER, Scale, Visits, marks_of
 from quietarm.metaheuristics.budget.run import parts_of, search_within
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, reference_corner
+from small_searches import BOUNDS, HALF, LIMITED, METHODS, SIXTH, SWARMS, TASKS
 
 PROFILE = CycloidPolynomial(2)
 SCALES = {

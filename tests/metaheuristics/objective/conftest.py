@@ -2,7 +2,6 @@
 
 import pytest
 from populations import ARM, SINGLE_LINK, pi
-
 from quietarm.ocp import PointToPoint
 
 

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from populations import ARM, CONDITIONS, PROFILE, SINGLE_LINK, candidates, pi
-
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import (

@@ -7,7 +7,6 @@ from typing import ClassVar
 import numpy as np
 import pytest
 from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
-
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (

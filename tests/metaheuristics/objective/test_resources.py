@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from populations import ARM, CONDITIONS, PROFILE, SINGLE_LINK, candidates, pi
-
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator

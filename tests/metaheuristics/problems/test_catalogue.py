@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
-
 from quietarm.metaheuristics import PROBLEMS, MoveFunction, problem_of
 from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.metaheuristics.problems import finding

@@ -5,10 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from small_searches import HALF, SIXTH
-
 from quietarm.metaheuristics import MoveFunction
 from quietarm.ocp import CycloidGaussians, CycloidPolynomial, evaluate_coefficients
+from small_searches import HALF, SIXTH
 
 LIMITED = dataclasses.replace(SIXTH, torque_limit=0.16, acceleration_limit=60.0)
 RANDOM = np.random.default_rng(4).uniform(-0.2, 0.2, (7, 3))

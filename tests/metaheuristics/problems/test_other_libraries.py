@@ -5,10 +5,9 @@ import re
 from pathlib import Path
 
 import pytest
-from scipy.optimize import differential_evolution
-
 from quietarm.metaheuristics import problem_of
 from quietarm.ocp import Front
+from scipy.optimize import differential_evolution
 
 TWO_TERMS = problem_of("single-link-30deg-0.8s-2-terms")
 DOCUMENT = Path(__file__).parents[3] / "docs" / "problems.md"

@@ -1,9 +1,8 @@
 """The checkpoint that the tests of its format share."""
 
 import pytest
-from states import HEADER, state
-
 from quietarm.metaheuristics.runs.checkpoint import save_checkpoint
+from states import HEADER, state
 
 
 @pytest.fixture

@@ -5,6 +5,10 @@ import math
 
 import numpy as np
 import pytest
+from quietarm.metaheuristics import PopulationObjective
+from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.metaheuristics.runs import keeping
+from quietarm.ocp import CycloidPolynomial, Front, resimulate, rollout
 from small_searches import (
     IMPOSSIBLE,
     LIMITED,
@@ -18,11 +22,6 @@ from small_searches import (
     one_line,
     run,
 )
-
-from quietarm.metaheuristics import PopulationObjective
-from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
-from quietarm.metaheuristics.runs import keeping
-from quietarm.ocp import CycloidPolynomial, Front, resimulate, rollout
 
 # -- limits --
 

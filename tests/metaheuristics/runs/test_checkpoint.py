@@ -7,9 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
-from states import HEADER, same, state
-
 from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
+from states import HEADER, same, state
 
 
 def test_what_goes_in_comes_out_bit_for_bit(path):

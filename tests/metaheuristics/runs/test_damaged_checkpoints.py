@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from small_searches import IMPOSSIBLE, LIMITED, METHODS, SIXTH
-
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from quietarm.ocp import FileFormatError
+from small_searches import IMPOSSIBLE, LIMITED, METHODS, SIXTH
 
 TASKS = {"free": SIXTH, "limited": LIMITED["vepso"], "impossible": IMPOSSIBLE["vepso"]}
 GONE = object()

@@ -11,10 +11,9 @@ import zlib
 
 import numpy as np
 import pytest
-from states import HEADER, same, state
-
 from quietarm.metaheuristics.runs.checkpoint import KIND, VERSION, load_checkpoint
 from quietarm.ocp import FileFormatError
+from states import HEADER, same, state
 
 FORMAT = f"quietarm-{KIND}"
 

@@ -5,6 +5,9 @@ import threading
 
 import numpy as np
 import pytest
+from quietarm.metaheuristics import PopulationObjective, search
+from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, rollout
 from small_searches import (
     METHODS,
     SINGLE_LINK,
@@ -15,10 +18,6 @@ from small_searches import (
     run,
     stop_after,
 )
-
-from quietarm.metaheuristics import PopulationObjective, search
-from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
-from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, rollout
 
 # -- history and reports --
 

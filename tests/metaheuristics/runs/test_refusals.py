@@ -4,13 +4,12 @@ import dataclasses
 import re
 
 import pytest
-from small_searches import BOUNDS, HALF, METHODS, TASKS, found, one_line, run
-
 from quietarm.metaheuristics import CONSTRICTION, INERTIA_2002, VEPSO, PaperNSGA2, search
 from quietarm.metaheuristics.runs import keeping
 from quietarm.metaheuristics.runs.settings import search_versions
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, FileFormatError
+from small_searches import BOUNDS, HALF, METHODS, TASKS, found, one_line, run
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,10 @@ import sys
 import time
 
 import pytest
+from quietarm.metaheuristics import VEPSO, PaperNSGA2, PopulationObjective, search
+from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.metaheuristics.runs import keeping
+from quietarm.metaheuristics.runs.checkpoint import load_checkpoint
 from small_searches import (
     HALF,
     IMPOSSIBLE,
@@ -20,11 +24,6 @@ from small_searches import (
     run,
     stop_after,
 )
-
-from quietarm.metaheuristics import VEPSO, PaperNSGA2, PopulationObjective, search
-from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
-from quietarm.metaheuristics.runs import keeping
-from quietarm.metaheuristics.runs.checkpoint import load_checkpoint
 
 # -- checkpoints --
 

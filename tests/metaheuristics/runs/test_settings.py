@@ -3,11 +3,10 @@
 import json
 
 import pytest
-from small_searches import HALF, LIMITED, SIXTH
-
 from quietarm.metaheuristics.runs.settings import SearchSettings, SearchSpec
 from quietarm.ocp import CycloidPolynomial
 from quietarm.ocp.answers.encoding import plain, typed
+from small_searches import HALF, LIMITED, SIXTH
 
 SETTINGS = SearchSettings(0.5, 20, 15)
 

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.objective.problem import MoveProblem

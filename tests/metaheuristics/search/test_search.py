@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
+from quietarm.metaheuristics import CONSTRICTION, search
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, resimulate, rollout
 from small_searches import (
     BOUNDS,
     HALF,
@@ -23,9 +25,6 @@ from small_searches import (
     pi,
     run,
 )
-
-from quietarm.metaheuristics import CONSTRICTION, search
-from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, resimulate, rollout
 
 # -- what a front is --
 

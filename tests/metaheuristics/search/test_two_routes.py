@@ -8,8 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_searches import ARM, HALF, SINGLE_LINK, SIXTH, found, pi
-
 from quietarm.metaheuristics import PAPER_BOX, search
 from quietarm.ocp import (
     PointToPoint,
@@ -18,6 +16,7 @@ from quietarm.ocp import (
     polish_front,
     resimulate,
 )
+from small_searches import ARM, HALF, SINGLE_LINK, SIXTH, found, pi
 
 # -- the paper's energies --
 

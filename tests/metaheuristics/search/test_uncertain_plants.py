@@ -6,7 +6,6 @@ from dataclasses import replace
 from math import pi
 
 import pytest
-
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.models import ArmOnFlexibleLink

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial
 

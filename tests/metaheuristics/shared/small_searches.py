@@ -7,7 +7,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-
 from quietarm.metaheuristics import PopulationObjective, search
 from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator

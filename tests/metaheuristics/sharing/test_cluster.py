@@ -15,10 +15,9 @@ from functools import partial
 
 import dying
 import pytest
-import small_pieces
-
 import quietarm.metaheuristics.sharing.cluster as cluster
 import quietarm.metaheuristics.sharing.workers as workers_module
+import small_pieces
 from quietarm.metaheuristics import search, search_many
 from quietarm.metaheuristics.ensemble import LostSeedsError, one_seed
 from quietarm.metaheuristics.sharing.pieces import Listener, LostPieceError, Piece

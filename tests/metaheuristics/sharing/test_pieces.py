@@ -3,7 +3,6 @@
 import signal
 
 import pytest
-
 from quietarm.metaheuristics.sharing.pieces import InterruptedPiece, Listener, Piece
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.ocp import QuietarmError, SolverFailedError

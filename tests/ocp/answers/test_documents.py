@@ -6,7 +6,6 @@ import re
 from dataclasses import asdict, replace
 
 import pytest
-
 from quietarm.ocp import (
     MAX_TERMS,
     CycloidPolynomial,

@@ -4,7 +4,6 @@ import hashlib
 import json
 
 import pytest
-
 from quietarm.models import Plant, load_plant_file
 from quietarm.ocp import FileFormatError, Plan, PointToPoint, evaluate_coefficients
 

@@ -6,7 +6,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-
 from quietarm.ocp.base.checks import finite, listed, positive, whole
 
 NUMBERS = [1, 1.5, np.float32(1.5), np.float64(1.5), np.int16(2), Fraction(3, 2)]

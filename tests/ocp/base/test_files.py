@@ -5,7 +5,6 @@ import stat
 import threading
 
 import pytest
-
 from quietarm.ocp.base.files import check_writable, read_whole, write_whole
 
 

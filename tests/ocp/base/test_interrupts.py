@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, rollout
 from quietarm.ocp.base.interrupts import keep_interrupts, note_interrupts

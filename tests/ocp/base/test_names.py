@@ -1,7 +1,6 @@
 """Messages about names that are not known."""
 
 import pytest
-
 from quietarm.ocp.base.names import has_no, unknown
 
 

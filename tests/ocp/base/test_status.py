@@ -1,7 +1,6 @@
 """How a solve ended, in words."""
 
 import pytest
-
 from quietarm.ocp import SolveStatus
 
 

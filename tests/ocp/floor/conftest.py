@@ -3,7 +3,6 @@
 from functools import cache
 
 import pytest
-
 from quietarm.ocp import energy_floor
 from quietarm.ocp.floor import search
 

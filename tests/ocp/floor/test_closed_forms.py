@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import pytest
 from floor_moves import SHORT
-
 from quietarm.models import Plant, parameter
 from quietarm.ocp import (
     PointToPoint,

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import pytest
 from floor_moves import ARM, SHORT
-
 from quietarm.ocp import (
     FileFormatError,
     Floor,

@@ -4,7 +4,6 @@ import signal
 from dataclasses import replace
 
 import pytest
-
 import quietarm.ocp.floor.search as search
 from quietarm.ocp import Floor, energy_floor
 

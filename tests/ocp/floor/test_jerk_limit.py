@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Floor, InfeasibleTaskError, PointToPoint, energy_floor, plan_move
 

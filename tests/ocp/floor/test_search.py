@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from floor_moves import ARM, SHORT
-
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     InfeasibleTaskError,

@@ -8,7 +8,6 @@ from derivatives import (
     both_hessians,
     functions_of,
 )
-
 from quietarm.ocp.floor.transcription import FreeProgram
 
 STEPS = 3

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from made_fronts import front, points
-
 from quietarm.ocp import (
     FrontPoint,
     Generation,

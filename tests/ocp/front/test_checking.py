@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import pytest
 from front_moves import CASES
-
 from quietarm.ocp import CycloidPolynomial, SolverFailedError, resimulate
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.front import checking

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from front_moves import CASES
 from made_fronts import front as made_by_hand
-
 from quietarm.ocp import CycloidPolynomial, cross_check, epsilon_front
 
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from front_moves import CASES
-
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     CycloidPolynomial,

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from made_fronts import points
-
 from quietarm.ocp import (
     non_dominated,
 )

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 import quietarm.ocp.front.assembly
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import pytest
 from front_moves import CASES
-
 from quietarm.ocp import (
     CycloidPolynomial,
     Front,

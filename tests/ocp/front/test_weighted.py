@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

@@ -5,7 +5,6 @@ import re
 
 import numpy as np
 import pytest
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

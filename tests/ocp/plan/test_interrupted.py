@@ -4,7 +4,6 @@ import signal
 from contextlib import suppress
 
 import pytest
-
 import quietarm.ocp.plan.solver
 from quietarm.ocp import CycloidGaussians, Plan, plan_move
 from quietarm.ocp.program.stack import Stack

@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-
 from quietarm.models import Plant
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move, resimulate
 

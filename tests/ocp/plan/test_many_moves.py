@@ -4,8 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from quietarm.ocp import CycloidPolynomial, PointToPoint, SolveStatus, plan_move, plan_moves, resimulate
+from quietarm.ocp import (
+    CycloidPolynomial,
+    PointToPoint,
+    SolveStatus,
+    plan_move,
+    plan_moves,
+    resimulate,
+)
 
 DURATIONS = np.linspace(0.7, 1.2, 6)
 

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-
 from quietarm.ocp import PointToPoint, SolveStatus, plan_move, resimulate
 
 pi = math.pi

@@ -7,9 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-
-from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, JointMotion, SingleLinkManipulator
+from quietarm.models import (
+    ArmOnFlexibleLink,
+    DualLinkManipulator,
+    JointMotion,
+    SingleLinkManipulator,
+)
 from quietarm.ocp import (
     CycloidPolynomial,
     FileFormatError,
@@ -26,6 +29,7 @@ from quietarm.ocp import (
     shaped_cycloid,
 )
 from quietarm.ocp.simulation.residual import vibrations
+from scipy.integrate import solve_ivp
 
 pi = math.pi
 LINEAR = SingleLinkManipulator(beta2=0.0, zeta=0.0)

@@ -2,9 +2,14 @@
 
 import numpy as np
 import pytest
-
 from quietarm.ocp import CycloidPolynomial, InfeasibleTaskError, PointToPoint, SolveSettings
-from quietarm.ocp.plan.starts import FINER_STEPS, PLAN_STEPS, first_steps, from_starts, start_coefficients
+from quietarm.ocp.plan.starts import (
+    FINER_STEPS,
+    PLAN_STEPS,
+    first_steps,
+    from_starts,
+    start_coefficients,
+)
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, Ask
 

@@ -7,7 +7,6 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 import pytest
-
 from quietarm.models import JointMotion
 from quietarm.ocp import JointProfile, Plan, PointToPoint, plan_move, resimulate, rollout
 from quietarm.ocp.program.batch import batch

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from quietarm.ocp import MAX_TERMS, CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
 

@@ -8,9 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import BSpline
-from scipy.optimize import least_squares
-
 from quietarm.ocp import (
     CycloidGaussians,
     CycloidNetwork,
@@ -30,6 +27,8 @@ from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.plan.starts import start_coefficients
 from quietarm.ocp.profiles.spline import DEGREE, b_splines
 from quietarm.ocp.profiles.units import SHARPEST
+from scipy.interpolate import BSpline
+from scipy.optimize import least_squares
 
 UNITS = {"gaussians": CycloidGaussians, "network": CycloidNetwork}
 FAMILIES = {**UNITS, "spline": CycloidSpline}

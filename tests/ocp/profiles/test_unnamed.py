@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass, replace
 
 import pytest
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.profiles.joint_profile import known_profiles

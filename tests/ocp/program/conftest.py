@@ -1,7 +1,6 @@
 """What the tests of `quietarm.ocp.program` share."""
 
 import pytest
-
 from quietarm.ocp import CycloidPolynomial
 from quietarm.ocp.program.program import Program
 

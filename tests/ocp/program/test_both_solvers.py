@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, SolveStatus, UncertainPlant, rollout
 from quietarm.ocp.program.program import Program

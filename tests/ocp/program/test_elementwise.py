@@ -3,7 +3,6 @@
 import casadi as ca
 import numpy as np
 import pytest
-
 from quietarm.ocp.program.elementwise import elementwise
 
 

@@ -10,7 +10,6 @@ from functools import partial
 import casadi as ca
 import numpy as np
 import pytest
-
 from quietarm.ocp.program.quadratic import Model
 from quietarm.ocp.program.sqp import SHARP, End, minimise
 

@@ -5,8 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
-
 from quietarm.models import DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -18,6 +16,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.robustness.population import ErrorPopulation
 from quietarm.ocp.simulation.residual import MOST_SAMPLES
+from scipy.optimize import brentq
 
 LINEAR = SingleLinkManipulator(beta2=0.0, zeta=0.0)
 RANGES = {

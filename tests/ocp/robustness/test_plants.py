@@ -8,7 +8,6 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-
 from quietarm.models import (
     ArmOnFlexibleLink,
     DualLinkManipulator,

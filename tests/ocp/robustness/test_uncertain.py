@@ -7,7 +7,6 @@ from math import pi
 
 import numpy as np
 import pytest
-
 from quietarm.models import DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

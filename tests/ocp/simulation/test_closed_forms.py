@@ -6,7 +6,6 @@ from math import cos, sin
 
 import numpy as np
 import pytest
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,

@@ -5,8 +5,12 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-
-from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, JointMotion, SingleLinkManipulator
+from quietarm.models import (
+    ArmOnFlexibleLink,
+    DualLinkManipulator,
+    JointMotion,
+    SingleLinkManipulator,
+)
 from quietarm.ocp import CycloidPolynomial
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,

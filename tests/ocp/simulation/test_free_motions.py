@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
-
 from quietarm.models import JointMotion
 from quietarm.ocp import CycloidPolynomial, resimulate
 from quietarm.ocp.floor.grid import finer, first_grid
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
+from scipy.integrate import quad, solve_ivp
 
 
 def simulate(task, free):

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 import pytest
-
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint, resimulate, rollout
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, end_to_end, mesh
 

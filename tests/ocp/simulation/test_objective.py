@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from quietarm.models import JointMotion, SingleLinkManipulator
 from quietarm.ocp import Motion, PointToPoint
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh

@@ -7,8 +7,6 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
-from third_opinion import COEFFICIENTS
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -18,6 +16,7 @@ from quietarm.ocp import (
     sample_trajectory,
     with_errors,
 )
+from third_opinion import COEFFICIENTS
 
 pi = math.pi
 PLAIN = CycloidPolynomial(0)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, resimulate, rollout, symbolic_rollout
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion

@@ -5,7 +5,6 @@ from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
-
 from quietarm.ocp import CycloidPolynomial, PointToPoint, SolverFailedError, sample_trajectory
 from quietarm.ocp.simulation import cvodes
 

@@ -5,9 +5,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy.integrate import simpson, solve_ivp
-from third_opinion import ARM, SINGLE_LINK, ThirdOpinion, two_links
-
 from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
@@ -15,6 +12,8 @@ from quietarm.ocp import (
     sample_trajectory,
 )
 from quietarm.ocp.simulation.cvodes import rest_of
+from scipy.integrate import simpson, solve_ivp
+from third_opinion import ARM, SINGLE_LINK, ThirdOpinion, two_links
 
 pi = math.pi
 _RANDOM = np.random.default_rng(20)

@@ -7,7 +7,6 @@ from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task.point_to_point import LIMITS

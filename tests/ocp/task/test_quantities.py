@@ -3,7 +3,6 @@
 from dataclasses import fields
 
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink, JointMotion
 from quietarm.ocp import Motion, PointToPoint
 from quietarm.ocp.task.quantities import QUANTITIES, ask_for_jerk

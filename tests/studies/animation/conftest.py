@@ -1,7 +1,6 @@
 """What the tests of animations share: one small GIF."""
 
 import pytest
-
 from quietarm.studies.animation import animate
 from quietarm.studies.figures import Line
 

@@ -8,7 +8,6 @@ import sys
 import numpy as np
 import pytest
 from PIL import Image
-
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import PointToPoint, QuietarmError, evaluate_coefficients
 from quietarm.studies.animation import animate

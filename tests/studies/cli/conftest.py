@@ -3,7 +3,6 @@
 import signal
 
 import pytest
-
 import quietarm.studies.cli.commands.moves.evaluate
 import quietarm.studies.cli.commands.moves.plan
 import quietarm.studies.reproduction.recompute
@@ -51,7 +50,9 @@ def no_solve(monkeypatch):
         pytest.fail("a solve was begun")
 
     monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", solve)
-    monkeypatch.setattr(quietarm.studies.cli.commands.moves.evaluate, "evaluate_coefficients", solve)
+    monkeypatch.setattr(
+        quietarm.studies.cli.commands.moves.evaluate, "evaluate_coefficients", solve
+    )
     for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
         monkeypatch.setattr(quietarm.studies.runs.searching, name, solve)
     monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", solve)

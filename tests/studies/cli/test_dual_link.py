@@ -6,7 +6,6 @@ from dataclasses import replace
 from functools import partial
 
 import pytest
-
 import quietarm.studies.study.pieces
 from quietarm.models import DualLinkManipulator
 from quietarm.ocp import Front, Plan, PointToPoint, energy_floor

@@ -5,8 +5,6 @@ import subprocess
 import sys
 
 import pytest
-from lines import QUIETARM
-
 import quietarm.studies.cli.commands.moves.evaluate
 import quietarm.studies.cli.commands.moves.floor
 import quietarm.studies.cli.commands.moves.plan
@@ -21,6 +19,7 @@ import quietarm.studies.runs.problems
 import quietarm.studies.runs.robustness
 import quietarm.studies.runs.searching
 import quietarm.studies.study.work
+from lines import QUIETARM
 from quietarm.models import __version__
 from quietarm.ocp import InfeasibleTaskError
 from quietarm.studies.cli import quietarm

@@ -3,7 +3,6 @@
 import math
 
 import pytest
-
 from quietarm.models import Plant, SingleLinkManipulator, known_plants, load_plant_file
 from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients
 from quietarm.studies.cli.application import COMMANDS

@@ -2,7 +2,6 @@
 
 import pytest
 from lines import MOVE
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidGaussians,

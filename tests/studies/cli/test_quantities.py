@@ -6,7 +6,6 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from quietarm.studies.cli.quantities import (
     literal,
     parse_angle,

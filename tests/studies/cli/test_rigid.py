@@ -2,7 +2,6 @@
 
 import pytest
 from lines import MOVE
-
 from quietarm.ocp import Front, Plan
 
 RIGID = f"{MOVE} --set beta1=0 --quiet"

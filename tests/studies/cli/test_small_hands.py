@@ -4,7 +4,6 @@ import json
 
 import pytest
 from lines import MOVE
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Plan
 

@@ -7,8 +7,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from rich.console import Console
-
 import quietarm.studies.comparison.measures
 import quietarm.studies.runs.reports.comparison
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
@@ -23,6 +21,7 @@ from quietarm.studies.comparison.measures import FILL
 from quietarm.studies.comparison.staircase import evenly_spaced, filled
 from quietarm.studies.comparison.tables import units
 from quietarm.studies.runs.reports.comparison import with_floor
+from rich.console import Console
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
 compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)

@@ -3,11 +3,10 @@
 import shutil
 
 import pytest
-from small_contest import LINE
-
 from quietarm.studies.contest import problems
 from quietarm.studies.contest.report import files, page
 from quietarm.studies.display.html_page import element
+from small_contest import LINE
 
 
 def _small(patch):

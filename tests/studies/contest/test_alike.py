@@ -3,13 +3,12 @@
 import json
 
 import pytest
-from small_contest import LINE, METHODS, NAME
-
 import quietarm.studies.contest.asked as asked
 from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.measures import arenas_of
 from quietarm.studies.contest.report.notes import unequal
 from quietarm.studies.contest.report.paragraph import methods_paragraph
+from small_contest import LINE, METHODS, NAME
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -5,12 +5,11 @@ import shutil
 from pathlib import Path
 
 import pytest
-from small_contest import LINE, METHODS, NAME, found, rows_of
-
 import quietarm.studies.contest.measures as measures
 import quietarm.studies.contest.work as work
 from quietarm.metaheuristics.budget.run import search_within
 from quietarm.studies.contest.folder import Folder
+from small_contest import LINE, METHODS, NAME, found, rows_of
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

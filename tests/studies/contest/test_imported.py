@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_contest import LINE, NAME, OTHER, TINY, area, least_energy, rows_of
-
 from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.measures import arenas_of
 from quietarm.studies.contest.report import files
 from quietarm.studies.contest.report.citations import bibtex
 from quietarm.studies.contest.report.paragraph import methods_paragraph
 from quietarm.studies.contest.statistics import pairs_on
+from small_contest import LINE, NAME, OTHER, TINY, area, least_energy, rows_of
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from small_contest import NAME, TINY, documents
-
 from quietarm.ocp import evaluate_coefficients, plan_move
 from quietarm.studies.contest import landscape
 from quietarm.studies.contest.landscape import LEVEL, _correlation, _different, landscape_of
+from small_contest import NAME, TINY, documents
 
 
 @pytest.fixture(scope="module")
@@ -47,9 +46,8 @@ def test_minima_and_their_correlation_by_hand():
 
 
 def test_explain_adds_the_landscape_once(call, copy, monkeypatch):
-    from small_contest import LINE
-
     from quietarm.studies.contest.report import files, page
+    from small_contest import LINE
 
     monkeypatch.setattr(landscape, "STARTS", 3)
     monkeypatch.setattr(landscape, "BOXES", (2.0,))

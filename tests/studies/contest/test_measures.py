@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_contest import METHODS, NAME, area, documents, least_energy, median_of, rows_of, scaled
-
 from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.measures import Field, Outcome, arenas_of
+from small_contest import METHODS, NAME, area, documents, least_energy, median_of, rows_of, scaled
 
 LEVELS = (1e-4, 1e-3, 5e-3)
 

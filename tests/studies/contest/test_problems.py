@@ -1,12 +1,11 @@
 """The problems of a contest: the named ones, with the exact fronts that come with them."""
 
 import pytest
-from small_contest import LINE, NAME, documents, rows_of
-
 from quietarm.metaheuristics import PROBLEMS
 from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.problems import Yardstick, problems_of
 from quietarm.studies.paper.printed import CONDITIONS
+from small_contest import LINE, NAME, documents, rows_of
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -5,8 +5,6 @@ import re
 from dataclasses import replace
 
 import pytest
-from small_contest import NAME, rows_of
-
 from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.measures import Arena, Field, arenas_of
 from quietarm.studies.contest.report import page
@@ -15,6 +13,7 @@ from quietarm.studies.contest.report.files import report_files
 from quietarm.studies.contest.report.page import contest_page
 from quietarm.studies.contest.statistics import ranking_over
 from quietarm.studies.display.html_page import element
+from small_contest import NAME, rows_of
 
 MISSING = {
     "vepso": (0.20, 0.21, 0.22, 0.23, 0.24),

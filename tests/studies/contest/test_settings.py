@@ -3,13 +3,12 @@
 import json
 
 import pytest
-from small_contest import LINE, METHODS, NAME, OTHER, documents
-
 import quietarm.studies.contest.work as work
 from quietarm.metaheuristics.budget.run import search_within
 from quietarm.metaheuristics.problems.catalogue import problem_of
 from quietarm.studies.contest.asked import Contest
 from quietarm.studies.contest.names import label_of, name_of
+from small_contest import LINE, METHODS, NAME, OTHER, documents
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

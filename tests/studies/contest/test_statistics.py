@@ -2,9 +2,15 @@
 
 import numpy as np
 import pytest
-
 from quietarm.studies.contest import statistics
-from quietarm.studies.contest.statistics import LEAST_RUNS, holm, pairs_on, ranking, ranking_on, why_none
+from quietarm.studies.contest.statistics import (
+    LEAST_RUNS,
+    holm,
+    pairs_on,
+    ranking,
+    ranking_on,
+    why_none,
+)
 
 DEMSAR = 1 - np.array([
     [0.763, 0.768, 0.771, 0.798], [0.599, 0.591, 0.590, 0.569], [0.954, 0.971, 0.968, 0.967],

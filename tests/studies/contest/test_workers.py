@@ -5,10 +5,9 @@ import re
 import signal
 
 import pytest
-from small_contest import LINE, found
-
 from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.runs import Run
+from small_contest import LINE, found
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 

@@ -4,8 +4,15 @@ import base64
 import xml.etree.ElementTree as ElementTree
 
 from matplotlib.figure import Figure
-
-from quietarm.studies.display.html_page import Markup, bullets, element, joined, page, picture, table_element
+from quietarm.studies.display.html_page import (
+    Markup,
+    bullets,
+    element,
+    joined,
+    page,
+    picture,
+    table_element,
+)
 from quietarm.studies.display.tables import Column, Table
 
 NASTY = '<script>alert("1 & 2")</script>'

@@ -3,7 +3,6 @@
 import matplotlib as mpl
 import pytest
 from matplotlib.figure import Figure
-
 from quietarm.studies.display.pictures import save_figure
 
 

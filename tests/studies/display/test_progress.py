@@ -4,9 +4,8 @@ import io
 import time
 
 import pytest
-from rich.console import Console
-
 from quietarm.studies.display.progress import count, progress
+from rich.console import Console
 
 
 def console(**settings):

@@ -8,13 +8,12 @@ from dataclasses import replace
 from itertools import repeat
 
 import pytest
-from rich.console import Console
-
 import quietarm.studies.display.progress
 import quietarm.studies.display.search_progress
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Generation
 from quietarm.studies.display.search_progress import search_display
+from rich.console import Console
 
 # 120 of 500 generations in 3 s: 380 are left, at 40 a second 9.5 s
 NOW = SearchProgress(
@@ -38,7 +37,9 @@ def drawn(terminal):
 def clock(monkeypatch):
     """A clock that a test sets, for the plain lines."""
     now = [0.0]
-    monkeypatch.setattr(quietarm.studies.display.search_progress.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(
+        quietarm.studies.display.search_progress.time, "perf_counter", lambda: now[0]
+    )
     return now
 
 

@@ -7,9 +7,8 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rich.console import Console
-
 from quietarm.studies.display.tables import Column, Table, print_table
+from rich.console import Console
 
 TABLE = Table(
     "Two moves",

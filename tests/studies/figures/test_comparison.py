@@ -6,17 +6,22 @@ from functools import partial
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgba
-from matplotlib.figure import Figure
-
 import quietarm.studies.comparison.measures
 import quietarm.studies.runs.loading
 import quietarm.studies.runs.reports.comparison
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import PointToPoint
 from quietarm.studies.comparison.tables import runs_table, tables
 from quietarm.studies.display.words import title_of
-from quietarm.studies.figures.comparison import BANDS, PANELS, comparison_figure, looks, panel_figure
+from quietarm.studies.figures.comparison import (
+    BANDS,
+    PANELS,
+    comparison_figure,
+    looks,
+    panel_figure,
+)
 from quietarm.studies.paper.points import paper_points
 from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
 from quietarm.studies.paper.tasks import condition_of

@@ -5,7 +5,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-
 from quietarm.ocp import Generation
 from quietarm.studies.display.pictures import save_figure
 from quietarm.studies.figures import draw_fronts, draw_hypervolume, draw_seed_energies, front_figure

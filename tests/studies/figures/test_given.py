@@ -5,7 +5,6 @@ from functools import partial
 
 import pytest
 from matplotlib.figure import Figure
-
 from quietarm.ocp import Polish, evaluate_robustness
 from quietarm.studies import figures
 

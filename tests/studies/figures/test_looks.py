@@ -5,7 +5,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-
 from quietarm.studies.figures import COLOURS, look
 
 # Machado, Oliveira and Fernandes, IEEE TVCG 15 (2009), table of severity 1.0; linear sRGB.

@@ -9,10 +9,16 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
-
 from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.studies.display.pictures import SUFFIXES, check_figure, save_figure
-from quietarm.studies.figures import PAPER_PANELS, QUANTITIES_DRAWN, RED, Line, draw_quantity, motion_figure
+from quietarm.studies.figures import (
+    PAPER_PANELS,
+    QUANTITIES_DRAWN,
+    RED,
+    Line,
+    draw_quantity,
+    motion_figure,
+)
 
 TITLES = [
     "joint angle [rad]",

@@ -3,7 +3,6 @@
 import math
 
 import pytest
-
 from quietarm.metaheuristics import PRESETS
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, polish_front

@@ -4,7 +4,6 @@ import dataclasses
 import re
 
 import pytest
-
 from quietarm.studies.paper.printed import (
     ARM_HALF,
     ARM_WHOLE,

@@ -7,8 +7,6 @@ import re
 
 import numpy as np
 import pytest
-from rich.console import Console
-
 from quietarm.studies.display.words import move_of
 from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
 from quietarm.studies.reproduction.claims import claims
@@ -24,6 +22,7 @@ from quietarm.studies.reproduction.floor_table import (
 )
 from quietarm.studies.reproduction.pieces import SEARCHES
 from quietarm.studies.reproduction.report import print_reproduction
+from rich.console import Console
 
 TERMS = (2, 4, 6, 8, 10)
 

@@ -5,8 +5,6 @@ import io
 import re
 
 import pytest
-from rich.console import Console
-
 from quietarm.studies.figures import BLUE, GREEN, RED
 from quietarm.studies.figures.looks import ORANGE
 from quietarm.studies.paper.printed import (
@@ -21,6 +19,7 @@ from quietarm.studies.reproduction.report import (
     reproduction_files,
     tables,
 )
+from rich.console import Console
 
 # The report
 

@@ -4,7 +4,6 @@ from collections import Counter
 from itertools import pairwise, product
 
 import pytest
-
 from quietarm.ocp import CycloidPolynomial, SolveStatus, plan_move
 from quietarm.studies.paper.printed import (
     ARM_HALF,

@@ -5,7 +5,6 @@ import json
 import math
 
 import numpy as np
-
 from quietarm.metaheuristics import problem_of
 
 NAME, OTHER = "single-link-30deg-0.8s-2-terms", "arm-on-flexible-link-90deg-0.8s-2-terms"

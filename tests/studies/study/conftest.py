@@ -1,12 +1,11 @@
 """What the tests of the headline study share: a small one, run once."""
 
 import pytest
-from small_study import CASES, FLOOR, QUICK
-
 import quietarm.studies.study.pieces as study_pieces
 from quietarm.studies.display.html_page import element
 from quietarm.studies.study import page
 from quietarm.studies.study.work import run_study
+from small_study import CASES, FLOOR, QUICK
 
 
 @pytest.fixture(autouse=True)

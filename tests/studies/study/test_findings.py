@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_study import FLOOR, QUICK
-
 import quietarm.studies.study.findings as findings_module
 from quietarm.studies.comparison.measures import compare_fronts
 from quietarm.studies.study.findings import case_findings, findings, percent, percents
 from quietarm.studies.study.page import method_lines
 from quietarm.studies.study.pieces import StudySettings
+from small_study import FLOOR, QUICK
 
 # What it says
 

@@ -8,12 +8,11 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 from matplotlib.figure import Figure
-from small_study import CASES, QUICK
-
 from quietarm.studies.study.files import page_file
 from quietarm.studies.study.overview import draw_study_gaps
 from quietarm.studies.study.page import study_page
 from quietarm.studies.study.work import Study
+from small_study import CASES, QUICK
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,6 @@ import signal
 from dataclasses import replace
 
 import pytest
-from small_study import CASES, METHODS, QUICK
-from small_study import FLOOR as FLOOR_FOUND
-
 import quietarm.metaheuristics.ensemble as ensemble
 import quietarm.studies.study.pieces as study_pieces
 import quietarm.studies.study.work as study_module
@@ -26,6 +23,8 @@ from quietarm.studies.study.findings import case_findings
 from quietarm.studies.study.page import study_page
 from quietarm.studies.study.pieces import FLOOR, Key, StudySettings
 from quietarm.studies.study.work import Study, amount_of_work, run_study
+from small_study import CASES, METHODS, QUICK
+from small_study import FLOOR as FLOOR_FOUND
 
 # What is run
 

@@ -6,10 +6,9 @@ from functools import partial
 from pathlib import Path
 
 import click
-from rich.console import Console
-
 from quietarm.studies.cli.options import FOLDER, INPUT, plant_file_option, quiet_option
 from quietarm.studies.display.progress import working
+from rich.console import Console
 
 
 @click.command()

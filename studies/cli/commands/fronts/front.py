@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-
 from quietarm.metaheuristics import PRESETS
 from quietarm.studies.cli.arguments import refuse_idle, task_of
 from quietarm.studies.cli.options import (

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-
 from quietarm.ocp.base.printable import printable
 from quietarm.studies.cli.arguments import task_of
 from quietarm.studies.cli.options import (

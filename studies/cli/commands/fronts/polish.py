@@ -5,8 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-
-from quietarm.studies.cli.options import INPUT, OUTPUT, PICTURE, WHOLE, plant_file_option, quiet_option
+from quietarm.studies.cli.options import (
+    INPUT,
+    OUTPUT,
+    PICTURE,
+    WHOLE,
+    plant_file_option,
+    quiet_option,
+)
 from quietarm.studies.runs.files import FrontFiles
 
 

@@ -5,8 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-
-from quietarm.studies.cli.options import INPUT, NUMBER, SHARE, STATE, WHOLE, plant_file_option, quiet_option
+from quietarm.studies.cli.options import (
+    INPUT,
+    NUMBER,
+    SHARE,
+    STATE,
+    WHOLE,
+    plant_file_option,
+    quiet_option,
+)
 
 
 @click.command()

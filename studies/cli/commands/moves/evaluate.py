@@ -6,8 +6,6 @@ from functools import partial
 from typing import Any
 
 import click
-from rich.console import Console
-
 from quietarm.ocp import evaluate_coefficients
 from quietarm.studies.cli.arguments import plan_files, refuse_idle, split_options
 from quietarm.studies.cli.options import (
@@ -22,6 +20,7 @@ from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import finish
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.runs.reports.plan import print_plan
+from rich.console import Console
 
 
 @click.command()

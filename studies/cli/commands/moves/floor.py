@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from rich.console import Console
-
 from quietarm.ocp import energy_floor
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.studies.cli.arguments import task_of
@@ -17,6 +15,7 @@ from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing, finish, interruption
 from quietarm.studies.runs.files import refuse_same_file
 from quietarm.studies.runs.reports.floor import plan_beside, print_floor
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import click
-from rich.console import Console
-
 from quietarm.ocp import plan_move
 from quietarm.ocp.program.solving import Solver
 from quietarm.studies.cli.arguments import plan_files, refuse_idle, split_options
@@ -31,6 +29,7 @@ from quietarm.studies.display.words import print_lines
 from quietarm.studies.registry.methods import METHODS, Kind, methods_of
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.runs.reports.plan import print_plan
+from rich.console import Console
 
 GRADIENT = "gradient"
 OF_FAMILIES = ("terms", "bound", "starts", "seed", "method", "setting", "polish")

@@ -5,8 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-
-from quietarm.studies.cli.options import FOLDER, INPUT, SHARE, WHOLE, plant_file_option, quiet_option
+from quietarm.studies.cli.options import (
+    FOLDER,
+    INPUT,
+    SHARE,
+    WHOLE,
+    plant_file_option,
+    quiet_option,
+)
 
 
 @click.command(context_settings={"ignore_unknown_options": True})

@@ -6,8 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from rich.console import Console
-
 from quietarm.studies.cli.options import (
     FOLDER,
     WHOLE,
@@ -16,6 +14,7 @@ from quietarm.studies.cli.options import (
     settings_by_method,
     workers_options,
 )
+from rich.console import Console
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.sharing.pieces import Done

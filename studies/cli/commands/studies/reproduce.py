@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.console import Console
-
 from quietarm.studies.cli.options import FOLDER, WHOLE, quiet_option, workers_at_hand_options
+from rich.console import Console
 
 
 @click.command()

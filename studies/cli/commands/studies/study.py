@@ -8,8 +8,6 @@ from typing import Any
 
 import click
 from click.core import ParameterSource
-from rich.console import Console
-
 from quietarm.metaheuristics import PRESETS
 from quietarm.studies.cli.arguments import task_of
 from quietarm.studies.cli.options import (
@@ -26,6 +24,7 @@ from quietarm.studies.cli.options import (
     workers_options,
 )
 from quietarm.studies.registry.methods import PAPERS
+from rich.console import Console
 
 
 def _not_required(command: click.Command) -> click.Command:

@@ -8,10 +8,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
-from target_problems import Constrained, States, Targets, Undefined
-
 from quietarm.metaheuristics.algorithms.velocity import VelocityRule
 from quietarm.metaheuristics.algorithms.vepso import VEPSO, least_crowded
+from target_problems import Constrained, States, Targets, Undefined
 
 # -- archive --
 

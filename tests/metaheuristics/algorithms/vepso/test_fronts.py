@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
-
 from quietarm.metaheuristics.algorithms.velocity import CONSTRICTION, INERTIA_2002, PAPER_GROUP
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
 

@@ -8,8 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from pymoo.optimize import minimize
-from target_problems import States, Targets, step
-
 from quietarm.metaheuristics.algorithms.velocity import (
     CONSTRICTION,
     INERTIA_2002,
@@ -18,6 +16,7 @@ from quietarm.metaheuristics.algorithms.velocity import (
     reflect,
 )
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
+from target_problems import States, Targets, step
 
 
 @pytest.mark.parametrize("n_obj", [2, 3, 4])

@@ -6,10 +6,9 @@ from functools import cache
 import moocore
 import numpy as np
 import pytest
-from small_searches import HALF, LIMITED, SIXTH
-
 from quietarm.metaheuristics import PAPER_BOX, PopulationObjective, search
 from quietarm.ocp import CycloidPolynomial, resimulate, rollout
+from small_searches import HALF, LIMITED, SIXTH
 
 TASKS = {
     "single link": SIXTH,

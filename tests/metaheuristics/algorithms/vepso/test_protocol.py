@@ -9,8 +9,6 @@ from pymoo.core.population import Population
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
-from target_problems import Targets
-
 from quietarm.metaheuristics.algorithms.velocity import (
     CONSTRICTION,
     INERTIA_2002,
@@ -18,6 +16,7 @@ from quietarm.metaheuristics.algorithms.velocity import (
     VelocityRule,
 )
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
+from target_problems import Targets
 
 # -- arguments --
 

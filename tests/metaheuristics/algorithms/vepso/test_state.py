@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
-from states import same
-from target_problems import Constrained, States, Targets, Undefined, step
-
 from quietarm.metaheuristics.algorithms.velocity import INERTIA_2002
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
+from states import same
+from target_problems import Constrained, States, Targets, Undefined, step
 
 
 def plain(value):

@@ -9,7 +9,6 @@ import sys
 
 import pytest
 from lines import EVERY_FILE, MOVE
-
 from quietarm.ocp import Plan
 from quietarm.studies.reproduction.pieces import pieces_of_paper
 

@@ -1,7 +1,6 @@
 """The installed command, as a process."""
 
 from lines import MOVE, run
-
 from quietarm.ocp import Front
 
 

@@ -7,13 +7,11 @@ import signal
 import subprocess
 import sys
 from importlib import import_module
-from pathlib import Path
 
 import pytest
-from lines import MOVE
-
 import quietarm.studies.cli
 import quietarm.studies.runs.reports.comparison
+from lines import MOVE
 from quietarm.ocp import Front
 
 SEARCH = "--bound 0.2 --population 20 --generations 20"
@@ -137,65 +135,6 @@ def test_ctrl_c_while_the_plan_beside_it_is_looked_for_keeps_the_floor(call, fol
     )
     assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
     assert out.splitlines()[-1] == "wrote f.json"
-
-
-# Starts the command, and sends it a signal when it loads a module.
-AT = """
-import os, signal, sys
-
-class Signalling:
-    def find_spec(self, name, *rest):
-        if name == {module!r}:
-            os.kill(os.getpid(), signal.{number})
-
-sys.meta_path.insert(0, Signalling())
-sys.argv = ["quietarm", *{words!r}]
-from quietarm.studies.cli import main
-main()
-"""
-LOADED = ["pathlib", "ocp", "casadi", "models", "click", "quietarm.studies.cli", "rich.console",
-          "quietarm.studies.cli.commands.moves.plan", "quietarm.studies.display.words"]  # fmt: skip
-
-
-# One handler is for both: SIGTERM comes at the beginning, in the middle and at the end.
-@pytest.mark.parametrize(
-    ("number", "module"),
-    [("SIGINT", module) for module in LOADED] + [("SIGTERM", module) for module in LOADED[::4]],
-)
-def test_while_it_is_loaded_it_ends_in_a_line(folder, module, number):
-    words = f"plan {MOVE} --output p.json".split()
-    ran = subprocess.run(
-        [sys.executable, "-c", AT.format(module=module, number=number, words=words)],
-        capture_output=True, text=True, timeout=GUARD, check=False,
-    )  # fmt: skip
-    assert (ran.returncode, ran.stdout) == (1, "")
-    assert ran.stderr.strip() == "quietarm: interrupted; nothing was written"
-    assert list(folder.iterdir()) == []
-
-
-def test_ctrl_c_is_answered_before_anything_else_is_loaded():
-    script = Path(quietarm.studies.cli.__file__).with_name("quietarm")
-    code = (
-        "import sys; known = {*sys.modules, '_signal'}\n"
-        "class End:\n"
-        "    def find_spec(self, name, *rest):\n"
-        "        if name == 'ocp': sys.exit(' '.join({*sys.modules} - known))\n"
-        "sys.meta_path.insert(0, End())\n"
-        f"exec(open({str(script)!r}).read())\n"
-    )
-    ran = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=GUARD
-    )
-    assert set(ran.stderr.split()) == {"studies", "quietarm.studies.early"}
-
-
-def test_a_library_that_is_loaded_leaves_signals_alone():
-    code = (
-        "import signal, quietarm.studies.cli\n"
-        "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler\n"
-        "assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL\n"
-    )
-    subprocess.run([sys.executable, "-c", code], timeout=GUARD, check=True)
 
 
 def test_ctrl_c_while_files_are_written_waits_until_they_are_there(call, folder, monkeypatch):

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from lines import COARSELY, MOVE
-
 from quietarm.ocp import Plan
 
 EVALUATE = f"evaluate {MOVE} --coefficients=0.003347,-0.1697 --quiet"  # the paper's Table 1

@@ -7,7 +7,6 @@ from itertools import islice
 
 import pytest
 from lines import MOVE
-
 from quietarm.studies.display import progress
 
 FRONT = f"front {MOVE} --bound 0.2 --method"

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lines import MOVE
-
 from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front

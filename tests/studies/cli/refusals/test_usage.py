@@ -2,7 +2,6 @@
 
 import pytest
 from lines import MOVE
-
 from quietarm.studies.cli.application import COMMANDS
 
 

@@ -1,7 +1,6 @@
 """The systems as a picture: a row each, a dot for each move."""
 
 import pytest
-
 from quietarm.studies.paper.printed import SINGLE_LINK_SIXTH
 from quietarm.studies.reproduction.side_by_side.picture import systems_figure
 

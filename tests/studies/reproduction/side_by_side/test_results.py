@@ -1,7 +1,6 @@
 """Every system on the same moves: figures of each, and why some are missing."""
 
 import pytest
-
 from quietarm.ocp import evaluate_coefficients
 from quietarm.studies.paper.points import residual_level
 from quietarm.studies.paper.printed import (

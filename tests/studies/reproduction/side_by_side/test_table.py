@@ -5,8 +5,6 @@ import io
 from pathlib import Path
 
 import pytest
-from rich.console import Console
-
 from quietarm.studies.reproduction.side_by_side.table import (
     all_systems,
     print_systems,
@@ -15,6 +13,7 @@ from quietarm.studies.reproduction.side_by_side.table import (
     systems_table,
     why_not,
 )
+from rich.console import Console
 
 WHOLE = ("plain cycloid", "ZV", "ZVD", "EI", "paper", "boxed gradient", "gradient")
 """Systems that are not cut short in these tests."""

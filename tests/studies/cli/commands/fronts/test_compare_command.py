@@ -6,7 +6,6 @@ import math
 import re
 
 import pytest
-
 import quietarm.studies.comparison.measures
 import quietarm.studies.runs.loading
 import quietarm.studies.runs.reports.comparison
@@ -71,7 +70,9 @@ def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     class Found:
         energy, complete = 0.1234, True
 
-    monkeypatch.setattr(quietarm.studies.runs.reports.comparison, "energy_floor", lambda task: Found())
+    monkeypatch.setattr(
+        quietarm.studies.runs.reports.comparison, "energy_floor", lambda task: Found()
+    )
     code, out, _ = call("compare good.json poor.json --as-found")
     assert code == 0
     assert "arrive at rest, not of polynomials only, is 0.1234 J" in " ".join(out.split())

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 import quietarm.studies.runs.searching
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.ensemble import LostSeedsError
@@ -129,7 +128,9 @@ def test_the_seeds_that_arrive_still_are_counted(call, monkeypatch, front_of):
     assert out.splitlines()[-1] == (
         "energy at 1 mm: median 0.5 J, quartiles 0.375 to 0.625 J; 2 of 3 seeds reach 1 mm"
     )
-    monkeypatch.setattr(quietarm.studies.runs.searching, "search_many", lambda *_, **__: [fronts[1]] * 3)
+    monkeypatch.setattr(
+        quietarm.studies.runs.searching, "search_many", lambda *_, **__: [fronts[1]] * 3
+    )
     _, out, _ = call(f"{SMALL} --runs 3")
     assert out.splitlines()[-1] == "energy at 1 mm: none; 0 of 3 seeds reach 1 mm"
 

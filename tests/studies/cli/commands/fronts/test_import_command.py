@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import scipy.io
 from lines import MOVE
-
 from quietarm.metaheuristics import problem_of
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, rollout

@@ -3,10 +3,9 @@
 import math
 
 import pytest
-from lines import MOVE
-
 import quietarm.studies.runs.searching
 import quietarm.studies.study.work
+from lines import MOVE
 from quietarm.metaheuristics import PRESETS, search
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 import quietarm.studies.runs.loading
 import quietarm.studies.runs.polishing
 from quietarm.models import ArmOnFlexibleLink
@@ -111,7 +110,9 @@ def test_points_that_fail_or_are_beaten_are_told(call, monkeypatch, front_of):
     monkeypatch.setattr(
         quietarm.studies.runs.polishing, "polish_front", lambda *_, **__: Polish(after, gains)
     )
-    monkeypatch.setattr(quietarm.studies.runs.loading, "check_figures", lambda front, name: None)  # invented
+    monkeypatch.setattr(
+        quietarm.studies.runs.loading, "check_figures", lambda front, name: None
+    )  # invented
     before.save("f.json")
     _, out, _ = call("polish f.json")
     assert out.splitlines()[-4:] == [

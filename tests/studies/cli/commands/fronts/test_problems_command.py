@@ -1,7 +1,6 @@
 """`quietarm problems`: the list, and the exact fronts in files."""
 
 import pytest
-
 from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.metaheuristics.problems import catalogue
 from quietarm.ocp import Front

@@ -6,9 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import CycloidPolynomial, FailedPoint, Front, PointToPoint, epsilon_front, weighted_front
+from quietarm.ocp import (
+    CycloidPolynomial,
+    FailedPoint,
+    Front,
+    PointToPoint,
+    epsilon_front,
+    weighted_front,
+)
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.figures.sweep import sweep_figure
 

@@ -4,9 +4,8 @@ import math
 import signal
 
 import pytest
-from PIL import Image
-
 import quietarm.studies.runs.animating
+from PIL import Image
 from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.studies.animation import stage
 

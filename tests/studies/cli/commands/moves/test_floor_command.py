@@ -6,7 +6,6 @@ import re
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import Floor, FloorSettings, PointToPoint, SolverFailedError, energy_floor
 from quietarm.studies.figures.motion import PAPER_PANELS, Line, floor_figure, motion_figure

@@ -10,8 +10,6 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-from lines import EVERY_FILE, MOVE, PLAN, TWO_TERMS, run
-
 import quietarm.studies.cli.commands.moves.evaluate
 import quietarm.studies.cli.commands.moves.floor
 import quietarm.studies.cli.commands.moves.plan
@@ -20,6 +18,7 @@ import quietarm.studies.runs.loading
 import quietarm.studies.runs.polishing
 import quietarm.studies.runs.searching
 import quietarm.studies.study.work
+from lines import EVERY_FILE, MOVE, PLAN, TWO_TERMS, run
 from quietarm.ocp import InfeasibleTaskError, Plan
 from quietarm.ocp.task.quantities import QUANTITIES
 

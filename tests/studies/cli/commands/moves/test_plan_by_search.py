@@ -4,7 +4,6 @@ import math
 from pathlib import Path
 
 import pytest
-
 import quietarm.studies.runs.searching
 from quietarm.metaheuristics import search
 from quietarm.models import SingleLinkManipulator

@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import pytest
 from lines import MOVE, TWO_TERMS
-from rich.console import Console
-
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.front.robust import EXCESS
 from quietarm.studies.runs.reports.plan import print_plan
+from rich.console import Console
 
 
 def test_a_robust_plan_says_where_it_leaves_most(call):

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-
 from quietarm.metaheuristics.objective import claims
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import (

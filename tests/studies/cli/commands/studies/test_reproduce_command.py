@@ -4,7 +4,6 @@ import re
 from pathlib import Path
 
 import pytest
-
 import quietarm.studies.cli.commands.moves.evaluate
 import quietarm.studies.cli.commands.moves.floor
 import quietarm.studies.cli.commands.moves.plan

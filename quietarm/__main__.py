@@ -1,4 +1,4 @@
-"""`python -m quietarm` is `quietarm`."""
+"""`python -m quietarm` is the command."""
 
 from quietarm.studies.cli import main
 
