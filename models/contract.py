@@ -171,9 +171,7 @@ def outputs_of(plant: Plant, arguments: Sequence[Expression], rows: int = 1) -> 
 
     def single(method: str, found: Any) -> Expression:
         if not isinstance(found, Real | ca.SX | ca.MX | ca.DM):
-            raise _wrong(
-                plant, method, f"returns {type(found).__name__} where an expression is due"
-            )
+            raise _wrong(plant, method, f"returns {_kind(found)} where an expression is due")
         if not isinstance(found, Real) and found.shape not in ((1, 1), (rows, 1)):
             raise _wrong(plant, method, "returns a matrix of {} by {}".format(*found.shape))
         return found
@@ -181,7 +179,7 @@ def outputs_of(plant: Plant, arguments: Sequence[Expression], rows: int = 1) -> 
     def listed(method: str, *given: object) -> list[Expression]:
         found = _called(plant, method, *given)
         if not isinstance(found, list | tuple):
-            raise _wrong(plant, method, f"returns {type(found).__name__}, which is no list")
+            raise _wrong(plant, method, f"returns {_kind(found)}, which is no list")
         return [single(method, entry) for entry in found]
 
     accelerations = listed("modal_accelerations", joint, W, dW)
@@ -220,6 +218,10 @@ def _called(plant: Plant, method: str, *arguments: object) -> Any:
             jerk = "NoneType" in str(error)
             remedy = "joint.jerk is None: use the other three" if jerk else _CASADIS
         raise _wrong(plant, method, f"fails{line} ({_words(error)})", remedy) from None
+
+
+def _kind(value: object) -> str:
+    return "an expression" if isinstance(value, ca.SX | ca.MX | ca.DM) else type(value).__name__
 
 
 def _words(error: Exception) -> str:

@@ -7,10 +7,11 @@ plain number (a table). Use `casadi.sin` and its like, not those of `numpy` or `
 
 from __future__ import annotations
 
-import math
+import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import Field, field, fields
+from numbers import Real
 from typing import Any, ClassVar
 
 from quietarm.models.contract import check_contract
@@ -90,17 +91,14 @@ class Plant(ABC):
                     f"{self.name}: {entry.name} is not a parameter; write it as "
                     f"{entry.name}: ClassVar[{_OF_CLASS[entry.name]}]"
                 )
-            value = float(getattr(self, entry.name))
-            if not math.isfinite(value):
+            value = getattr(self, entry.name)
+            number = isinstance(value, Real) and not isinstance(value, bool)
+            if not (number and abs(value) <= _MOST_PARAMETER):
                 raise ValueError(
-                    f"{self.name}: parameter {entry.name} is {value:g}; give a finite number"
+                    f"{self.name}: parameter {entry.name} is {reprlib.repr(value)}; give a finite "
+                    f"number of at most {_MOST_PARAMETER:g} in size, in SI units"
                 )
-            if abs(value) > _MOST_PARAMETER:
-                raise ValueError(
-                    f"{self.name}: parameter {entry.name} is {value:g}; give at most "
-                    f"{_MOST_PARAMETER:g} in size, in SI units"
-                )
-            object.__setattr__(self, entry.name, value)
+            object.__setattr__(self, entry.name, float(value))
 
     @abstractmethod
     def modal_accelerations(

@@ -48,7 +48,7 @@ WRONG = {
     "a list for the torque": ({"torque": lambda p, j, W, dW, ddW: [1.0]}, "torque returns list"),
     "no list": (
         {"accelerations": lambda p, j, W, dW: -W[0]},
-        r"modal_accelerations returns \w+, which is no list; .* and return a list of W''",
+        r"modal_accelerations returns an expression, which is no list; .* and return a list of W''",
     ),
     "nested": (
         {"tips": lambda p, W: [[W[0]]]},

@@ -216,7 +216,7 @@ def test_plants_are_equal_by_class_and_parameters():
 
 
 def test_a_parameter_beyond_all_scale_is_refused_with_what_would_do():
-    with pytest.raises(ValueError, match=r"omega is -1e\+300; give at most 1e\+100 in size"):
+    with pytest.raises(ValueError, match=r"omega is -1e\+300; .* at most 1e\+100"):
         SingleLinkManipulator(omega=-1e300)
 
 

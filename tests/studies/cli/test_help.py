@@ -22,9 +22,9 @@ import quietarm.studies.study.work
 from lines import QUIETARM
 from quietarm.models import __version__
 from quietarm.ocp import InfeasibleTaskError
-from quietarm.studies.cli import quietarm
+from quietarm.studies.cli import quietarm as command_line
 
-COMMANDS = sorted(quietarm.commands)
+COMMANDS = sorted(command_line.commands)
 
 
 def examples(text):
