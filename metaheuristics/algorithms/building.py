@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
-from quietarm.metaheuristics.algorithms.presets import Preset
 from quietarm.metaheuristics.algorithms.settings import Value
+
+if TYPE_CHECKING:
+    from quietarm.metaheuristics.algorithms.presets import Preset  # which loads this file late
 
 _OPERATORS: dict[str, Callable[..., Any]] = {"crossover": SBX, "mutation": PM}
 
