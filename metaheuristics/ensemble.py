@@ -218,33 +218,7 @@ def one_seed(
     known: Done,
     say: Say,
 ) -> Front:
-    """A search as a piece of work.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    method : str
-        A name of `PRESETS`.
-    settings : mapping
-        As for `search`.
-    seed : int
-        Its seed.
-    known : Done
-        What became of the pieces before it, which it does not need.
-    say : Say
-        Told of every generation, and of the front so far.
-
-    Returns
-    -------
-    Front
-        What it found.
-
-    Raises
-    ------
-    InterruptedPiece
-        When it was interrupted, with the front so far.
-    """
+    """A search as a piece of work."""
     front = search(task, method, seed=seed, report=say.report, found=say.found, **settings)
     if not front.complete:
         raise InterruptedPiece(front)

@@ -25,25 +25,6 @@ def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algor
 
     Its operators are its own: those of pymoo's default arguments are shared, and some remember a
     run.
-
-    Parameters
-    ----------
-    preset : Preset
-        Which.
-    population : int
-        Individuals, or particles in a swarm.
-    values : mapping of str to value
-        All its settings, by name.
-
-    Returns
-    -------
-    Algorithm
-        One that was not run.
-
-    Raises
-    ------
-    ValueError
-        When a library is missing.
     """
     if preset.needs and find_spec(preset.needs) is None:
         raise ValueError(

@@ -9,23 +9,7 @@ from quietarm.metaheuristics.algorithms.presets import PRESETS
 
 
 def own_algorithm(algorithm: object) -> Algorithm:
-    """A copy to run, so that the one given stays as it is.
-
-    Parameters
-    ----------
-    algorithm : pymoo Algorithm
-        A multi-objective one that was not set up before.
-
-    Returns
-    -------
-    Algorithm
-        The copy.
-
-    Raises
-    ------
-    ValueError
-        When it is no algorithm, is for one objective, or was set up before.
-    """
+    """A copy to run, so that the one given stays as it is."""
     if not isinstance(algorithm, Algorithm):
         raise ValueError(
             f"algorithm is {algorithm!r}; give {', '.join(PRESETS)}, or an instance of one of "

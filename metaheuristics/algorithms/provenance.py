@@ -15,20 +15,7 @@ _RENAMED = {"pop_size": "population", "n_offsprings": "offspring"}
 
 
 def settings_of(algorithm: Algorithm) -> dict[str, Any]:
-    """The settings of an algorithm that was not run yet.
-
-    Parameters
-    ----------
-    algorithm : pymoo Algorithm
-        Any; VEPSO and PaperNSGA2 have a property `settings`.
-
-    Returns
-    -------
-    dict
-        Its own `settings` where it has them. Else numbers and words by name: what it has beyond
-        pymoo's base class, its operators with their numbers, and of reference directions their
-        count and a checksum.
-    """
+    """The settings of an algorithm that was not run yet."""
     own = getattr(algorithm, "settings", None)
     if isinstance(own, Mapping):
         return dict(own)

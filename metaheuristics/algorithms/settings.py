@@ -16,21 +16,7 @@ MOST_KEPT = 100_000
 
 @dataclass(frozen=True)
 class Setting:
-    """A setting of a method.
-
-    Attributes
-    ----------
-    name : str
-        What it is called.
-    argument : str
-        What the algorithm's class calls it; ``crossover.eta`` is the eta of its crossover.
-    default : number, bool, str or None
-        What it is where nothing is given; None where it depends on the search.
-    meaning : str
-        What it sets; says what the default is where that is None.
-    check : callable
-        Takes the name and a value; returns the value, or raises ValueError with the remedy.
-    """
+    """A setting of a method."""
 
     name: str
     argument: str
@@ -96,27 +82,7 @@ def scale(name: str, value: object) -> float:
 def with_defaults(
     method: str, known: Iterable[Setting], given: Mapping[str, object] | None
 ) -> dict[str, Value]:
-    """All settings of a method: those that are given, each checked, and the defaults.
-
-    Parameters
-    ----------
-    method : str
-        Its name, for messages.
-    known : iterable of Setting
-        What it has.
-    given : mapping of str to object, or None
-        Values by name.
-
-    Returns
-    -------
-    dict
-        A value for every setting.
-
-    Raises
-    ------
-    ValueError
-        When they are no table, a name is not known or a value is out of range.
-    """
+    """All settings of a method: those that are given, each checked, and the defaults."""
     entries = {setting.name: setting for setting in known}
     remedy = "a table of values by name, as {'crossover': 0.7}"
     given = {} if given is None else of_kind("settings", given, Mapping, remedy)

@@ -61,25 +61,7 @@ def array_of(
     least: float | None = None,
     most: float = math.inf,
 ) -> NDArray[np.float64]:
-    """An entry that is an array of numbers, as a copy of its own.
-
-    Parameters
-    ----------
-    state : mapping
-        The state or a part of it.
-    name : str
-        Which entry; an array, or nested lists of numbers.
-    shape : tuple of int
-        Its shape; -1 is any number of rows.
-    least, most : float, optional
-        Range of the entries. By default any finite number; where `least` is -inf, any but NaN;
-        where it is NaN, any.
-
-    Returns
-    -------
-    ndarray
-        The array.
-    """
+    """An entry that is an array of numbers, as a copy of its own."""
     values = np.array(state[name])
     if values.dtype.kind not in "fiu":
         raise TypeError(f"{name} is not an array of numbers")
@@ -96,22 +78,7 @@ def array_of(
 
 
 def population_of(columns: Mapping[str, Any], problem: Any, rows: int = -1) -> Any:
-    """A population that counts as evaluated.
-
-    Parameters
-    ----------
-    columns : mapping
-        Arrays by attribute: X, F, G and H.
-    problem : Problem
-        What it is of.
-    rows : int
-        How many individuals; any number by default.
-
-    Returns
-    -------
-    Population
-        The individuals.
-    """
+    """A population that counts as evaluated."""
     sizes = (problem.n_var, problem.n_obj, problem.n_ieq_constr, problem.n_eq_constr)
     arrays: dict[str, NDArray[np.float64]] = {}
     for name, size in zip(POPULATION_ARRAYS, sizes, strict=True):

@@ -20,15 +20,6 @@ class Gradient:
     An iteration has the energy and the residual with their first and second derivatives. It counts
     as the evaluations that differences would take for these: 1 + n + n (n + 1) / 2 for n
     coefficients, 28 for six. What a solve gives is then evaluated like any candidate.
-
-    Parameters
-    ----------
-    problem : BudgetProblem
-        What is searched, and who counts.
-    bound : float
-        Largest absolute coefficient.
-    seed : int
-        Seed of the random starts.
     """
 
     def __init__(self, problem: BudgetProblem, bound: float, seed: int) -> None:
@@ -44,13 +35,7 @@ class Gradient:
         return self._sweep.iterations
 
     def solve(self, start: Array, residual_limit: float) -> Solution:
-        """The least energy within a residual limit [m], from one start.
-
-        Raises
-        ------
-        BudgetSpentError
-            When the budget did not suffice; the solution does not count then.
-        """
+        """The least energy within a residual limit [m], from one start."""
         before = self.iterations
         found = self._sweep.best([start], self._sweep.ask(residual_limit))
         size = len(start)
@@ -69,11 +54,6 @@ class Gradient:
         """Coefficients for a first population: both ends of the front and motions between.
 
         Each is found from a random start, so that nothing of the exact front is known beforehand.
-
-        Returns
-        -------
-        ndarray, shape (n, coefficients)
-            Of the solves that ended at an optimum.
         """
         cheapest = self.solve(self.random_start(), np.inf)
         reach = cheapest.residual if cheapest.status.solved else 0.0

@@ -24,26 +24,6 @@ class BudgetProblem(MoveProblem):
 
     The last generation is cut short where the budget does not suffice for it, so that every search
     has exactly as many evaluations as any other.
-
-    Parameters
-    ----------
-    objective : PopulationObjective
-        What is minimised.
-    bound : float
-        Largest absolute coefficient.
-    budget : int
-        Evaluations in all.
-    scale : Scale
-        Extent of the exact front.
-
-    Attributes
-    ----------
-    spent : int
-        Evaluations until now.
-    marks : list of Mark
-        How far the search was after so many evaluations.
-    visits : Visits
-        Where the feasible candidates lie.
     """
 
     def __init__(
@@ -68,18 +48,7 @@ class BudgetProblem(MoveProblem):
         return self.budget - self.spent
 
     def spend(self, evaluations: int) -> None:
-        """Count work that is no candidate of this problem, as iterations of a solver.
-
-        Parameters
-        ----------
-        evaluations : int
-            How many evaluations it counts as.
-
-        Raises
-        ------
-        BudgetSpentError
-            When so many were not left: what the work gave does not count then.
-        """
+        """Count work that is no candidate of this problem, as iterations of a solver."""
         nothing = np.empty((0, self.n_var)), np.empty((0, 2))
         while self._ahead and self.spent + evaluations >= self._ahead[-1]:
             evaluations -= self._ahead[-1] - self.spent

@@ -21,15 +21,7 @@ _FIRST_MARK = 10
 
 @dataclass(frozen=True)
 class Scale:
-    """The exact front's extent.
-
-    Attributes
-    ----------
-    ideal : tuple of float
-        Its least residual [m] and least energy [J].
-    nadir : tuple of float
-        Its largest.
-    """
+    """The exact front's extent."""
 
     ideal: tuple[NotNegative, NotNegative]
     nadir: tuple[Positive, Positive]
@@ -59,17 +51,7 @@ class Scale:
 
 @dataclass(frozen=True)
 class Mark:
-    """Where a search was.
-
-    Attributes
-    ----------
-    evaluations : int
-        Evaluations spent.
-    seconds : float
-        Processor time spent, without that of this record [s].
-    hypervolume : float
-        What all that was found until then dominates, as `Scale.hypervolume` measures it.
-    """
+    """Where a search was."""
 
     evaluations: Count
     seconds: NotNegative
@@ -78,16 +60,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Visits:
-    """Where the feasible candidates of a search lie, by their residual in the exact front's extent.
-
-    Attributes
-    ----------
-    still, middle, cheap : int
-        Candidates within the corner of the hypervolume, in the lower, middle and upper third of
-        the residuals.
-    outside : int
-        Those beyond the corner.
-    """
+    """Where a search's feasible candidates lie, by residual in the exact front's extent."""
 
     still: Count = 0
     middle: Count = 0
@@ -113,18 +86,7 @@ class Visits:
 
 
 def marks_of(budget: int) -> tuple[int, ...]:
-    """The numbers of evaluations after which a search is measured; the last is the budget.
-
-    Parameters
-    ----------
-    budget : int
-        Evaluations in all.
-
-    Returns
-    -------
-    tuple of int
-        Rising, at even distances on a logarithmic scale.
-    """
+    """The numbers of evaluations after which a search is measured; the last is the budget."""
     first = min(_FIRST_MARK, budget)
     number = 1 + round(_A_DECADE * np.log10(budget / first))
     return tuple(np.unique(np.geomspace(first, budget, number).round().astype(int)).tolist())

@@ -40,23 +40,7 @@ MULTISTART = "multistart"
 
 
 def parts_of(method: str) -> tuple[str, Help]:
-    """The search and the gradient's part of a method's name, as ``"nsga2+polish"``.
-
-    Parameters
-    ----------
-    method : str
-        A name of `PRESETS`, alone or with ``+polish`` or ``+seeds``; or ``multistart``.
-
-    Returns
-    -------
-    tuple of str and Help
-        Both parts.
-
-    Raises
-    ------
-    ValueError
-        When one of them is unknown; the nearest name is suggested.
-    """
+    """The search and the gradient's part of a method's name, as ``"nsga2+polish"``."""
     if method == MULTISTART:
         return method, Help.NONE
     search, plus, part = method.partition("+")
@@ -71,18 +55,7 @@ def parts_of(method: str) -> tuple[str, Help]:
 
 @dataclass(frozen=True)
 class BudgetRun:
-    """What a method found with its evaluations.
-
-    Attributes
-    ----------
-    front : Front
-        All candidates that no other dominates, with figures of the finer rollout; its `evaluations`
-        are those spent.
-    marks : tuple of Mark
-        How far the search was after so many evaluations, by the figures that it had itself.
-    visits : Visits
-        Where its feasible candidates lie.
-    """
+    """What a method found with its evaluations."""
 
     front: Front
     marks: tuple[Mark, ...]
@@ -106,40 +79,7 @@ def search_within(
     settings: Mapping[str, object] | None = None,
     seed: int = 0,
 ) -> BudgetRun:
-    """Search with exactly so many evaluations.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move; its limits become constraints.
-    method : str
-        A name as `parts_of` takes it.
-    evaluations : int
-        Candidates that are evaluated; of the last generation only as many as are left. An iteration
-        of the gradient counts as `Gradient` says.
-    scale : Scale
-        Extent of the exact front, in which hypervolumes are measured.
-    profile : JointProfile
-        How the joint moves.
-    bound : float
-        Largest absolute coefficient.
-    population : int, optional
-        Individuals, or particles in a swarm; the method's own by default.
-    settings : mapping, optional
-        What else the method is set to, by the names of its preset.
-    seed : int
-        Seed of the random numbers.
-
-    Returns
-    -------
-    BudgetRun
-        What it found, and when.
-
-    Raises
-    ------
-    ValueError
-        When an argument is out of range, or the method cannot search this task.
-    """
+    """Search with exactly so many evaluations."""
     # Not at the top: pymoo takes longer to load than all of quietarm.
     from quietarm.metaheuristics.budget.gradient import Gradient
     from quietarm.metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
@@ -181,18 +121,7 @@ def search_within(
 def check_method(
     method: str, population: int | None = None, settings: Mapping[str, object] | None = None
 ) -> None:
-    """Build what `search_within` would run, so that nothing of it is refused later.
-
-    Parameters
-    ----------
-    method, population, settings
-        As for `search_within`.
-
-    Raises
-    ------
-    ValueError
-        When the method or a setting is unknown, a number is out of range, or a library is missing.
-    """
+    """Build what `search_within` would run, so that nothing of it is refused later."""
     _built(parts_of(method)[0], population, 1.0, settings)
 
 

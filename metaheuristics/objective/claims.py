@@ -30,15 +30,7 @@ T = TypeVar("T", float, NDArray[np.float64])
 
 
 def agrees(stated: T, gives: T, least: float) -> Any:
-    """Whether a stated figure is what a motion gives, element by element; what is NaN is not.
-
-    Parameters
-    ----------
-    stated, gives : float or ndarray
-        Both figures.
-    least : float
-        The difference within which they always agree; beyond it `AGREEMENT` of the figure does.
-    """
+    """Whether a stated figure is what a motion gives, element by element; what is NaN is not."""
     return abs(stated - gives) <= AGREEMENT * abs(gives) + least
 
 
@@ -49,22 +41,7 @@ def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjecti
 
 
 def check_figures(front: Front, name: str, remedy: str = "find the front again") -> None:
-    """Evaluate motions of a front again, and refuse it where the figures differ.
-
-    Parameters
-    ----------
-    front : Front
-        The front; an empty one passes.
-    name : str
-        What to call it in a message.
-    remedy : str
-        The end of the message.
-
-    Raises
-    ------
-    ValueError
-        As `refuse_beyond_box` and `check_points`.
-    """
+    """Evaluate motions of a front again, and refuse it where the figures differ."""
     try:
         objective = objective_of(front.task, front.profile)
         if front.points:
@@ -76,23 +53,7 @@ def check_figures(front: Front, name: str, remedy: str = "find the front again")
 
 
 def check_plan(plan: Plan, name: str) -> None:
-    """Evaluate the motion of a plan again, and refuse the plan where the figures differ.
-
-    Parameters
-    ----------
-    plan : Plan
-        The plan.
-    name : str
-        What to call it in a message.
-
-    Raises
-    ------
-    ValueError
-        When the energy or a peak differs by more than `AGREEMENT`, or the residual, also that at
-        worst, by more than that and `REST`, or the plan does not fit its task.
-    SolverFailedError
-        When CVODES cannot follow the motion.
-    """
+    """Evaluate the motion of a plan again, and refuse the plan where the figures differ."""
     try:
         found = resimulate(plan.task, plan.profile, plan.coefficients)
         _check_worst(plan, name)
@@ -137,24 +98,7 @@ def check_points(
     *,
     limited: bool = False,
 ) -> None:
-    """Evaluate motions again, and refuse them where the figures differ.
-
-    Parameters
-    ----------
-    objective : PopulationObjective
-        What evaluates them.
-    points : sequence of FrontPoint
-        The motions with the figures that are claimed; at most `_SAMPLE` of them, spread evenly,
-        the first and the last among them, are evaluated.
-    limited : bool
-        Whether they must keep the limits of the task.
-
-    Raises
-    ------
-    ValueError
-        When an energy differs by more than `AGREEMENT`, or a residual by more than that and
-        `REST`, or a limit is broken by more than `OVERRUN`.
-    """
+    """Evaluate motions again, and refuse them where the figures differ."""
     count = len(points)
     if not count:
         return

@@ -32,29 +32,7 @@ this share."""
 
 
 def exact_front(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
-    """The least energy at one residual after another.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    bound : float
-        Largest absolute coefficient.
-
-    Returns
-    -------
-    Front
-        Method ``"epsilon"``. After Ctrl-C in the sweep it is not complete.
-
-    Raises
-    ------
-    QuietarmError
-        When an end could not be found.
-    KeyboardInterrupt
-        When it was interrupted after the sweep.
-    """
+    """The least energy at one residual after another."""
     front = epsilon_front(
         task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS, between=False
     )

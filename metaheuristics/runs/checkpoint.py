@@ -25,22 +25,7 @@ _DAMAGE = (
 
 
 def save_checkpoint(path: str | Path, header: Mapping[str, Any], state: Mapping[str, Any]) -> None:
-    """Write a checkpoint.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    header : mapping
-        What the search is: its task, method and settings, in JSON's types.
-    state : mapping
-        Where the search is: a nested dict of arrays, numbers and strings.
-
-    Raises
-    ------
-    ValueError
-        When the file cannot be written.
-    """
+    """Write a checkpoint."""
     arrays: dict[str, np.ndarray] = {}
     rest = _split(state, _STATE, arrays)
     document = {"format": f"quietarm-{KIND}", "version": VERSION, **header, "state": rest}
@@ -52,23 +37,7 @@ def save_checkpoint(path: str | Path, header: Mapping[str, Any], state: Mapping[
 
 
 def load_checkpoint(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Read a checkpoint; the file is left as it was.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    header, state : dict
-        As they were given to `save_checkpoint`.
-
-    Raises
-    ------
-    FileFormatError
-        When the file is not a checkpoint, truncated, or of a newer version.
-    """
+    """Read a checkpoint; the file is left as it was."""
     content = read_bytes(path)
     broken = FileFormatError(
         f"{path} is not a checkpoint, or not a whole one; give a file that --checkpoint wrote"

@@ -27,15 +27,7 @@ take between these."""
 
 
 class HandingOver:
-    """Hands over the front so far: after the first generation, and every second or so.
-
-    Parameters
-    ----------
-    loop : Loop
-        The search.
-    found : callable
-        Called with the front, which is not complete.
-    """
+    """Hands over the front so far: after the first generation, and every second or so."""
 
     def __init__(self, loop: Loop, found: Callable[[Front], None]) -> None:
         self._loop, self._found, self._due = loop, found, 0.0
@@ -52,18 +44,7 @@ class HandingOver:
 
 
 def front_of(loop: Loop) -> Front:
-    """What a search has found so far, with figures of a finer rollout.
-
-    Parameters
-    ----------
-    loop : Loop
-        The search.
-
-    Returns
-    -------
-    Front
-        Its points, settings and history.
-    """
+    """What a search has found so far, with figures of a finer rollout."""
     spec, threads = loop.spec, loop.problem.objective.threads
     return Front(
         task=spec.task,
@@ -85,24 +66,7 @@ def front_of(loop: Loop) -> Front:
 def verified_points(
     task: PointToPoint, profile: JointProfile, X: NDArray[np.float64], threads: int = 1
 ) -> tuple[FrontPoint, ...]:
-    """The points of a front, with figures of a finer rollout than that of the search.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    X : ndarray, shape (candidates, profile.size)
-        Coefficients that the search found.
-    threads : int
-        Blocks of the population that are evaluated at the same time.
-
-    Returns
-    -------
-    tuple of FrontPoint
-        Those that keep the limits and that no other dominates.
-    """
+    """The points of a front, with figures of a finer rollout than that of the search."""
     fine = PopulationObjective(task, profile, steps=default_steps(task), threads=threads)
     values = fine(X)
     kept = np.flatnonzero((values.violations <= WITHIN).all(axis=1)).tolist()

@@ -31,13 +31,6 @@ class Keeper:
 
     A search is not lost with its checkpoint: where that cannot be written the search goes on, and
     the next write is tried all the same.
-
-    Parameters
-    ----------
-    loop : Loop
-        The search.
-    path : str or Path
-        The file.
     """
 
     def __init__(self, loop: Loop, path: str | Path) -> None:
@@ -65,20 +58,6 @@ def resume_from(path: str | Path, loop: Loop) -> None:
     Other versions are refused too: the objectives kept in the file would be compared with those of
     other code, and the front would be that of neither. A search takes seconds to minutes, and the
     versions that are named can be installed for it.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    loop : Loop
-        The search, not begun yet.
-
-    Raises
-    ------
-    FileFormatError
-        When it is not a whole checkpoint.
-    ValueError
-        When it is of another search, or of other versions of what computes one.
     """
     document, state = load_checkpoint(path)
     with reading(path, "checkpoint"):

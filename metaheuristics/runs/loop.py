@@ -23,29 +23,7 @@ from quietarm.ocp import FrontPoint, Generation, reference_corner
 
 
 class Loop:
-    """An algorithm at work on a move.
-
-    Parameters
-    ----------
-    spec : SearchSpec
-        What is searched.
-    algorithm : Algorithm
-        A fresh one, of this search alone.
-    threads : int
-        Blocks of the population that are evaluated at the same time.
-
-    Attributes
-    ----------
-    history : list of Generation
-        What was recorded after each generation.
-    reference : tuple of float
-        Residual [m] and energy [J] of the corner that hypervolumes are measured from.
-
-    Raises
-    ------
-    ValueError
-        When the algorithm refuses the problem.
-    """
+    """An algorithm at work on a move."""
 
     def __init__(self, spec: SearchSpec, algorithm: Algorithm, threads: int) -> None:
         self.spec = spec
@@ -73,15 +51,7 @@ class Loop:
         return self._earlier + time.perf_counter() - self._began
 
     def run(self, interrupts: list[int], *reports: Report) -> None:
-        """Run to the end, or to the first interrupt in the list.
-
-        Parameters
-        ----------
-        interrupts : list of int
-            Signals until now; a KeyboardInterrupt adds one.
-        *reports : callable
-            Called with a `SearchProgress` after every generation, in this order.
-        """
+        """Run to the end, or to the first interrupt in the list."""
         try:
             while not interrupts and self._algorithm.has_next():
                 self._step()
@@ -119,13 +89,7 @@ class Loop:
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Go on from a `state`; KeyError, TypeError or ValueError where it is not of this search.
-
-        Parameters
-        ----------
-        state : mapping
-            What `state` returned, perhaps damaged since.
-        """
+        """Go on from a `state`; KeyError, TypeError, ValueError where it is not of this search."""
         self._algorithm.restore(part_of(state, "algorithm"))
         done = self._algorithm.n_iter - 1
         evaluations = array_of(state, "evaluations", (done,), least=1)

@@ -28,22 +28,7 @@ def number_of_generations(value: object) -> int:
 
 @dataclass(frozen=True)
 class SearchSettings:
-    """What is asked of any algorithm.
-
-    Attributes
-    ----------
-    bound : float
-        Largest absolute coefficient.
-    population : int or None
-        Individuals, or particles in a swarm; None where an algorithm of the user's own has its own.
-    generations : int
-        Generations to run.
-
-    Raises
-    ------
-    ValueError
-        When a setting is out of range.
-    """
+    """What is asked of any algorithm."""
 
     bound: float
     population: int | None
@@ -58,23 +43,7 @@ class SearchSettings:
 
 @dataclass(frozen=True)
 class SearchSpec:
-    """What a search is; with the same versions, the same one gives the same front.
-
-    Attributes
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    method : str
-        Name of the algorithm.
-    settings : SearchSettings
-        What is asked of any algorithm.
-    seed : int
-        Seed of the random numbers.
-    algorithm : mapping
-        The algorithm's own settings, as `settings_of` states them.
-    """
+    """What a search is; with the same versions, the same one gives the same front."""
 
     task: PointToPoint
     profile: JointProfile

@@ -52,17 +52,7 @@ _GUARD = (
 
 @dataclass(frozen=True)
 class Cluster:
-    """Workers that can be given work.
-
-    Attributes
-    ----------
-    client : distributed.Client
-        What gives it to them.
-    size : callable
-        How many there are now.
-    name : str
-        What they are called in a message.
-    """
+    """Workers that can be given work."""
 
     client: Client
     size: Callable[[], int]
@@ -71,22 +61,7 @@ class Cluster:
 
 @contextmanager
 def connected(workers: Workers, pieces: int) -> Iterator[Cluster]:
-    """The workers that were asked for; those that are started here end with the block.
-
-    Parameters
-    ----------
-    workers : Workers
-        Which.
-    pieces : int
-        How many pieces there are; no more workers are started.
-
-    Raises
-    ------
-    ValueError
-        When no scheduler answers at the address.
-    QuietarmError
-        When the workers cannot be started, or are none or of other versions.
-    """
+    """The workers that were asked for; those that are started here end with the block."""
     logger = logging.getLogger("distributed")
     level = logger.level
     logger.setLevel(logging.CRITICAL + 1)  # what a user has to know is said here

@@ -14,20 +14,7 @@ INTERRUPTED = "interrupted"
 
 @dataclass
 class Done:
-    """What became of the pieces of work so far.
-
-    Attributes
-    ----------
-    answers : dict
-        Answers by the key of their piece.
-    failures : dict
-        Errors by the key of their piece.
-    parts : dict
-        What a piece that was stopped had found, by its key.
-    stopped : str
-        Why the work ended early, as `INTERRUPTED`; empty where it did not. Pieces that are in none
-        of the tables were not begun, or had found nothing.
-    """
+    """What became of the pieces of work so far."""
 
     answers: dict[Hashable, Any] = field(default_factory=dict)
     failures: dict[Hashable, QuietarmError] = field(default_factory=dict)
@@ -48,16 +35,7 @@ class Done:
 
 @dataclass(frozen=True)
 class Say:
-    """How a piece tells of itself before it ends.
-
-    Attributes
-    ----------
-    report : callable
-        To be called with a `SearchProgress` after every generation.
-    found : callable or None
-        To be called with the front that there is, now and then: it is kept should the piece come to
-        no end. None where nobody needs it, as the piece itself hears of Ctrl-C.
-    """
+    """How a piece tells of itself before it ends."""
 
     report: Report
     found: Callable[[Front], None] | None = None
@@ -65,20 +43,7 @@ class Say:
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of work.
-
-    Attributes
-    ----------
-    key : hashable
-        What its answer is kept under.
-    name : str
-        What is shown when it begins.
-    work : callable
-        Gives the answer; it is given what became of the pieces that it comes after, and a `Say`.
-        To go to a worker it is a function of a module, or a `functools.partial` of one.
-    after : tuple of hashable
-        Keys of the pieces, earlier in the list, that must have come to an end before.
-    """
+    """A piece of work."""
 
     key: Hashable
     name: str
@@ -95,13 +60,7 @@ class LostPieceError(QuietarmError):
 
 
 class InterruptedPiece(KeyboardInterrupt):  # no error, as KeyboardInterrupt is none
-    """Ctrl-C during a piece of work.
-
-    Attributes
-    ----------
-    part : Any
-        What it had found.
-    """
+    """Ctrl-C during a piece of work."""
 
     def __init__(self, part: Any) -> None:
         super().__init__()
@@ -125,17 +84,7 @@ def to_the_end(answer: _Whole) -> _Whole:
 
 @dataclass(frozen=True)
 class Listener:
-    """Who is told how the work goes.
-
-    Attributes
-    ----------
-    begin : callable
-        Called with the name of every piece when it begins.
-    report : callable
-        Called with the key of a piece and its `SearchProgress`.
-    ended : callable
-        Called with the key of a piece and its answer.
-    """
+    """Who is told how the work goes."""
 
     begin: Callable[[str], None] = lambda name: None
     report: Callable[[Any, Any], None] = lambda key, progress: None

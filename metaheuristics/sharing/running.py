@@ -25,30 +25,7 @@ def run_pieces(
     workers: Workers = HERE,
     note: type[QuietarmError] | tuple[()] = (),
 ) -> Done:
-    """Run pieces of work until Ctrl-C.
-
-    Parameters
-    ----------
-    pieces : sequence of Piece
-        The work; in this process in this order, with workers in it as far as they are free.
-    listener : Listener, optional
-        Who is told how it goes.
-    workers : Workers
-        Where it is done; a single piece stays in this process unless there is a scheduler.
-    note : type of QuietarmError, optional
-        Errors of a piece that are noted, to go on with the next; any other ends the work.
-
-    Returns
-    -------
-    Done
-        Every answer, and every failure that was noted; after Ctrl-C those that there are, and what
-        pieces that were at work had found.
-
-    Raises
-    ------
-    QuietarmError
-        When a piece fails with an error that is not noted, or the workers cannot be reached.
-    """
+    """Run pieces of work until Ctrl-C."""
     listener = Listener() if listener is None else listener
     if workers.here or workers.local(len(pieces)) == 1:
         return _one_after_another(pieces, listener, note)

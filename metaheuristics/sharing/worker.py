@@ -20,24 +20,7 @@ _ONE_AT_A_TIME = threading.Lock()
 
 
 def do_piece(topic: str, number: int, piece: Piece, known: Done) -> Any:
-    """Do a piece of work in a worker.
-
-    Parameters
-    ----------
-    topic : str
-        The topic of dask's events that the client listens to.
-    number : int
-        Which piece it is for the client.
-    piece : Piece
-        The piece.
-    known : Done
-        What became of the pieces before it.
-
-    Returns
-    -------
-    Any
-        Its answer; None where nobody waits for it any more.
-    """
+    """Do a piece of work in a worker."""
     teller = _Teller(topic, number)
     try:
         with _ONE_AT_A_TIME:

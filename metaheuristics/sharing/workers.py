@@ -16,20 +16,7 @@ _FEW = 4
 
 @dataclass(frozen=True)
 class Workers:
-    """Where pieces of work are done.
-
-    Attributes
-    ----------
-    number : int
-        Processes that are started on this machine; 1 starts none and stays in this one.
-    scheduler : str or None
-        Address of a dask scheduler whose workers do the work instead, as ``tcp://host:8786``.
-
-    Raises
-    ------
-    ValueError
-        When the number is out of range, both are given, or dask is not installed.
-    """
+    """Where pieces of work are done."""
 
     number: int = 1
     scheduler: str | None = None

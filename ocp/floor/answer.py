@@ -27,15 +27,7 @@ for a converging series."""
 
 @dataclass(frozen=True)
 class Level:
-    """One grid of the refinement.
-
-    Attributes
-    ----------
-    steps : int
-        Intervals.
-    energy : float
-        Least energy on it, by the solver's own quadrature [J].
-    """
+    """One grid of the refinement."""
 
     steps: CountFromOne
     energy: float

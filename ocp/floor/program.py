@@ -41,21 +41,7 @@ def _compiled(
 
 @dataclass(frozen=True)
 class FreeSolution:
-    """What one run of the solver gives, in SI units and by its own discretisation.
-
-    Attributes
-    ----------
-    free : FreeMotion
-        How the joint moves.
-    energy : float
-        F2 [J].
-    peaks : dict of str to float
-        Each limited quantity.
-    status : SolveStatus
-        How it ended.
-    iterations : int
-        IPOPT's iterations.
-    """
+    """What one run of the solver gives, in SI units and by its own discretisation."""
 
     free: FreeMotion
     energy: float
@@ -65,20 +51,7 @@ class FreeSolution:
 
 
 class FloorProgram:
-    """A task on a grid.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    smooth : bool
-        Whether the acceleration is continuous (and the jerk free) or free itself.
-
-    Raises
-    ------
-    ValueError
-        When the jerk is limited and the motion has none.
-    """
+    """A task on a grid."""
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, task: PointToPoint, smooth: bool) -> None:
@@ -108,24 +81,7 @@ class FloorProgram:
         minimise: str = ENERGY,
         warm: bool = False,
     ) -> FreeSolution:
-        """Run the solver from one motion, on its grid.
-
-        Parameters
-        ----------
-        free : FreeMotion
-            The motion to start from.
-        limits : mapping of str to float
-            Largest peaks [SI units]; a quantity of the task without an entry is free.
-        minimise : str
-            ``"energy"`` or the name of a peak.
-        warm : bool
-            Whether the motion is near a solution.
-
-        Returns
-        -------
-        FreeSolution
-            The solution, whatever its status.
-        """
+        """Run the solver from one motion, on its grid."""
         program = self._program(free.steps, warm)
         weights = [float(name == minimise) for name in (ENERGY, *program.peaks)]
         parameters = np.concatenate([free.lengths, self._scale, weights])

@@ -68,17 +68,7 @@ class FreeStep:
 
 @dataclass(frozen=True)
 class FreePoint:
-    """Unknowns of the program, scaled.
-
-    Attributes
-    ----------
-    peaks : ndarray, shape (quantities,)
-        Peak of each limited quantity.
-    intervals : ndarray, shape (unknowns, steps + 1)
-        The unknowns before every interval, and those on arrival.
-    slack : ndarray, shape (NODES * steps,)
-        |power| at the nodes.
-    """
+    """Unknowns of the program, scaled."""
 
     peaks: NDArray[np.float64]
     intervals: NDArray[np.float64]

@@ -24,34 +24,7 @@ def front_of(
     seconds: float = 0.0,
     between: bool = True,
 ) -> Front:
-    """Put points together to a front.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        What was asked.
-    method : str
-        How they were found.
-    found : sequence of FrontPoint or FailedPoint
-        The points.
-    points : int
-        How many were asked for.
-    gaps : sequence of (float, float)
-        As in `Front`.
-    iterations : int
-        Iterations of the solver in other processes.
-    complete : bool
-        Whether the sweep ran to its end.
-    seconds : float
-        Time that was spent before the sweep [s].
-    between : bool
-        Whether the residual of an uncertain plant is held between its samples as well.
-
-    Returns
-    -------
-    Front
-        The front.
-    """
+    """Put points together to a front."""
     excess = None
     if between and complete:
         found, excess, complete = held_between(sweep, found)

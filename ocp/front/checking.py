@@ -42,26 +42,7 @@ def checked(
     most_residual: float = np.inf,
     free: bool = False,
 ) -> FrontPoint | FailedPoint:
-    """Give a solution the figures of the independent integrator.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        What was asked.
-    found : Solution
-        A solution of the program.
-    asked : mapping of str to float
-        What was asked for.
-    most_residual : float
-        Largest residual [m] that the point may have; it may be a little off that asked for.
-    free : bool
-        Whether the residual is free: an end of the front, which more steps may move.
-
-    Returns
-    -------
-    FrontPoint or FailedPoint
-        The point, or why it cannot be trusted.
-    """
+    """Give a solution the figures of the independent integrator."""
     kept = {**sweep.task.limits, RESIDUAL: most_residual}
     try:
         limit = np.inf if free else found.residual
@@ -80,24 +61,7 @@ def all_checked(
     *,
     interrupted: bool = False,
 ) -> tuple[list[FrontPoint | FailedPoint], bool]:
-    """Check many solutions; after Ctrl-C as many as there is time for, spread evenly.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        What was asked.
-    found : sequence of (Solution, mapping of str to float)
-        As for `checked`.
-    interrupted : bool
-        Whether Ctrl-C came before.
-
-    Returns
-    -------
-    list of FrontPoint or FailedPoint
-        In the order given.
-    bool
-        Whether these are all.
-    """
+    """Check many solutions; after Ctrl-C as many as there is time for, spread evenly."""
     done, until = dict[int, FrontPoint | FailedPoint](), np.inf
     with note_interrupts() as came:
         fine = _by_finer_rule(sweep, [one for one, _ in found])

@@ -21,16 +21,7 @@ _STARTS = 4
 
 @dataclass(frozen=True)
 class Compared:
-    """One point by both solvers.
-
-    Attributes
-    ----------
-    residual : float
-        Of the front's point [m], which the other solver had to keep.
-    energy, other : float
-        F2 of the point and of the other solver's motion [J], on the same steps; NaN where it found
-        none.
-    """
+    """One point by both solvers."""
 
     residual: float
     energy: float

@@ -23,17 +23,7 @@ cost five times the energy of the assumed plant's motion at rest."""
 
 @dataclass(frozen=True)
 class Ends:
-    """The ends of a front.
-
-    Attributes
-    ----------
-    still : Solution
-        Least energy at rest on arrival.
-    still_point : FrontPoint or FailedPoint
-        The same, checked.
-    cheapest : Solution
-        Least energy with any residual.
-    """
+    """The ends of a front."""
 
     still: Solution
     still_point: FrontPoint | FailedPoint
@@ -60,25 +50,6 @@ def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
 
     The number of steps is raised until the independent integrator agrees with the still end.
     Where no motion arrives at rest, that end is the motion of least residual.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        What is asked.
-    between : bool
-        Whether an uncertain plant is meant between its samples as well, where no motion rests.
-
-    Returns
-    -------
-    Ends
-        The ends of the front.
-
-    Raises
-    ------
-    InfeasibleTaskError
-        When no motion of this profile keeps the task's limits.
-    SolverFailedError
-        When no start ended at an optimum for another reason.
     """
     if between and isinstance(sweep.task.plant, UncertainPlant):
         return _of_uncertain(sweep)

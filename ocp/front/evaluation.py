@@ -30,23 +30,7 @@ class Evaluated(NamedTuple):
 
 
 def table_of(coefficients: ArrayLike) -> NDArray[np.float64]:
-    """Coefficients, one row for each motion.
-
-    Parameters
-    ----------
-    coefficients : array_like, shape (motions, size)
-        Numbers.
-
-    Returns
-    -------
-    ndarray, shape (motions, size)
-        The same.
-
-    Raises
-    ------
-    ValueError
-        When they are no table of numbers, or there is no motion.
-    """
+    """Coefficients, one row for each motion."""
     try:
         table = np.asarray(coefficients, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -67,24 +51,7 @@ def refuse_beyond_box(
     bound: object,
     remedy: str = "; correct it, or state a wider bound",
 ) -> None:
-    """Refuse coefficients beyond the box of a profile for the bound that is stated.
-
-    Parameters
-    ----------
-    profile : JointProfile
-        How the joint moves.
-    table : ndarray, shape (motions, profile.size)
-        Coefficients, one row for each motion.
-    bound : float or None
-        The bound, as `JointProfile.box` takes it; None refuses nothing.
-    remedy : str
-        The end of the message, for whom the table is no input.
-
-    Raises
-    ------
-    ValueError
-        When the bound is no positive number, or a coefficient is beyond it.
-    """
+    """Refuse coefficients beyond the box of a profile for the bound that is stated."""
     if bound is None:
         return
     most = positive("its bound", bound)
@@ -105,29 +72,7 @@ def evaluated(
     table: NDArray[np.float64],
     bound: object = None,
 ) -> Evaluated:
-    """The front of motions by CVODES; those that fail or break a limit of the task are counted.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    table : ndarray, shape (motions, profile.size)
-        Coefficients, one row for each motion.
-    bound : float, optional
-        What they must keep, as for `refuse_beyond_box`.
-
-    Returns
-    -------
-    Evaluated
-        What became of them.
-
-    Raises
-    ------
-    ValueError
-        When a row does not fit the profile or the bound, or is not finite.
-    """
+    """The front of motions by CVODES; those that fail or break a limit of the task are counted."""
     points, failed, infeasible = list[FrontPoint](), 0, 0
     rows = [profile.checked(row, task.duration) for row in table]
     refuse_beyond_box(profile, table, bound)

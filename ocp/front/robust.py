@@ -50,24 +50,6 @@ def held_between(sweep: Sweep, found: Sequence[Found]) -> tuple[list[Found], flo
     samples, which all points share, and the points that pass their residual there are solved again,
     each from where it is. A point that was not found is tried again from its neighbours. In the end
     peaks become samples until every point's residual is what it leaves at worst.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        What was asked; its plant gets the samples. Without an uncertain plant nothing happens.
-    found : sequence of FrontPoint or FailedPoint
-        What the sweep found.
-
-    Returns
-    -------
-    list of FrontPoint or FailedPoint
-        The points, their residuals at the samples of the sweep's plant. After Ctrl-C those of the
-        round before, and its samples.
-    float or None
-        The largest share by which a peak between the samples passes the residual of its point;
-        None without an uncertain plant, or after Ctrl-C.
-    bool
-        Whether no Ctrl-C ended the rounds early.
     """
     if not isinstance(sweep.task.plant, UncertainPlant):
         return list(found), None, True
@@ -201,24 +183,7 @@ def _with_sample(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> Fr
 
 
 def on_same_samples(fronts: Sequence[Front]) -> list[Front]:
-    """Fronts of one uncertain plant with their residuals at the samples of all of them.
-
-    Parameters
-    ----------
-    fronts : sequence of Front
-        Any fronts.
-
-    Returns
-    -------
-    list of Front
-        Those whose uncertain plants have the same ranges and other samples are evaluated again, by
-        CVODES; all others as they are.
-
-    Raises
-    ------
-    ValueError
-        When one is no front.
-    """
+    """Fronts of one uncertain plant with their residuals at the samples of all of them."""
     for i, front in enumerate(fronts, start=1):
         of_kind(f"front {i}", front, Front, "a Front")
     samples: dict[UncertainPlant, dict[tuple[float, ...], None]] = {}

@@ -26,13 +26,7 @@ SAME = 1e-5
 
 
 class InterruptedSolveError(KeyboardInterrupt):
-    """Ctrl-C while rows were solved.
-
-    Attributes
-    ----------
-    solutions : list of Solution
-        One for each row; those that were not solved say so.
-    """
+    """Ctrl-C while rows were solved."""
 
     def __init__(self, solutions: list[Solution]) -> None:
         super().__init__()

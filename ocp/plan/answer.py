@@ -191,25 +191,7 @@ def evaluate_coefficients(
 
 
 def ticks_of_move(duration: float, sample_rate: float) -> int:
-    """Ticks from the start to the first at or after arrival.
-
-    Parameters
-    ----------
-    duration : float
-        Travelling time [s].
-    sample_rate : float
-        Ticks per second [Hz].
-
-    Returns
-    -------
-    int
-        The last tick's number, 1 or more.
-
-    Raises
-    ------
-    ValueError
-        When the rate is not positive and finite, or asks for more rows than a table should have.
-    """
+    """Ticks from the start to the first at or after arrival."""
     ticks = duration * positive("sample rate", sample_rate, "Hz")
     if ticks < _LEAST_TICKS:
         raise ValueError(

@@ -43,22 +43,7 @@ Found = TypeVar("Found", bound=Attempt)
 def least_peaks(
     program: Program, ask: Ask, starts: Sequence[NDArray[np.float64]]
 ) -> dict[str, Solution]:
-    """Make each limited quantity in turn as small as it can be while the other limits are kept.
-
-    Parameters
-    ----------
-    program : Program
-        The task.
-    ask : Ask
-        What was asked.
-    starts : sequence of ndarray
-        Coefficients to start from.
-
-    Returns
-    -------
-    dict of str to Solution
-        The best solution found for each quantity; a quantity without any is left out.
-    """
+    """Make each limited quantity in turn as small as it can be while the other limits are kept."""
     best: dict[str, Solution] = {}
     for name in ask.limits:
         others = {key: value for key, value in ask.limits.items() if key != name}
@@ -134,30 +119,7 @@ def unmet(
     box: str = "",
     otherwise: str = "",
 ) -> SolverFailedError:
-    """The error for limits that no start met, in words, to be raised by the caller.
-
-    Parameters
-    ----------
-    motion : str
-        What was looked for.
-    limits : mapping of str to float
-        Residual [m] and peaks [SI units] that were asked for.
-    runs : sequence of Attempt
-        The runs that failed.
-    least : mapping of str to float
-        Least residual [m] and peaks [SI units] with the other limits kept, by `true_peaks`.
-    remedy : str
-        What else may do.
-    box : str
-        What else was asked.
-    otherwise : str
-        What may help where the solver fails, if that is not what its status says.
-
-    Returns
-    -------
-    SolverFailedError
-        An InfeasibleTaskError where a run ended at an infeasible motion.
-    """
+    """The error for limits that no start met, in words, to be raised by the caller."""
     statuses = [run.status for run in runs]
     if SolveStatus.INFEASIBLE not in statuses:
         ended = statuses[0].text

@@ -18,20 +18,7 @@ _FINER = 3
 
 
 def finer_values(programs: Sequence[Program], coefficients: NDArray[np.float64]) -> Values:
-    """Figures of one motion of each program, on three times the solver's steps or more.
-
-    Parameters
-    ----------
-    programs : sequence of Program
-        Of one plant without errors, one profile and one number of steps.
-    coefficients : ndarray, shape (programs, profile.size)
-        The motions.
-
-    Returns
-    -------
-    Values
-        A row for each.
-    """
+    """Figures of one motion of each program, on three times the solver's steps or more."""
     one = programs[0]
     steps = max(default_steps(one.task), _FINER * one.steps)
     move = np.array([program.task.move for program in programs])

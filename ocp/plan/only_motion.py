@@ -15,31 +15,7 @@ from quietarm.ocp.task.point_to_point import PointToPoint
 def only_motion(
     task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
 ) -> Plan:
-    """The figures of the only motion that a profile has, within the task's limits.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move and its limits.
-    profile : JointProfile
-        A profile of size 0.
-    residual_limit : float, optional
-        Largest F1 [m], or 0 for rest; any by default, since there is nothing to choose.
-
-    Returns
-    -------
-    Plan
-        The motion, by CVODES; its status says that nothing was optimised.
-
-    Raises
-    ------
-    ValueError
-        When an argument is out of range, or the duration too short for the profile.
-    InfeasibleTaskError
-        When the motion breaks a limit.
-    SolverFailedError
-        When CVODES cannot follow the motion.
-    """
+    """The figures of the only motion that a profile has, within the task's limits."""
     asked = 0.0 if residual_limit is None else residual_limit
     SolveSettings(residual_limit=asked)  # refused before the integration, not after
     plan = evaluate_coefficients(

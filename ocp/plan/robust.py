@@ -36,25 +36,7 @@ PlanFrom = Callable[
 
 
 def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
-    """The residual limit of a plan, also where none is given.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    residual_limit : float or None
-        Largest F1 [m].
-
-    Returns
-    -------
-    float
-        The same; where it is None, 0, or for an uncertain plant its `quiet_residual`.
-
-    Raises
-    ------
-    ValueError
-        When it is 0 and the plant uncertain, or none is given and the joint moves no mode.
-    """
+    """The residual limit of a plan, also where none is given."""
     if not isinstance(task.plant, UncertainPlant):
         return 0.0 if residual_limit is None else residual_limit
     if residual_limit is None:
@@ -80,30 +62,6 @@ def robust_plan(
     Every sample's residual is a constraint of one program. Where the residual of its solution
     passes the limit between them by more than `EXCESS`, those peaks become samples, and the motions
     that were found are the next starts. What is left of the excess is then taken off the limit.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        A move of an `UncertainPlant`.
-    profile : JointProfile
-        How the joint moves.
-    settings : SolveSettings
-        What was asked for.
-    plan_from : callable
-        Solves from starts.
-
-    Returns
-    -------
-    Plan
-        The plan with its `worst`, which is above the limit where no tighter one could be kept.
-        After Ctrl-C the last plan until then, not ``complete``.
-
-    Raises
-    ------
-    SolverFailedError
-        When there is no plan.
-    KeyboardInterrupt
-        After Ctrl-C before there is any plan.
     """
     began, plan, stopped = time.perf_counter(), None, None
     try:

@@ -105,27 +105,7 @@ def plan_move(
 
 
 def plan_at_samples(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Plan:
-    """The plan of a task whose residual limit holds at the plant's samples, if it has any.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    settings : SolveSettings
-        What is asked of the solver.
-
-    Returns
-    -------
-    Plan
-        The plan; between the samples of an uncertain plant its residual may be larger.
-
-    Raises
-    ------
-    SolverFailedError
-        When no start ended at an optimum.
-    """
+    """The plan of a task whose residual limit holds at the plant's samples, if it has any."""
     return plan_from(task, profile, settings, start_coefficients(profile, settings))[0]
 
 

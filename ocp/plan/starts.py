@@ -24,27 +24,7 @@ within the first two; with limits the second, since limits hold only at the node
 
 
 def first_steps(task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> int:
-    """Steps of the solver's discretisation to begin with.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    settings : SolveSettings
-        Its steps count where they are given.
-
-    Returns
-    -------
-    int
-        Number of steps.
-
-    Raises
-    ------
-    ValueError
-        When the move takes too many periods of the plant's fastest mode.
-    """
+    """Steps of the solver's discretisation to begin with."""
     fewest = FINER_STEPS if task.limits else PLAN_STEPS
     least = min(max(fewest, STEPS_A_TERM * (profile.size - 2)), FINER_STEPS)
     steps = settings.steps or default_steps(task, least=least)
@@ -67,17 +47,7 @@ def start_coefficients(profile: JointProfile, settings: SolveSettings) -> list[N
 
 
 class Best(NamedTuple):
-    """The best of several starts.
-
-    Attributes
-    ----------
-    solution : Solution
-        That of least energy, with the iterations of all.
-    solved : list of Solution
-        All that were solved, the cheapest first.
-    stopped : str or None
-        After what Ctrl-C came, in words.
-    """
+    """The best of several starts."""
 
     solution: Solution
     solved: list[Solution]
@@ -93,31 +63,6 @@ def from_starts(
     """Solve from several starts, and help where none of them leads to a solution.
 
     Help are motions of least peaks as further starts, then IPOPT.
-
-    Parameters
-    ----------
-    program : Program
-        The task.
-    ask : Ask
-        What is asked.
-    starts : sequence of ndarray
-        Coefficients.
-    solver : {"sqp", "ipopt"}
-        What solves it.
-
-    Returns
-    -------
-    Best
-        What was found.
-
-    Raises
-    ------
-    InfeasibleTaskError
-        When no motion of this profile meets the limits.
-    SolverFailedError
-        When no start ended at an optimum for another reason.
-    KeyboardInterrupt
-        After Ctrl-C before a start was solved.
     """
     tried, least = list[Solution](), dict[str, Solution]()
     begun, stopped, complete = 0, None, True

@@ -32,15 +32,7 @@ OVERRUN = 1e-3
 
 @dataclass(frozen=True)
 class Care:
-    """How much effort to spend on a solution that both integrators agree on.
-
-    Attributes
-    ----------
-    agreement : float
-        Share of the energy by which they may differ.
-    most_steps : int
-        Steps up to which they are doubled.
-    """
+    """How much effort to spend on a solution that both integrators agree on."""
 
     agreement: float = 1e-5
     most_steps: int = MOST_SOLVER_STEPS
@@ -74,31 +66,6 @@ def verified(
     The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
     the residual limit at its samples. The differences that the independent integrator finds are
     passed to the solver, which goes on from where it stopped.
-
-    Parameters
-    ----------
-    program : Program
-        The task.
-    ask : Ask
-        What was asked.
-    best : Solution
-        Its solution.
-    solver : {"sqp", "ipopt"}
-        What goes on from there.
-    care : Care
-        How far to go.
-    kept : mapping of str to float, optional
-        The limits that the verified figures must keep; all of them by default.
-
-    Returns
-    -------
-    Verified
-        The solution with the figures of CVODES.
-
-    Raises
-    ------
-    SolverFailedError
-        When a limit stays passed.
     """
     kept, used = ask.limits if kept is None else kept, dict(ask.limits)
     still = max(STILL, STILL_SHARE * program.of_cycloid)
@@ -148,17 +115,7 @@ def _from(program: Program, ask: Ask, found: Solution, solver: Solver) -> Soluti
 
 
 class Checked(WithPeaks):
-    """What CVODES makes of a solution, on all plants whose residual counts.
-
-    Attributes
-    ----------
-    energy : float
-        F2 on the assumed plant [J].
-    residual : float
-        F1 [m], the largest.
-    arrival : ndarray, shape (plants, 2 * modes)
-        State on arrival.
-    """
+    """What CVODES makes of a solution, on all plants whose residual counts."""
 
     def __init__(self, program: Program, found: Solution) -> None:
         task = on_assumed(program.task)
@@ -185,22 +142,7 @@ class Checked(WithPeaks):
 def tightened(
     limits: Mapping[str, float], motion: WithPeaks, kept: Mapping[str, float]
 ) -> dict[str, float]:
-    """The limits to give the solver, each less by as much as the verified motion passes it.
-
-    Parameters
-    ----------
-    limits : mapping of str to float
-        What the solver was given.
-    motion : WithPeaks
-        The verified figures of what it found.
-    kept : mapping of str to float
-        What these must keep.
-
-    Returns
-    -------
-    dict of str to float
-        The tighter limits.
-    """
+    """The limits to give the solver, each less by as much as the verified motion passes it."""
     passed = motion.passed(kept)
     return {
         name: limit / (_BELOW * passed[name]) if name in passed else limit
@@ -211,24 +153,7 @@ def tightened(
 def refuse_passed(
     motion: WithPeaks, limits: Mapping[str, float], remedy: str, still: float = 0.0
 ) -> None:
-    """Refuse a verified motion that passes a limit although limits were tightened.
-
-    Parameters
-    ----------
-    motion : WithPeaks
-        The verified figures.
-    limits : mapping of str to float
-        What they must keep.
-    remedy : str
-        What is wrong and what would help.
-    still : float
-        Residual up to which a motion counts as at rest [m].
-
-    Raises
-    ------
-    SolverFailedError
-        When a peak is more than `OVERRUN` above its limit.
-    """
+    """Refuse a verified motion that passes a limit although limits were tightened."""
     for name, limit in limits.items():
         if motion.peak(name) > max(limit * (1 + OVERRUN), still):
             raise SolverFailedError(

@@ -24,21 +24,7 @@ _BENT = 0.2
 
 @dataclass(frozen=True, eq=False)
 class Actor:
-    """One motion of an animation.
-
-    Attributes
-    ----------
-    line : Line
-        The motion, its label and look.
-    trajectory : Trajectory
-        Samples from the start to the end of the clock.
-    scale : float
-        How many times larger than they are its deflections are drawn.
-    tips : ndarray, shape (frames, tips)
-        Tip displacements [m], as they are.
-    bodies, unbent : list of list of Body
-        The structure at every frame, as it is drawn and as it would be if it did not bend.
-    """
+    """One motion of an animation."""
 
     line: Line
     trajectory: Trajectory
@@ -61,28 +47,7 @@ class Actor:
 
 
 def cast_of(lines: Sequence[Line], clock: Clock, scale: float | None = None) -> list[Actor]:
-    """Where the structures are at every frame.
-
-    Parameters
-    ----------
-    lines : sequence of Line
-        The motions.
-    clock : Clock
-        The times of the frames.
-    scale : float, optional
-        How many times larger than they are deflections are drawn; by default so that the largest
-        of each plant are a fifth of its size, but never smaller than they are.
-
-    Returns
-    -------
-    list of Actor
-        The motions in their order; those of plants of one name have one scale.
-
-    Raises
-    ------
-    ValueError
-        When the scale is not positive, or a plant does not say how it is drawn.
-    """
+    """Where the structures are at every frame."""
     given = None if scale is None else positive("deflection scale", scale)
     samples = [_until(line.plan, clock.end) for line in lines]
     angles = [np.interp(clock.times, one.time, one.joint[:, 0]) for one in samples]

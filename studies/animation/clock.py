@@ -20,27 +20,7 @@ _ROUNDING = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Clock:
-    """The one clock of all motions in an animation.
-
-    Parameters
-    ----------
-    end : float
-        When it stops [s].
-    speed : float
-        Seconds of the motion in a second of the animation; below 1 is slow motion.
-    frames_per_second : float
-        Frames in a second of the animation.
-
-    Attributes
-    ----------
-    times : ndarray, shape (frames,)
-        Times of the frames [s], from 0 on.
-
-    Raises
-    ------
-    ValueError
-        When a number is out of range, or there would be too many frames.
-    """
+    """The one clock of all motions in an animation."""
 
     end: float
     speed: float = 1.0

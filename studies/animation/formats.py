@@ -28,15 +28,7 @@ _FFMPEG = "ffmpeg"
 
 @dataclass(frozen=True)
 class Format:
-    """A kind of file.
-
-    Attributes
-    ----------
-    media_type : str
-        What browsers call it.
-    write : callable
-        Makes the file of frames and their rate [1/s].
-    """
+    """A kind of file."""
 
     media_type: str
     write: Callable[[Frames, float], bytes]

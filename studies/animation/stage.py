@@ -47,17 +47,7 @@ class _Moving:
 
 
 class Stage:
-    """Draws the frames of an animation, one after another.
-
-    Parameters
-    ----------
-    cast : sequence of Actor
-        The motions.
-    clock : Clock
-        The times of the frames.
-    width : int
-        Of the picture [pixels].
-    """
+    """Draws the frames of an animation, one after another."""
 
     def __init__(self, cast: Sequence[Actor], clock: Clock, width: int) -> None:
         self._clock = clock

@@ -93,19 +93,7 @@ def quietarm() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command and end the process with its status.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        The words after ``quietarm``; those of the process by default.
-
-    Raises
-    ------
-    SystemExit
-        0 when done; 1 where there is no answer, or not the whole of it: a solve failed or the work
-        was interrupted; 2 for bad input, or a file that cannot be read or written.
-    """
+    """Run the command and end the process with its status."""
     written.clear()
     if arguments is None:  # pictures go to files: no window, whatever the user's notebooks use
         os.environ["MPLBACKEND"] = "agg"

@@ -81,19 +81,7 @@ def refuse_idle(
     only_for: Mapping[str, Sequence[str]],
     called: str = "",
 ) -> None:
-    """Refuse an option that would have no effect; ValueError says what it is for.
-
-    Parameters
-    ----------
-    context : click.Context
-        The command's, which knows what was typed.
-    method : str
-        What was chosen.
-    only_for : mapping of str to sequence of str
-        For each such option the choices for which it does something.
-    called : str
-        What these are called, where they are too many to name.
-    """
+    """Refuse an option that would have no effect; ValueError says what it is for."""
     for name, methods in only_for.items():
         typed = context.get_parameter_source(name) is not ParameterSource.DEFAULT
         if typed and method not in methods:

@@ -223,25 +223,7 @@ def settings_given(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | 
 def settings_by_method(
     pairs: Iterable[tuple[str, str]], methods: Sequence[str]
 ) -> dict[str, dict[str, float | int | bool | str]]:
-    """Settings of several methods, each typed as ``method.name=value``, by method.
-
-    Parameters
-    ----------
-    pairs : iterable of (str, str)
-        Names and values.
-    methods : sequence of str
-        The methods that run.
-
-    Returns
-    -------
-    dict
-        The settings of each method that has one.
-
-    Raises
-    ------
-    ValueError
-        When a name names no method that runs, or is given twice.
-    """
+    """Settings of several methods, each typed as ``method.name=value``, by method."""
     found: dict[str, dict[str, float | int | bool | str]] = {}
     for name, value in settings_given(pairs).items():
         method, dot, own = name.partition(".")

@@ -51,27 +51,7 @@ def chosen_plant(
     own: Mapping[str, type[Plant]] | None,
     settings: Iterable[tuple[str, str]],
 ) -> Plant:
-    """The plant that was asked for.
-
-    Parameters
-    ----------
-    kind : type or None
-        The plant that was named.
-    own : mapping of str to type, or None
-        The plants of a file that was given.
-    settings : iterable of (str, str)
-        Parameters and their values, as they were typed.
-
-    Returns
-    -------
-    Plant
-        The plant with these parameters, its own defaults for all others.
-
-    Raises
-    ------
-    ValueError
-        When there is no plant or more than one to choose, or a parameter is not known or no number.
-    """
+    """The plant that was asked for."""
     if kind is None:
         if not own:
             raise ValueError(

@@ -16,23 +16,7 @@ _MOST_WHOLE = 1e15
 
 
 def parse_angle(text: str) -> float:
-    """Read an angle.
-
-    Parameters
-    ----------
-    text : str
-        Radians, or degrees with ``deg``, or a multiple of pi: ``0.5``, ``30deg``, ``-pi/2``.
-
-    Returns
-    -------
-    float
-        The angle [rad].
-
-    Raises
-    ------
-    ValueError
-        When it is none of these.
-    """
+    """Read an angle."""
     match = _PI.fullmatch(text.strip())
     if match:
         sign, factor, divisor = match.groups()
@@ -43,25 +27,7 @@ def parse_angle(text: str) -> float:
 
 
 def parse_rate(text: str, order: int) -> float:
-    """Read a speed, acceleration or jerk of the joint.
-
-    Parameters
-    ----------
-    text : str
-        An angle as for `parse_angle`, with or without the time: ``2``, ``60deg``, ``60deg/s``.
-    order : int
-        Which power of a second it is divided by: 1 for a speed, 2 for an acceleration.
-
-    Returns
-    -------
-    float
-        The rate [rad/s^order].
-
-    Raises
-    ------
-    ValueError
-        When it is none of these.
-    """
+    """Read a speed, acceleration or jerk of the joint."""
     per = "/s" if order == 1 else f"/s^{order}"
     try:
         return parse_angle(text.strip().removesuffix(per))

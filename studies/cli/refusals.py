@@ -19,18 +19,7 @@ _OF_CLICK = (
 
 
 def in_our_words(error: click.ClickException) -> str:
-    """What to say of bad usage, in one line.
-
-    Parameters
-    ----------
-    error : click.ClickException
-        What click found, or a value's own reader.
-
-    Returns
-    -------
-    str
-        The line, with the value and the remedy.
-    """
+    """What to say of bad usage, in one line."""
     context = getattr(error, "ctx", None)
     command = context.command_path if context else "quietarm"
     if isinstance(error, click.NoSuchOption):

@@ -16,20 +16,6 @@ class Stream:
 
     Progress, tables and names of files only describe the work: where they cannot be written, the
     work goes on, and its files are written.
-
-    Parameters
-    ----------
-    stream : text stream
-        Where to write.
-    closed : bool
-        Whether the shell had closed it, so that what is written goes nowhere.
-
-    Attributes
-    ----------
-    failure : OSError or None
-        Why nothing more can be written.
-    closed : bool
-        As given.
     """
 
     def __init__(self, stream: TextIO, closed: bool = False) -> None:

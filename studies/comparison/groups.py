@@ -15,25 +15,7 @@ from quietarm.studies.registry.methods import method_of
 
 
 def checked_names(names: Sequence[str], fronts: int) -> list[str]:
-    """What to call each of so many fronts.
-
-    Parameters
-    ----------
-    names : sequence of str
-        What was given; numbers where that is nothing.
-    fronts : int
-        How many there are.
-
-    Returns
-    -------
-    list of str
-        A name for each.
-
-    Raises
-    ------
-    ValueError
-        When they are no list of text, more or fewer than the fronts.
-    """
+    """What to call each of so many fronts."""
     given = listed("names", names, "a list with a name for each front")
     for i, name in enumerate(given, start=1):
         of_kind(f"name {i}", name, str, "text")
@@ -45,25 +27,7 @@ def checked_names(names: Sequence[str], fronts: int) -> list[str]:
 def check_fronts(
     fronts: Sequence[Front], names: Sequence[str], *, twice: bool = False, least: int = 2
 ) -> None:
-    """Refuse fronts that cannot be compared.
-
-    Parameters
-    ----------
-    fronts : sequence of Front
-        The fronts.
-    names : sequence of str
-        What to call each in a message.
-    twice : bool
-        Whether one may be given twice.
-    least : int
-        How few may be compared.
-
-    Raises
-    ------
-    ValueError
-        When there are fewer, one is something else, empty or given twice, or their tasks differ;
-        in one line, with what differs.
-    """
+    """Refuse fronts that cannot be compared."""
     if len(fronts) < least:
         raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given: give more")
     for front, name in zip(fronts, names, strict=True):
@@ -90,19 +54,7 @@ def name_of_twin(name: str, first: str) -> str:
 
 
 def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
-    """Which fronts are runs of one method with one set of settings.
-
-    Parameters
-    ----------
-    fronts : sequence of Front
-        The fronts.
-
-    Returns
-    -------
-    dict of str to list of int
-        Positions in `fronts` by the label of their group: the method, with the settings in
-        which it differs from another group of the same method.
-    """
+    """Which fronts are runs of one method with one set of settings."""
     groups: dict[str, list[int]] = {}
     for i, front in enumerate(fronts):
         groups.setdefault(json.dumps([front.method, _settings(front)], sort_keys=True), []).append(

@@ -34,30 +34,6 @@ class Measured:
     A front is read as a staircase: its energy at a residual is the least that was found with that
     residual or less. The steps of a front of few points would count against it, so the indicators
     are those of the front filled with motions between its points, by `filled`.
-
-    Attributes
-    ----------
-    name : str
-        Name of its file, or of the run.
-    front : Front
-        The front.
-    between : ndarray, shape (n, 2), read-only
-        The filled front: residuals [m] and energies [J].
-    hypervolume : float
-        Share of the box from the origin to `Comparison.corner` that the filled front dominates.
-    hypervolume_found : float
-        The same of the front as it was found.
-    igd_plus : float
-        Mean distance by which the filled front misses the reference front, in `Comparison.extent`.
-    epsilon : float
-        Least shift of the filled front in both objectives after which nothing of the reference
-        front is better, in `Comparison.extent`.
-    energies : tuple of float
-        Least energy [J] found within each of `Comparison.levels`; NaN where there is none.
-    gaps : tuple of float
-        How far these are above `Comparison.best`, as a share of it.
-    gaps_between : tuple of float
-        The same for the filled front.
     """
 
     name: str
@@ -74,18 +50,7 @@ class Measured:
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """The runs of one method with one set of settings, one for each seed.
-
-    Attributes
-    ----------
-    label : str
-        The method, with its settings where another group has the same method.
-    runs : tuple of Measured
-        Its fronts.
-    best, median, worst : ndarray, shape (points, 2), read-only
-        Attainment surfaces, residual [m] and energy [J]: what at least one run, half of the runs
-        and every run attained. The three are equal for a single run.
-    """
+    """The runs of one method with one set of settings, one for each seed."""
 
     label: str
     runs: tuple[Measured, ...]

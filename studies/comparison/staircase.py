@@ -28,19 +28,6 @@ def filled(front: Front, points: int) -> Array:
     So that a front is not judged by its number of points. The coefficients of neighbouring points
     are interpolated and the motions evaluated: each is a motion that can be driven and stays in the
     box; those that break a limit of the task do not count.
-
-    Parameters
-    ----------
-    front : Front
-        The front.
-    points : int
-        About how many points and motions between them to return; a front of that many points stays
-        as it is.
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        Residuals [m], rising, and energies [J], falling, of those that no other dominates.
     """
     own = objectives(front)
     between = ceil(points / max(len(own) - 1, 1)) - 1
@@ -62,22 +49,7 @@ def best_of(fronts: list[Array]) -> Array:
 
 
 def within(front: Array, residuals: Sequence[float] | Array, missing: float = np.nan) -> Array:
-    """Least energies [J] on a staircase within residuals.
-
-    Parameters
-    ----------
-    front : ndarray, shape (points, 2)
-        Residuals [m], rising, and energies [J], falling.
-    residuals : array_like, shape (n,)
-        Residuals [m].
-    missing : float
-        What stands for the energy within a residual that no point has.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Energies [J].
-    """
+    """Least energies [J] on a staircase within residuals."""
     if not len(front):
         return np.full(np.shape(residuals), missing)
     count = np.searchsorted(front[:, 0], residuals, side="right")

@@ -27,19 +27,7 @@ _CODE = ("quietarm", "pymoo")
 
 @dataclass(frozen=True)
 class Entry:
-    """A method as it takes part.
-
-    Attributes
-    ----------
-    method : str
-        Its name.
-    settings : dict
-        What it is set to where that is not its default.
-    population : int or None
-        Individuals; None where it has the method's own.
-    name : str
-        What it is called in the contest: with its settings.
-    """
+    """A method as it takes part."""
 
     method: str
     settings: Mapping[str, Value]
@@ -68,34 +56,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Contest:
-    """What is asked of a contest.
-
-    Parameters
-    ----------
-    problems : tuple of NamedProblem
-        What the methods are run on.
-    methods : tuple of str
-        Names of methods.
-    runs : int
-        Seeds of each method.
-    evaluations : int
-        Evaluations of each run.
-    seed : int
-        First seed.
-    population : int, optional
-        Individuals of every method; each method's own by default.
-    settings : mapping of str to mapping
-        What a method is set to, by its name; ``population`` is for that method alone.
-    explain : bool
-        Whether the local minima of the problems are looked for as well.
-    workers : Workers
-        Where the runs are done.
-
-    Raises
-    ------
-    ValueError
-        When a method is unknown or a number out of range.
-    """
+    """What is asked of a contest."""
 
     problems: tuple[NamedProblem, ...]
     methods: tuple[str, ...]
@@ -161,23 +122,7 @@ class Contest:
 
 
 def check_alike(contents: Contents, contest: Contest) -> None:
-    """Refuse to add runs to those of a folder that cannot be compared with them.
-
-    Parameters
-    ----------
-    contents : Contents
-        What the folder holds.
-    contest : Contest
-        What is asked.
-
-    Raises
-    ------
-    ValueError
-        When a problem is another one there, or a run has other evaluations, another population or
-        box, was measured against another exact front, states figures that are not those of its
-        motions, or is of another version of quietarm or pymoo than the runs to come; in one line,
-        with the remedy.
-    """
+    """Refuse to add runs to those of a folder that cannot be compared with them."""
     folder = contents.folder.path
     for problem in contest.problems:
         known = contents.yardsticks.get(problem.name)

@@ -22,13 +22,7 @@ _Kind = TypeVar("_Kind", Run, Imported, Landscape, Yardstick)
 
 @dataclass(frozen=True)
 class Folder:
-    """Where a contest keeps its files.
-
-    Parameters
-    ----------
-    path : Path
-        The folder; made when something is written.
-    """
+    """Where a contest keeps its files."""
 
     path: Path
 
@@ -39,18 +33,7 @@ class Folder:
         what.save(path)
 
     def runs(self) -> dict[Key, Run]:
-        """Every run in the folder.
-
-        Returns
-        -------
-        dict of Key to Run
-            In the order of their names.
-
-        Raises
-        ------
-        FileFormatError
-            When a file is no run, or not where its content says; with the remedy.
-        """
+        """Every run in the folder."""
         found = self._loaded(Run, f"{_RUNS}/*/*/*.json")
         return dict(sorted((run.key, run) for run in found))
 
@@ -113,19 +96,7 @@ def _words_of(what: Run | Imported | Landscape | Yardstick) -> str:
 
 @dataclass
 class Contents:
-    """What the folder of a contest holds, read once and kept up to date.
-
-    Attributes
-    ----------
-    folder : Folder
-        Where it is kept.
-    runs : dict of Key to Run
-        Runs.
-    imports : dict of Source to Imported
-        Runs of other tools.
-    yardsticks, landscapes : dict of str
-        Exact fronts and local minima, by problem.
-    """
+    """What the folder of a contest holds, read once and kept up to date."""
 
     folder: Folder
     runs: dict[Key, Run] = field(default_factory=dict)

@@ -32,25 +32,7 @@ class Source(NamedTuple):
 
 @dataclass(frozen=True)
 class Imported(Saved):
-    """One run of another tool on one problem; only what it ended with is known.
-
-    Attributes
-    ----------
-    problem, method : str
-        Their names.
-    file : str
-        Name of the file that it came from.
-    digest : str
-        SHA-256 of that file.
-    evaluations : int or None
-        How many evaluations it took, as was stated; None where nobody said.
-    scale : Scale
-        Extent of the exact front that it is measured in.
-    front : Front
-        What it found, with the figures of CVODES.
-    claims : tuple of str
-        What the file states otherwise, in sentences.
-    """
+    """One run of another tool on one problem; only what it ended with is known."""
 
     kind: ClassVar[str] = "contest-import"
     version: ClassVar[int] = 1
@@ -76,24 +58,7 @@ class Imported(Saved):
 
 
 def named_files(texts: Sequence[str]) -> dict[str, list[Path]]:
-    """Files of runs by the name of their method.
-
-    Parameters
-    ----------
-    texts : sequence of str
-        Each a file or a folder of files, one a run; with ``NAME=`` before it where its own name is
-        not to be that of the method.
-
-    Returns
-    -------
-    dict of str to list of Path
-        The files.
-
-    Raises
-    ------
-    ValueError
-        When there is no such file, a name does not do, or two files of a method have one name.
-    """
+    """Files of runs by the name of their method."""
     found: dict[str, list[Path]] = {}
     for text in texts:
         name, path = _named(text)
@@ -132,33 +97,7 @@ def _files(path: Path) -> list[Path]:
 def imported_run(
     problem: NamedProblem, yardstick: Yardstick, method: str, path: Path, evaluations: int | None
 ) -> Imported:
-    """Evaluate a file.
-
-    Parameters
-    ----------
-    problem : NamedProblem
-        What it was found for.
-    yardstick : Yardstick
-        Its exact front.
-    method : str
-        What found it.
-    path : Path
-        The file.
-    evaluations : int or None
-        How many evaluations that took; None where it is not known.
-
-    Returns
-    -------
-    Imported
-        The run.
-
-    Raises
-    ------
-    ValueError
-        When its coefficients do not fit the problem or its box.
-    QuietarmError
-        When it cannot be read, or no motion in it can be used.
-    """
+    """Evaluate a file."""
     found = read_found(path)
     columns, size = found.coefficients.shape[1], problem.profile.size
     if columns != size:

@@ -30,29 +30,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Landscape(Saved):
-    """The local minima of a problem: least energies within `LEVEL`, from random starts in its box.
-
-    Attributes
-    ----------
-    problem : str
-        Its name.
-    starts : int
-        How many starts.
-    solved : float
-        Share of the starts from which the gradient ended at a minimum.
-    best : float
-        Share that ended at the best of these minima.
-    minima : int
-        How many minima of different energy there are among them.
-    correlation : float or None
-        Of energy and distance to the best minimum, over the minima that were found; near 1 where
-        better ones are nearer to it. None where all are one.
-    candidates : float
-        Of energy and distance to the cheapest motion, over random candidates.
-    boxes : tuple of (float, float or None)
-        Multiples of the box, and the least energy within it as a multiple of that in the problem's
-        own; None where nothing was found.
-    """
+    """Local minima of a problem: least energies within `LEVEL`, from random starts in its box."""
 
     kind: ClassVar[str] = "landscape"
     version: ClassVar[int] = 1
@@ -68,25 +46,7 @@ class Landscape(Saved):
 
 
 def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
-    """Look for the local minima of a problem.
-
-    Parameters
-    ----------
-    problem : NamedProblem
-        Which.
-    seed : int
-        Seed of the random starts.
-
-    Returns
-    -------
-    Landscape
-        What there is.
-
-    Raises
-    ------
-    QuietarmError
-        When no start ended at a minimum.
-    """
+    """Look for the local minima of a problem."""
     settings = SolveSettings(bound=problem.bound, starts=1)
     sweep, random = Sweep(problem.task, problem.profile, settings), np.random.default_rng(seed)
     box = problem.profile.box(problem.bound)

@@ -30,17 +30,7 @@ _PLACES = 3000
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What the runs of one method on one problem ended with; all that is known of other tools'.
-
-    Attributes
-    ----------
-    method : str
-        Its name.
-    yardstick : Yardstick
-        The exact front.
-    runs : tuple of Run or Imported
-        In the order of their seeds or files.
-    """
+    """What the runs of one method on one problem ended with; all that is known of other tools'."""
 
     method: str
     yardstick: Yardstick
@@ -87,15 +77,7 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class Field(Outcome):
-    """All runs of one method on one problem, with what they had found on the way.
-
-    Attributes
-    ----------
-    method, yardstick
-        As `Outcome` has them.
-    runs : tuple of Run
-        One a seed, in the order of the seeds.
-    """
+    """All runs of one method on one problem, with what they had found on the way."""
 
     runs: tuple[Run, ...]
 
@@ -143,11 +125,6 @@ class Field(Outcome):
 
         The evaluations that all runs spent until they reached it, or in all where they did not,
         over the number of those that did; infinite where none did [1]_.
-
-        References
-        ----------
-        .. [1] Hansen, Auger, Ros, Mersmann, Tusar and Brockhoff, Optimization Methods and Software
-           36 (2021), pp. 114-144, section 3.2.
         """
         hits = self.hits(target)
         reached = np.isfinite(hits)
@@ -167,19 +144,7 @@ class Field(Outcome):
 
 @dataclass(frozen=True, eq=False)
 class Arena:
-    """A problem with the runs of all methods on it.
-
-    Attributes
-    ----------
-    yardstick : Yardstick
-        The problem and its exact front.
-    fields : tuple of Field
-        The methods that were run here, each with one run or more.
-    imports : tuple of Outcome
-        Those whose results came from elsewhere.
-    landscape : Landscape or None
-        Its local minima, where they were looked for.
-    """
+    """A problem with the runs of all methods on it."""
 
     yardstick: Yardstick
     fields: tuple[Field, ...]
@@ -211,18 +176,7 @@ class Arena:
 
 
 def arenas_of(contents: Contents) -> tuple[Arena, ...]:
-    """The problems with runs, in the order of their names; methods in that of theirs.
-
-    Parameters
-    ----------
-    contents : Contents
-        What the contest's folder holds.
-
-    Returns
-    -------
-    tuple of Arena
-        One a problem; none where results of other tools alone are there.
-    """
+    """The problems with runs, in the order of their names; methods in that of theirs."""
     runs = [run for _, run in sorted(contents.runs.items())]
     imports = [run for _, run in sorted(contents.imports.items())]
     arenas = list[Arena]()

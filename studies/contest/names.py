@@ -58,13 +58,7 @@ def label_of(name: str) -> str:
 
 
 def name_given(text: str) -> str:
-    """A name for a method whose results come from elsewhere.
-
-    Raises
-    ------
-    ValueError
-        When it is the name of a method of quietarm's own, or is none for a folder.
-    """
+    """A name for a method whose results come from elsewhere."""
     name = text.strip()
     if not _GIVEN.fullmatch(name):
         raise ValueError(

@@ -22,23 +22,7 @@ _FILL = 10_000
 
 
 def problems_of(names: Sequence[str]) -> tuple[NamedProblem, ...]:
-    """Problems by their names; the paper's six conditions where none is given.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Names of `PROBLEMS`.
-
-    Returns
-    -------
-    tuple of NamedProblem
-        Each once.
-
-    Raises
-    ------
-    ValueError
-        When a name is unknown; the nearest one is suggested. When a problem has three objectives.
-    """
+    """Problems by their names; the paper's six conditions where none is given."""
     for name in names:
         if problem_of(name).peak:
             raise ValueError(
@@ -60,21 +44,7 @@ def the_papers() -> tuple[NamedProblem, ...]:
 
 @dataclass(frozen=True)
 class Yardstick(Saved):
-    """What the methods are measured against on a problem.
-
-    Attributes
-    ----------
-    problem : str
-        Its name.
-    bound : float
-        Largest absolute coefficient.
-    front : Front
-        The exact front.
-    scale : Scale
-        Its extent.
-    hypervolume : float
-        What it dominates, with the motions between its points, in this extent.
-    """
+    """What the methods are measured against on a problem."""
 
     kind: ClassVar[str] = "yardstick"
     version: ClassVar[int] = 1

@@ -32,25 +32,7 @@ class Key(NamedTuple):
 
 @dataclass(frozen=True)
 class Run(Saved):
-    """One method on one problem from one seed.
-
-    Attributes
-    ----------
-    problem, method : str
-        Their names.
-    budget : int
-        Evaluations that it was given.
-    population : int or None
-        Individuals that were asked for; None where it has the method's own.
-    scale : Scale
-        Extent of the exact front that it was measured in.
-    marks : tuple of Mark
-        What it had found after so many evaluations.
-    visits : Visits
-        Where its feasible candidates lie.
-    front : Front
-        What it found, with its seed and settings.
-    """
+    """One method on one problem from one seed."""
 
     kind: ClassVar[str] = "contest-run"
     version: ClassVar[int] = 1
@@ -97,22 +79,7 @@ class Run(Saved):
 
 
 def check_end(run: Run, yardstick: Yardstick, path: Path) -> None:
-    """Refuse a run whose last mark is not that of its front.
-
-    Parameters
-    ----------
-    run : Run
-        What a file holds.
-    yardstick : Yardstick
-        The exact front of its problem, in whose extent the run was measured.
-    path : Path
-        The file, for the message.
-
-    Raises
-    ------
-    ValueError
-        When the last mark is neither the hypervolume of the front nor possible at all.
-    """
+    """Refuse a run whose last mark is not that of its front."""
     end, own = run.marks[-1], run.scale.hypervolume(objectives(run.front))
     states = (
         f"{path}: its mark after {end.evaluations} evaluations states hypervolume "

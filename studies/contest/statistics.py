@@ -20,23 +20,7 @@ _EXTRA = "statistics need scipy: pip install 'quietarm[contest]'; they are left 
 
 @dataclass(frozen=True)
 class Ranking:
-    """Mean ranks of methods, and how far apart they must be to tell them apart.
-
-    Attributes
-    ----------
-    what : str
-        What was ranked on, in the plural: seeds or problems.
-    blocks : int
-        How many of these.
-    methods : tuple of str
-        The best first.
-    ranks : tuple of float
-        Mean ranks in the same order; 1 is the best.
-    statistic, p_value : float
-        Friedman's test that all methods are alike.
-    critical : float
-        Nemenyi's critical difference of two mean ranks.
-    """
+    """Mean ranks of methods, and how far apart they must be to tell them apart."""
 
     what: str
     blocks: int
@@ -66,20 +50,7 @@ class Ranking:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two methods on one problem.
-
-    Attributes
-    ----------
-    problem, one, other : str
-        Their names.
-    effect : float
-        Vargha and Delaney's A: how likely a run of `one` misses less than a run of `other`; 0.5
-        where neither is better.
-    p_value : float
-        Of the Mann-Whitney test.
-    adjusted : float
-        The same after Holm's correction for all pairs on the problem.
-    """
+    """Two methods on one problem."""
 
     problem: str
     one: str
@@ -104,24 +75,6 @@ def ranking(values: Array, methods: Sequence[str], what: str) -> Ranking:
     """Rank methods within each block, and test whether they differ.
 
     Friedman's test, and Nemenyi's critical difference as Demsar has it [1]_.
-
-    Parameters
-    ----------
-    values : ndarray, shape (blocks, methods)
-        What is the better the less it is.
-    methods : sequence of str
-        Names of the columns, three or more.
-    what : str
-        What the blocks are, in the plural.
-
-    Returns
-    -------
-    Ranking
-        The methods, the best first.
-
-    References
-    ----------
-    .. [1] Demsar, Journal of Machine Learning Research 7 (2006), pp. 1-30, section 3.2.2.
     """
     from scipy import stats
 
@@ -193,18 +146,7 @@ def pairs_on(arena: Arena) -> list[Pair]:
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
-    """P-values of several tests, corrected by Holm's step-down method.
-
-    Parameters
-    ----------
-    p_values : sequence of float
-        One a test.
-
-    Returns
-    -------
-    list of float
-        In the same order; a test is significant where its own is below the level.
-    """
+    """P-values of several tests, corrected by Holm's step-down method."""
     adjusted, largest = [0.0] * len(p_values), 0.0
     for done, i in enumerate(np.argsort(p_values, kind="stable").tolist()):
         largest = max(largest, min(1.0, (len(p_values) - done) * p_values[i]))

@@ -27,25 +27,7 @@ def set_up(
     imports: Mapping[str, Sequence[Path]],
     evaluations: int | None = None,
 ) -> None:
-    """Put exact fronts and results of other tools into the folder, where they are not yet.
-
-    Parameters
-    ----------
-    contest : Contest
-        What is asked.
-    contents : Contents
-        What is there.
-    imports : mapping of str to sequence of Path
-        Files of runs by the name of their method.
-    evaluations : int, optional
-        How many evaluations each of these runs took; unknown by default.
-
-    Raises
-    ------
-    ValueError
-        As `check_alike`; when imports are for no single problem, do not fit it, or are others than
-        those of the same names in the folder. Nothing is written then.
-    """
+    """Put exact fronts and results of other tools into the folder, where they are not yet."""
     check_alike(contents, contest)
     if evaluations is not None:
         number_of_evaluations(evaluations)
@@ -91,20 +73,7 @@ def _refuse_twice(run: Imported, others: Iterable[Imported]) -> None:
 
 
 def pieces_of(contest: Contest, contents: Contents) -> list[Piece]:
-    """The work that is still to be done.
-
-    Parameters
-    ----------
-    contest : Contest
-        What is asked.
-    contents : Contents
-        What is there, the exact fronts among it.
-
-    Returns
-    -------
-    list of Piece
-        Local minima and runs that are not in the folder.
-    """
+    """The work that is still to be done."""
     pieces = list[Piece]()
     problems = {problem.name: problem for problem in contest.problems}
     for problem in contest.problems if contest.explain else ():
@@ -124,24 +93,7 @@ def pieces_of(contest: Contest, contents: Contents) -> list[Piece]:
 def run_contest(
     pieces: Sequence[Piece], contents: Contents, workers: Workers, begin: Callable[[str], None]
 ) -> Done:
-    """Do the work; every run is in the folder as soon as it is done.
-
-    Parameters
-    ----------
-    pieces : sequence of Piece
-        What `pieces_of` gave.
-    contents : Contents
-        Where the runs are kept.
-    workers : Workers
-        Where they are done.
-    begin : callable
-        Called with the name of every piece when it begins.
-
-    Returns
-    -------
-    Done
-        What became of the pieces.
-    """
+    """Do the work; every run is in the folder as soon as it is done."""
     kept = set[Hashable]()
 
     def keep(key: Hashable, answer: Run | Landscape) -> None:

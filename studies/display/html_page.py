@@ -60,22 +60,7 @@ class Markup(str):
 
 
 def element(name: str, *children: str, **attributes: str) -> Markup:
-    """An element of HTML that is well-formed XML as well.
-
-    Parameters
-    ----------
-    name : str
-        Its tag.
-    *children : str
-        What it holds; escaped where it is not `Markup`. None makes a void element.
-    **attributes : str
-        Its attributes; ``class_`` is ``class``.
-
-    Returns
-    -------
-    Markup
-        The element.
-    """
+    """An element of HTML that is well-formed XML as well."""
     marks = "".join(f' {k.rstrip("_")}="{escape(v)}"' for k, v in attributes.items())
     if not children:
         return Markup(f"<{name}{marks}/>")
@@ -88,20 +73,7 @@ def joined(parts: Iterable[str]) -> Markup:
 
 
 def page(title: str, *body: str) -> str:
-    """A whole page that loads nothing and runs nothing.
-
-    Parameters
-    ----------
-    title : str
-        Its title.
-    *body : str
-        What it holds.
-
-    Returns
-    -------
-    str
-        The page.
-    """
+    """A whole page that loads nothing and runs nothing."""
     head = element(
         "head",
         element("meta", charset="utf-8"),
@@ -137,22 +109,7 @@ def _row_heading(text: str) -> Markup:
 
 
 def picture(figure: Figure, alternative: str, caption: str) -> Markup:
-    """A picture within the page, with what it shows in words.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The picture.
-    alternative : str
-        What it shows, for those who do not see it.
-    caption : str
-        The line below it.
-
-    Returns
-    -------
-    Markup
-        The figure as SVG, so that it is sharp at any size.
-    """
+    """A picture within the page, with what it shows in words."""
     content = io.BytesIO()
     with as_written(figure):
         figure.savefig(content, format="svg", metadata={"Date": None})

@@ -26,20 +26,7 @@ def check_figure(path: str | Path) -> Path:
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:
-    """Write a picture whole or not at all.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The picture.
-    path : str or Path
-        The file; its ending, .png, .pdf or .svg, says the format.
-
-    Raises
-    ------
-    ValueError
-        When the file cannot be written or its ending is unknown.
-    """
+    """Write a picture whole or not at all."""
     target = check_figure(path)
     content = io.BytesIO()
     try:
@@ -56,13 +43,7 @@ def save_figure(figure: Figure, path: str | Path) -> None:
 
 @contextmanager
 def as_written(figure: Figure) -> Iterator[None]:
-    """Let the block draw names as they are: no formula at a dollar, a box for what no font has.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The picture, with all its texts.
-    """
+    """Let the block draw names as they are: no formula at a dollar, a box for what no font has."""
     from matplotlib.text import Text
 
     for text in figure.findobj(Text):

@@ -53,26 +53,7 @@ def shown(
     lines: Display,
     bar: Callable[[Progress], Display],
 ) -> Iterator[Display]:
-    """Choose how work is shown.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    quiet : bool
-        Whether it is to be shown at all.
-    columns : sequence of ProgressColumn
-        Of the bars.
-    nothing, lines : Display
-        What shows nothing, and what prints plain lines where there is no terminal.
-    bar : callable
-        Takes the bars of a terminal and returns what draws in them.
-
-    Yields
-    ------
-    Display
-        One of the three.
-    """
+    """Choose how work is shown."""
     if quiet:
         yield nothing
     elif not console.is_terminal:
@@ -113,17 +94,7 @@ def ticking(console: Console, words: Callable[[], str]) -> Iterator[None]:
 
 @contextmanager
 def working(what: str, console: Console, *, quiet: bool = False) -> Iterator[None]:
-    """Show that work goes on that has no measure of progress.
-
-    Parameters
-    ----------
-    what : str
-        What is done, as "solving".
-    console : rich.console.Console
-        Where to show it, usually standard error.
-    quiet : bool
-        Show nothing.
-    """
+    """Show that work goes on that has no measure of progress."""
     if quiet:
         yield
     elif console.is_terminal:
@@ -138,22 +109,7 @@ def working(what: str, console: Console, *, quiet: bool = False) -> Iterator[Non
 
 @contextmanager
 def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[Advance]:
-    """Show how far a piece of work is.
-
-    Parameters
-    ----------
-    total : int
-        Number of pieces.
-    console : rich.console.Console
-        Where to show it, usually standard error.
-    quiet : bool
-        Show nothing.
-
-    Yields
-    ------
-    Advance
-        Call it with the name of every piece when the piece begins.
-    """
+    """Show how far a piece of work is."""
     begun, piece = 0, ""
 
     def line(name: str) -> None:
@@ -184,25 +140,7 @@ def progress(total: int, console: Console, *, quiet: bool = False) -> Iterator[A
 def count(
     total: int, what: str, console: Console, *, quiet: bool = False
 ) -> Iterator[Callable[[int, int], None]]:
-    """Show how many of many small pieces are done.
-
-    Parameters
-    ----------
-    total : int
-        Number of pieces.
-    what : str
-        What they are, in the plural.
-    console : rich.console.Console
-        Where to show it, usually standard error.
-    quiet : bool
-        Show nothing.
-
-    Yields
-    ------
-    callable
-        To be called with the number of pieces done and of all. Where there is no terminal, it
-        prints a line every two seconds.
-    """
+    """Show how many of many small pieces are done."""
     said, now, of = time.monotonic(), 0, total
 
     def line(done: int, total: int) -> None:

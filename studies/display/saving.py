@@ -67,26 +67,6 @@ def finish(
 
     In this order, so that nothing is lost where standard output is closed. Ctrl-C waits until the
     files are there. Words go to standard error where standard output is one of the files.
-
-    Parameters
-    ----------
-    files : sequence of File
-        What to save.
-    show : callable
-        Prints what was found to the console that it is given.
-    trouble : Exception, optional
-        What went wrong before, as an interruption; raised at the end.
-    together : Together, optional
-        More to save, named in one line.
-    quiet : bool
-        Show no progress of what takes long to draw.
-
-    Raises
-    ------
-    ValueError
-        When a file could not be written; the others are there.
-    QuietarmError
-        When Ctrl-C came meanwhile; the text says what was written.
     """
     saved = _Saved()
     with note_interrupts() as came, working("writing", Console(stderr=True), quiet=quiet):

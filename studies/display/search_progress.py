@@ -30,20 +30,7 @@ class SearchDisplay:
 
 @contextmanager
 def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchDisplay]:
-    """Show a search's generation, best residual, least energy, hypervolume, speed and time left.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to, usually standard error.
-    quiet : bool
-        Show nothing.
-
-    Yields
-    ------
-    SearchDisplay
-        To be called with a `SearchProgress` after every generation.
-    """
+    """Show a search's generation, best residual, least energy, hypervolume, speed and time left."""
     columns = (BarColumn(bar_width=12), TextColumn("{task.description}", markup=False))
     lines = _Lines(console)
     nothing = quiet or console.is_terminal

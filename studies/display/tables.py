@@ -100,15 +100,7 @@ class Table:
 
 
 def print_rows(console: Console, rows: Sequence[tuple[str, str]]) -> None:
-    """Print names and their values in two columns, or one below the other on a narrow console.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    rows : sequence of (str, str)
-        Name and value; no word of either is cut.
-    """
+    """Print names and their values in two columns, or one below the other on a narrow console."""
     if console.width < max(len(name) for name, _ in rows) + _LEAST_VALUE:
         for name, value in rows:
             print_lines(console, name, f"  {value}")
@@ -122,16 +114,7 @@ def print_rows(console: Console, rows: Sequence[tuple[str, str]]) -> None:
 
 
 def print_table(console: Console, table: Table) -> None:
-    """Print a table, in pieces below each other where the console is too narrow for it.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    table : Table
-        The table; no word of it is cut. Where not even one row fits beside the headings, it is
-        printed as lines.
-    """
+    """Print a table, in pieces below each other where the console is too narrow for it."""
     wide = console.options.update(max_width=_WIDEST)
     if console.measure(table.for_screen(), options=wide).maximum <= console.width:
         console.print(table.for_screen())

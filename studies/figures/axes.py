@@ -28,13 +28,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def axes_or_new(ax: Axes | None) -> Axes:
-    """The axes that were given, or new ones in a figure of their own; with a light grid.
-
-    Raises
-    ------
-    ValueError
-        When something else was given, as a figure or several axes.
-    """
+    """The axes that were given, or new ones in a figure of their own; with a light grid."""
     if ax is None:
         ax = new_figure(6.4, 4.4).subplots()
     of_kind("ax", ax, Axes, "one Axes, as pyplot.subplots()[1]")
@@ -66,15 +60,7 @@ def legend_of(axes: Sequence[Axes]) -> tuple[list[Artist], list[str]]:
 
 
 def scale_residuals(ax: Axes, residuals: Sequence[float]) -> None:
-    """Make the axis of residuals logarithmic, or linear where their range is narrow.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        The axes; residuals go to the right.
-    residuals : sequence of float
-        All that is drawn [mm].
-    """
+    """Make the axis of residuals logarithmic, or linear where their range is narrow."""
     positive = [residual for residual in residuals if residual > 0]
     span = max(positive) / min(positive) if positive else 1.0
     if not positive:

@@ -119,13 +119,7 @@ def comparison_figure(
 
 
 def panel_figure(comparison: Comparison, panel: str, paper: Sequence[PaperPoint] = ()) -> Figure:
-    """Draw one of `PANELS` alone, small enough for a phone, with the legend below it.
-
-    Raises
-    ------
-    ValueError
-        When there is no such panel, or it is no comparison.
-    """
+    """Draw one of `PANELS` alone, small enough for a phone, with the legend below it."""
     if panel not in PANELS:
         raise ValueError(unknown("panel", panel, PANELS))
     figure = new_figure(4.8, 4.6)

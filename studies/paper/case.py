@@ -11,22 +11,7 @@ from quietarm.ocp.base.checks import positive
 
 @dataclass(frozen=True)
 class Case:
-    """A task and the box that its coefficients stay in.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    bound : float, optional
-        Largest absolute coefficient; the paper's for its plants.
-    label : str, optional
-        What the paper calls the move; empty for a task that is not the paper's.
-
-    Raises
-    ------
-    ValueError
-        When there is no bound, or it is not positive.
-    """
+    """A task and the box that its coefficients stay in."""
 
     task: PointToPoint
     bound: float | None = None

@@ -14,17 +14,7 @@ from quietarm.studies.paper.tasks import condition_of
 
 @dataclass(frozen=True)
 class PaperPoint:
-    """A motion of the paper.
-
-    Attributes
-    ----------
-    terms : int
-        N of eq (6).
-    energy : float
-        F2 [J]: of the printed coefficients (a misprint mended), or as printed where there are none.
-    residual : float or None
-        F1 [m] of the printed coefficients; None where the paper prints none.
-    """
+    """A motion of the paper."""
 
     terms: int
     energy: float
@@ -39,20 +29,7 @@ class PaperPoint:
 
 
 def paper_points(task: PointToPoint, terms: Collection[int]) -> list[PaperPoint]:
-    """The paper's own points for a task.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    terms : collection of int
-        Numbers of terms that are looked for.
-
-    Returns
-    -------
-    list of PaperPoint
-        None where the task is not a condition of the paper, or it has no such number of terms.
-    """
+    """The paper's own points for a task."""
     condition = condition_of(task)
     points: dict[int, PaperPoint] = {}
     for row in ROWS:
@@ -74,21 +51,7 @@ def paper_plan(case: Case, terms: int) -> Plan | None:
 
 
 def residual_level(case: Case, terms: int) -> float:
-    """Residual at which a search is judged.
-
-    Parameters
-    ----------
-    case : Case
-        The move.
-    terms : int
-        Number of terms.
-
-    Returns
-    -------
-    float
-        Residual [m] of the paper's coefficients for this move; where it prints none, of those for
-        the same plant, and for another plant `SEARCH_RESIDUAL`.
-    """
+    """Residual at which a search is judged."""
     same_plant = (c for c, n in COEFFICIENTS if (c.task.plant, n) == (case.task.plant, terms))
     printed = case if (case, terms) in COEFFICIENTS else next(same_plant, None)
     plan = None if printed is None else paper_plan(printed, terms)

@@ -62,21 +62,7 @@ EARLIER: dict[str, tuple[int, str]] = {
 
 @dataclass(frozen=True)
 class Row:
-    """A row of Tables 2, 3, 5 or 6.
-
-    Attributes
-    ----------
-    table : int
-        Number of the table.
-    condition : Case
-        The driving condition.
-    terms : int
-        N of eq (6).
-    energy : float
-        F2 that is printed for the proposed method [J].
-    earlier_energy : float or None
-        F2 that is printed for the earlier study, ref. [23] or [24] [J].
-    """
+    """A row of Tables 2, 3, 5 or 6."""
 
     table: int
     condition: Case

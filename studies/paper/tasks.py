@@ -14,18 +14,7 @@ _SAME = 1e-9
 
 
 def task_difference(one: PointToPoint, other: PointToPoint) -> str:
-    """Every quantity in which two tasks differ, in words; empty where they are equal.
-
-    Parameters
-    ----------
-    one, other : PointToPoint
-        The tasks.
-
-    Returns
-    -------
-    str
-        As ``"duration is 1 s, not 0.8 s"``, the value of `one` first.
-    """
+    """Every quantity in which two tasks differ, in words; empty where they are equal."""
     if one.plant.name != other.plant.name:
         return f"plant is {one.plant.name}, not {other.plant.name}"
     mine, theirs = _quantities(one), _quantities(other)

@@ -29,22 +29,7 @@ def _no_sweep(*given: object, **settings: object) -> Front:
 
 @dataclass(frozen=True)
 class Method:
-    """A method that finds a front.
-
-    Attributes
-    ----------
-    name : str
-        What it is called in a front, in its file and on the command line.
-    label : str
-        What it is called in tables and pictures.
-    kind : Kind
-        How it works; other for an algorithm of pymoo's that is not listed here.
-    polished : bool
-        Whether the gradient improved its front afterwards.
-    sweep : callable
-        For the gradient: finds the front of a task, a profile and settings. A metaheuristic is
-        known to `quietarm.metaheuristics.search` by its name.
-    """
+    """A method that finds a front."""
 
     name: str
     label: str
@@ -78,19 +63,7 @@ PAPERS = (NSGA2, VEPSO)
 
 
 def method_of(name: str) -> Method:
-    """The method that a front names.
-
-    Parameters
-    ----------
-    name : str
-        `Front.method`, as ``"nsga2"`` or ``"nsga2, polished"``.
-
-    Returns
-    -------
-    Method
-        The method of the registry, polished where the name says so; a name that is not in the
-        registry is its own label.
-    """
+    """The method that a front names."""
     if name in METHODS:
         return METHODS[name]
     if name.endswith(_POLISHED):

@@ -32,27 +32,7 @@ OTHERS: Mapping[str, Cycloid] = {
 
 
 def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> JointProfile:
-    """A profile by its name.
-
-    Parameters
-    ----------
-    name : str
-        One of `PROFILES`.
-    task : PointToPoint
-        The move, whose plant an input shaper is for.
-    terms : int, optional
-        Size of a family; its own default otherwise.
-
-    Returns
-    -------
-    JointProfile
-        The profile.
-
-    Raises
-    ------
-    ValueError
-        When `terms` is out of range, or the duration is too short for the shaper.
-    """
+    """A profile by its name."""
     if name not in FAMILIES:
         return shaped_cycloid(task, name)
     family = FAMILIES[name]

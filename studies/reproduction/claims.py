@@ -32,18 +32,7 @@ class Claim:
 
 
 def claims(result: Reproduction) -> list[Claim]:
-    """Judge the paper's claims by the recomputed figures.
-
-    Parameters
-    ----------
-    result : Reproduction
-        What `recompute_paper` returned.
-
-    Returns
-    -------
-    list of Claim
-        In the order in which the paper makes them.
-    """
+    """Judge the paper's claims by the recomputed figures."""
     return [
         _two_terms_suffice(result),
         _more_terms_lower_the_energy(result),

@@ -48,18 +48,6 @@ def draw_floor_dots(result: Reproduction, ax: Axes | None = None) -> Axes:
 
     The distance above the floor is drawn on a logarithmic scale, which separates the dots near the
     floor; the axis is marked in multiples.
-
-    Parameters
-    ----------
-    result : Reproduction
-        What `recompute_paper` returned.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes.
     """
     ax = axes_or_new(ax)
     ax.grid(visible=False, axis="y")

@@ -38,20 +38,7 @@ class Multiple:
 
 
 def multiples(result: Reproduction, condition: Case) -> list[Multiple]:
-    """All energies of a condition as multiples of its floor, by series and then terms.
-
-    Parameters
-    ----------
-    result : Reproduction
-        What `recompute_paper` returned.
-    condition : Case
-        The driving condition.
-
-    Returns
-    -------
-    list of Multiple
-        A search that met the paper's residual from no seed has none.
-    """
+    """All energies of a condition as multiples of its floor, by series and then terms."""
     floor = result.floors[condition].energy
     rows = {r.row.terms: r for r in result.rows if r.row.condition == condition}
     found = [_exact(PAPER, terms, r.row.energy / floor) for terms, r in sorted(rows.items())]

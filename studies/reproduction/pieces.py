@@ -65,25 +65,7 @@ SYSTEMS = "side by side"
 
 
 def pieces_of_paper(seeds: int) -> list[Piece]:
-    """Every solve, floor and search, each once; the keys are those of `Reproduction`.
-
-    Parameters
-    ----------
-    seeds : int
-        Seeds of the metaheuristics.
-
-    Returns
-    -------
-    list of Piece
-        Solves under (case, terms, whether in the box), those with another profile under
-        (case, its name), robust ones under (case, `ROBUST`), floors under their case, searches
-        under (method, case, terms, seed), and what stands side by side under (case, `SYSTEMS`).
-
-    Raises
-    ------
-    ValueError
-        When `seeds` is out of range.
-    """
+    """Every solve, floor and search, each once; the keys are those of `Reproduction`."""
     seeds = number_of_runs(seeds, "seeds")
     work: list[Piece] = []
     for case, terms, boxed in SOLVES:

@@ -37,27 +37,7 @@ from quietarm.studies.reproduction.side_by_side.results import System
 
 @dataclass(frozen=True)
 class RowResult:
-    """A row of the paper beside what is computed here.
-
-    Attributes
-    ----------
-    row : Row
-        What is printed.
-    printed : Plan or None
-        The printed coefficients evaluated, where the paper prints any for this condition.
-    mended : Plan or None
-        The same with a misprint mended, where there is one.
-    in_box, free : Plan
-        The gradient answer at rest on arrival, in the paper's box and without one.
-    earlier : Plan or None
-        The gradient answer at rest on arrival with the earlier study's profile, as this project
-        reads it, where the paper compares with that study.
-    fronts : dict of Method to tuple of Front
-        What VEPSO and NSGA-II find with the paper's settings, one front for each seed.
-    residual_level : float
-        Residual [m] of the paper's coefficients, or where it prints none, of its N = 6 row for the
-        same plant (with the misprint mended).
-    """
+    """A row of the paper beside what is computed here."""
 
     row: Row
     printed: Plan | None
@@ -90,21 +70,7 @@ class RowResult:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """All that `recompute_paper` computes.
-
-    Attributes
-    ----------
-    rows : tuple of RowResult
-        One for every row of Tables 2, 3, 5 and 6.
-    cycloids : dict
-        The plain cycloid of each studied condition.
-    more_terms : dict
-        Gradient answers by (condition, terms, whether in the box).
-    floors : dict
-        The least energy over all joint motions, at rest on arrival, of each condition.
-    systems : dict
-        All systems on each of `CASES`, side by side.
-    """
+    """All that `recompute_paper` computes."""
 
     rows: tuple[RowResult, ...]
     cycloids: dict[Case, Plan]
@@ -123,32 +89,7 @@ class Reproduction:
 def recompute_paper(
     begin: Callable[[str], None] = lambda name: None, seeds: int = 1, workers: Workers = HERE
 ) -> Reproduction:
-    """Recompute the paper's tables with gradient, metaheuristics and floor beside them.
-
-    Parameters
-    ----------
-    begin : callable, optional
-        Called with the name of every solve, floor and search when it begins; `pieces_of_paper`
-        lists them.
-    seeds : int
-        Seeds of the metaheuristics.
-    workers : Workers
-        Where the work is done.
-
-    Returns
-    -------
-    Reproduction
-        Plans and fronts for every row; plans are verified by the independent integrator.
-
-    Raises
-    ------
-    ValueError
-        When `seeds` is out of range.
-    QuietarmError
-        When a piece fails, or the workers cannot be reached.
-    InterruptedPiece
-        When it was stopped before its end; its part is a `Done`, which says why.
-    """
+    """Recompute the paper's tables with gradient, metaheuristics and floor beside them."""
     done = run_pieces(pieces_of_paper(seeds), Listener(begin), workers=workers)
     if done.stopped:
         raise InterruptedPiece(done)

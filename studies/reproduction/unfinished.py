@@ -14,21 +14,7 @@ FILE = "unfinished.csv"
 
 
 def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
-    """Energy and residual of every piece of work that came to its end, one row for each.
-
-    Parameters
-    ----------
-    pieces : sequence of Piece
-        The work, in order.
-    done : Done
-        What became of it.
-
-    Returns
-    -------
-    Table
-        Of a search the cheapest point within `SEARCH_RESIDUAL`, where it has one; no figures
-        where there is no plan, and of what only puts others side by side.
-    """
+    """Energy and residual of every piece of work that came to its end, one row for each."""
     columns = [
         Column("piece of work", key="piece"),
         Column("F2 [J]", key="energy_J"),

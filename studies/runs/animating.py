@@ -26,29 +26,7 @@ def run_animate(
     width: int,
     quiet: bool,
 ) -> None:
-    """Draw saved plans in motion and write the file.
-
-    Parameters
-    ----------
-    paths : sequence of Path
-        The plans; one alone is drawn beside the plain cycloid of its task.
-    output : Path
-        The file; its ending says the format.
-    speed, deflection_scale, frames_per_second, width
-        As for `quietarm.studies.animation.animate`.
-    quiet : bool
-        Show no progress.
-
-    Raises
-    ------
-    FileFormatError
-        When a file is no plan.
-    ValueError
-        When there is no plan, one is given twice, a setting is out of range, or the format is
-        unknown or needs a program that is not there.
-    KeyboardInterrupt
-        When the work was interrupted; then nothing is written.
-    """
+    """Draw saved plans in motion and write the file."""
     kind = format_of(output)
     check_format(kind)
     plans = load_plans(paths)

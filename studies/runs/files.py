@@ -12,17 +12,7 @@ from rich.console import Console
 
 @dataclass(frozen=True)
 class FrontFiles:
-    """The files that a front is written to; None where one is not asked for.
-
-    Attributes
-    ----------
-    output : Path or None
-        The front, whole.
-    csv : Path or None
-        A table: its points, or what each of them gained.
-    figure : Path or None
-        The picture.
-    """
+    """The files that a front is written to; None where one is not asked for."""
 
     output: Path | None
     csv: Path | None

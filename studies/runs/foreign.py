@@ -33,17 +33,7 @@ _FIGURES = ("f", "objectives", "pareto_front")
 
 @dataclass(frozen=True)
 class Found:
-    """What a file holds.
-
-    Attributes
-    ----------
-    coefficients : ndarray, shape (motions, coefficients)
-        One motion a row.
-    claims : ndarray, shape (motions, 2)
-        Residual [m] and energy [J] as the file states them; NaN where it does not.
-    ignored : tuple of str
-        Columns or variables that are neither.
-    """
+    """What a file holds."""
 
     coefficients: Array
     claims: Array
@@ -57,21 +47,6 @@ def read_found(path: Path) -> Found:
     may name the columns: ``a_1``, ``a_2``, ... are coefficients, ``residual_m`` and ``energy_J``
     what is claimed; without names all columns are coefficients. Arrays are a matrix of
     coefficients, or several named ones. Nothing in a file is run.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Found
-        What it holds.
-
-    Raises
-    ------
-    FileFormatError
-        When it cannot be read, or has no table of numbers.
     """
     content = read_bytes(path)
     readers = {".npy": _of_npy, ".npz": _of_npz, ".mat": _of_mat}

@@ -36,21 +36,7 @@ _NEAR_REST = 1e-6
 
 @dataclass(frozen=True)
 class Claim:
-    """How what a file states of one figure compares with what its coefficients give.
-
-    Attributes
-    ----------
-    figure, unit : str
-        Which.
-    stated, differ : int
-        How many motions have it stated, and for how many of them it is another.
-    row : int
-        The motion that differs most, from 1.
-    theirs, ours : float
-        Its figure in the file and here.
-    factor : float
-        Median of theirs over ours; NaN where none can be told.
-    """
+    """How what a file states of one figure compares with what its coefficients give."""
 
     figure: str
     unit: str
@@ -83,33 +69,7 @@ def import_front(
     method: str,
     settings: dict[str, Setting],
 ) -> tuple[Front, list[Claim]]:
-    """The front of coefficients from elsewhere, and how its claims compare.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    found : Found
-        What a file holds.
-    method : str
-        What found them.
-    settings : dict
-        Its settings; a ``bound`` must be kept.
-
-    Returns
-    -------
-    front : Front
-        Every point evaluated by CVODES. `evaluations` counts all motions.
-    claims : list of Claim
-        For each figure that the file states.
-
-    Raises
-    ------
-    ValueError
-        When the coefficients do not fit the profile or the bound.
-    """
+    """The front of coefficients from elsewhere, and how its claims compare."""
     table = found.coefficients
     whole("number of motions", len(table), 1, MOST_MOTIONS)
     rows = np.array([_checked(i, row, profile, task) for i, row in enumerate(table, start=1)])
@@ -206,26 +166,7 @@ def run_import(
     files: FrontFiles,
     quiet: bool,
 ) -> None:
-    """Evaluate what a file holds, write the front, and show it beside the file's claims.
-
-    Parameters
-    ----------
-    path : Path
-        The file, for messages.
-    task, profile, found, method, settings
-        As for `import_front`.
-    files : FrontFiles
-        What is written.
-    quiet : bool
-        Show no progress.
-
-    Raises
-    ------
-    ValueError
-        When the coefficients do not fit.
-    SolverFailedError
-        When no motion can be used.
-    """
+    """Evaluate what a file holds, write the front, and show it beside the file's claims."""
     files.refuse_same(("FILE", path))
     with working("evaluating", Console(stderr=True), quiet=quiet):
         try:

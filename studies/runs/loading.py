@@ -11,25 +11,7 @@ from quietarm.ocp.base.printable import printable
 
 
 def load_front(path: Path) -> Front:
-    """The front of a file, after some of its motions were evaluated again.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Front
-        The front.
-
-    Raises
-    ------
-    FileFormatError
-        When the file is no front.
-    ValueError
-        When it has no point, or its figures are not those of its motions.
-    """
+    """The front of a file, after some of its motions were evaluated again."""
     front = Front.load(path)
     if not front.points:
         raise ValueError(f"{path}: {front.why_empty()}")
@@ -38,26 +20,7 @@ def load_front(path: Path) -> Front:
 
 
 def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
-    """Plans from their files, after their motions were evaluated again.
-
-    Parameters
-    ----------
-    paths : sequence of Path
-        The files.
-
-    Returns
-    -------
-    dict
-        The plans by what they are called: the name of their file, or the whole path where files of
-        several folders have one name.
-
-    Raises
-    ------
-    FileFormatError
-        When a file is no plan.
-    ValueError
-        When there is no file, one is given twice, or its figures are not those of its motion.
-    """
+    """Plans from their files, after their motions were evaluated again."""
     if not paths:
         raise ValueError("no plan is given; give files that were written by quietarm plan --output")
     for path in paths:

@@ -27,28 +27,7 @@ _ROWS = 10
 
 
 def run_polish(path: Path, points: int | None, files: FrontFiles, quiet: bool) -> None:
-    """Improve a saved front, write it, and show what each point gained.
-
-    Parameters
-    ----------
-    path : Path
-        The front.
-    points : int or None
-        How many of its points; None is all.
-    files : FrontFiles
-        What is written; the table is of the gains.
-    quiet : bool
-        Show no progress.
-
-    Raises
-    ------
-    FileFormatError
-        When the file is no front.
-    ValueError
-        When its figures are not those of its motions, it has no point, or `points` is below 2.
-    QuietarmError
-        When it was interrupted, after what was improved is written.
-    """
+    """Improve a saved front, write it, and show what each point gained."""
     files.refuse_same(("FRONT", path))
     errors = Console(stderr=True)
     with working("checking", errors, quiet=quiet):
@@ -77,20 +56,7 @@ def run_polish(path: Path, points: int | None, files: FrontFiles, quiet: bool) -
 
 
 def thinned(front: Front, points: int) -> Front:
-    """A front of fewer points, evenly spaced along it, its ends among them.
-
-    Parameters
-    ----------
-    front : Front
-        The front.
-    points : int
-        How many points, 2 or more; where it has no more, all.
-
-    Returns
-    -------
-    Front
-        The same front with these points alone.
-    """
+    """A front of fewer points, evenly spaced along it, its ends among them."""
     points = whole("points", points, 2)
     return replace(front, points=_spread(front.points, points))
 

@@ -14,26 +14,7 @@ from rich.console import Console
 
 
 def run_problems(names: Sequence[str], again: bool, output: Path | None, quiet: bool) -> None:
-    """List problems; write their exact fronts where a folder is given.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Names of `PROBLEMS`; all of them where there is none.
-    again : bool
-        Find the fronts anew.
-    output : Path or None
-        The folder.
-    quiet : bool
-        Show no progress.
-
-    Raises
-    ------
-    ValueError
-        When fronts are to be found anew for no folder.
-    QuietarmError
-        When it was interrupted, after what was found is written.
-    """
+    """List problems; write their exact fronts where a folder is given."""
     chosen = [PROBLEMS[name] for name in dict.fromkeys(names or PROBLEMS)]
     if again and output is None:
         raise ValueError("--again finds fronts for a folder; give --output as well")

@@ -28,30 +28,7 @@ def run_robustness(
     output: Path | None,
     quiet: bool,
 ) -> None:
-    """Evaluate saved plans over errors of their plants, show the figures and write them.
-
-    Parameters
-    ----------
-    paths : sequence of Path
-        The plans.
-    ranges : mapping of str to float
-        Largest relative errors by name; `DEFAULT_RANGES` where there are none.
-    samples, seed : int
-        Monte Carlo samples of each plan, and their seed.
-    output : Path or None
-        Folder for table, picture and samples.
-    quiet : bool
-        Show no progress.
-
-    Raises
-    ------
-    FileFormatError
-        When a file is no plan.
-    ValueError
-        When there is no plan, one is given twice, or its plant cannot have the errors.
-    QuietarmError
-        When the work was interrupted.
-    """
+    """Evaluate saved plans over errors of their plants, show the figures and write them."""
     ranges = dict(ranges) or dict(DEFAULT_RANGES)
     plans = load_plans(paths)
     for path, plan in zip(paths, plans.values(), strict=True):

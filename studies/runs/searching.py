@@ -46,35 +46,7 @@ def plan_by_search(
     quiet: bool = False,
     settings: Mapping[str, object] | None = None,
 ) -> Plan:
-    """The cheapest point of a metaheuristic's front within the residual limit, as a plan.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    method : Method
-        A metaheuristic, run with its own population and generations.
-    profile : JointProfile
-        How the joint moves.
-    bound : float or None
-        Largest absolute coefficient; required, None gives the error that says so.
-    residual_limit : float or None
-        Largest residual [m], None for the default of `plan_move`; 0 stands for `SEARCH_RESIDUAL`,
-        since no search arrives quite at rest.
-    seed : int
-        Seed of the search.
-    polish : bool
-        Improve the point by the gradient, at the residual limit that was asked for.
-    quiet : bool
-        Show no progress.
-    settings : mapping, optional
-        What else the method is set to.
-
-    Returns
-    -------
-    Plan
-        The plan, verified by CVODES.
-    """
+    """The cheapest point of a metaheuristic's front within the residual limit, as a plan."""
     limit = limit_of(task, residual_limit) or SEARCH_RESIDUAL
     SolveSettings(residual_limit=limit, seed=seed)  # refused before the search, not after
     with search_display(Console(stderr=True), quiet=quiet) as report:
@@ -124,27 +96,7 @@ def run_front(
     files: FrontFiles,
     quiet: bool,
 ) -> None:
-    """Search from every seed, write what was found, and show it.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    method : Method
-        A metaheuristic.
-    options : dict
-        The settings of `search`, the profile among them, ``runs`` and ``workers``.
-    files : FrontFiles
-        What is written; with several runs `with_seed` names a front and a table for every seed.
-    quiet : bool
-        Show no progress.
-
-    Raises
-    ------
-    QuietarmError
-        When a search was interrupted, a process died, or the checkpoint could not be written;
-        after what was found is written.
-    """
+    """Search from every seed, write what was found, and show it."""
     runs = options["runs"]
     if runs > 1 and (options.get("checkpoint") or options.get("resume")):
         raise ValueError(

@@ -32,26 +32,7 @@ def run_sweep(
     files: FrontFiles,
     quiet: bool,
 ) -> None:
-    """Sweep the front by the gradient, write what was found, and show it.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    method : Method
-        A method of the gradient.
-    options : dict
-        Its settings, the profile among them.
-    files : FrontFiles
-        What is written.
-    quiet : bool
-        Show no progress.
-
-    Raises
-    ------
-    QuietarmError
-        When it was interrupted, after what was found is written; when nothing was found.
-    """
+    """Sweep the front by the gradient, write what was found, and show it."""
     files.refuse_same()
     check = options.pop("check", False)
     weights = options.get("weights", ())

@@ -54,20 +54,7 @@ def gap_figure(study: Study) -> Figure:
 
 
 def draw_study_gaps(study: Study, ax: Axes | None = None) -> Axes:
-    """Draw the energy above the best: one row for each task, one mark for each method.
-
-    Parameters
-    ----------
-    study : Study
-        What was found.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes; bars are quartiles over the seeds.
-    """
+    """Draw the energy above the best: one row for each task, one mark for each method."""
     ax = axes_or_new(ax)
     seen: set[Method] = set()
     for i, found in enumerate(study.cases):

@@ -35,18 +35,7 @@ _CAPTIONS = {
 
 
 def study_page(study: Study) -> str:
-    """The study as a page that stands alone.
-
-    Parameters
-    ----------
-    study : Study
-        What was found.
-
-    Returns
-    -------
-    str
-        HTML with its style and pictures inside; it loads nothing and runs nothing.
-    """
+    """The study as a page that stands alone."""
     title = "Residual vibration against energy: every method on one task"
     if len(study.cases) > 1:
         title = f"Residual vibration against energy: every method on {len(study.cases)} tasks"

@@ -32,36 +32,7 @@ FLOOR = "floor"
 
 @dataclass(frozen=True)
 class StudySettings:
-    """How thorough a study is.
-
-    Parameters
-    ----------
-    terms : int
-        Terms of the polynomial.
-    points : int
-        Points of the gradient's fronts.
-    runs : int
-        Seeds of each metaheuristic.
-    seed : int
-        First seed.
-    workers : int
-        Processes of this machine that share the work, by dask; 1 stays in this one.
-    scheduler : str, optional
-        Address of a dask scheduler whose workers share it instead.
-    population, generations : int, optional
-        Of the metaheuristics; their own by default.
-    methods : tuple of str
-        The metaheuristics.
-    settings : mapping, optional
-        What else each is set to, by its name.
-    fronts : tuple of Front
-        Fronts that were found before, each compared with those of its task.
-
-    Raises
-    ------
-    ValueError
-        When one is out of range, or dask is needed and not installed.
-    """
+    """How thorough a study is."""
 
     terms: int = 6
     points: int = 50

@@ -24,23 +24,7 @@ from quietarm.studies.study.pieces import FLOOR, Key, StudySettings, pieces_of
 
 @dataclass(frozen=True, eq=False)
 class CaseStudy:
-    """What a study found for one task.
-
-    Attributes
-    ----------
-    case : Case
-        The task and the box.
-    comparison : Comparison
-        All fronts.
-    polishes : dict of str to Polish
-        What the gradient gained on the first front of a metaheuristic, by method.
-    floor : Floor or None
-        The least energy of any joint motion at rest on arrival; None where it was not found.
-    paper : tuple of PaperPoint
-        The paper's own points.
-    failures : tuple of str
-        What failed, one line for each.
-    """
+    """What a study found for one task."""
 
     case: Case
     comparison: Comparison
@@ -52,21 +36,7 @@ class CaseStudy:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A study of one task or several.
-
-    Attributes
-    ----------
-    settings : StudySettings
-        How thorough.
-    cases : tuple of CaseStudy
-        What was found, task by task.
-    seconds : float
-        How long it took.
-    done : int or None
-        How many pieces of work came to an end before it was stopped; None where all did.
-    stopped : str
-        Why it was stopped; empty where it was not.
-    """
+    """A study of one task or several."""
 
     settings: StudySettings
     cases: tuple[CaseStudy, ...]
@@ -85,32 +55,7 @@ def run_study(
     settings: StudySettings | None = None,
     begin: Callable[[str], None] = lambda name: None,
 ) -> Study:
-    """Run every method on every case and compare what they find.
-
-    Parameters
-    ----------
-    cases : sequence of Case
-        The tasks; the paper's six conditions by default.
-    settings : StudySettings, optional
-        How thorough.
-    begin : callable, optional
-        Called with the name of every piece of work when it begins; `amount_of_work` says how many
-        there are.
-
-    Returns
-    -------
-    Study
-        Fronts, comparison, floor and polish of every case. A method that fails on a case is left
-        out of it, with its reason. After Ctrl-C, or without its scheduler, what was found until
-        then.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        When it was interrupted before anything was found.
-    QuietarmError
-        When its scheduler went, or its workers could not be reached, before anything was found.
-    """
+    """Run every method on every case and compare what they find."""
     began = time.perf_counter()
     settings = StudySettings() if settings is None else settings
     for front in settings.fronts:

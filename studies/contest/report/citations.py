@@ -125,21 +125,7 @@ _PLACES = {
 
 
 def bibtex(methods: Iterable[str], *, statistics: bool) -> str:
-    """References to the methods, the software and the statistics of a contest.
-
-    Parameters
-    ----------
-    methods : iterable of str
-        Names of methods.
-    statistics : bool
-        Whether tests were done.
-
-    Returns
-    -------
-    str
-        A file for BibTeX. A method whose reference is not known here is named in a comment, with
-        where it comes from.
-    """
+    """References to the methods, the software and the statistics of a contest."""
     methods = list(methods)
     searches = dict.fromkeys(parts_of(method_in(method))[0] for method in methods if is_own(method))
     elsewhere = [method for method in methods if not is_own(method)]

@@ -39,22 +39,7 @@ def anytime_figure(arena: Arena, looks: dict[str, Look]) -> Figure:
 
 
 def draw_evaluations(arena: Arena, looks: dict[str, Look], ax: Axes | None = None) -> Axes:
-    """Draw the share of the exact hypervolume that is missing over evaluations.
-
-    Parameters
-    ----------
-    arena : Arena
-        The problem.
-    looks : dict of str to Look
-        By method.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes: a line is the median over the seeds, its band the quartiles.
-    """
+    """Draw the share of the exact hypervolume that is missing over evaluations."""
     ax = axes_or_new(ax)
     for field in arena.fields:
         _band(ax, field.evaluations, field.missing, looks[field.method], field.method)
@@ -128,22 +113,7 @@ def draw_surfaces(arena: Arena, looks: dict[str, Look], ax: Axes | None = None) 
 
 
 def draw_difference(arena: Arena, one: Outcome, other: Outcome, ax: Axes | None = None) -> Axes:
-    """Draw where more runs of one method than of another attain residual and energy.
-
-    Parameters
-    ----------
-    arena : Arena
-        The problem.
-    one, other : Outcome
-        Two methods on it.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes: blue where more runs of the first attain it, red where more of the second.
-    """
+    """Draw where more runs of one method than of another attain residual and energy."""
     ax, (residuals, energies) = axes_or_new(ax), _grid(arena)
     attained = [
         (_stairs(field, residuals)[:, :, None] <= energies).mean(axis=0) for field in (one, other)
@@ -199,20 +169,7 @@ def ranks_figure(found: Ranking, title: str) -> Figure:
 
 
 def draw_ranks(found: Ranking, ax: Axes | None = None) -> Axes:
-    """Draw mean ranks on a line; bars join methods that the tests do not tell apart.
-
-    Parameters
-    ----------
-    found : Ranking
-        The ranks.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; new axes by default.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes.
-    """
+    """Draw mean ranks on a line; bars join methods that the tests do not tell apart."""
     ax = axes_or_new(ax)
     ax.grid(False)
     count = len(found.methods)

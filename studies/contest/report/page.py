@@ -51,20 +51,7 @@ _RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell
 
 
 def contest_page(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> str:
-    """The contest as a page.
-
-    Parameters
-    ----------
-    arenas : sequence of Arena
-        The problems with their runs.
-    notes : sequence of str
-        What else is to be known, in sentences without a full stop.
-
-    Returns
-    -------
-    str
-        HTML with its style and pictures inside; it loads nothing and runs nothing.
-    """
+    """The contest as a page."""
     methods = methods_in(arenas)
     title = f"{counted(len(methods), 'method')} against the exact front"
     sections = [_section(arena, methods) for arena in arenas]

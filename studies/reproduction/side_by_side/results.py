@@ -40,26 +40,7 @@ CYCLOID, PAPER, IN_BOX, FREE, ROBUST, FLOOR = (
 
 @dataclass(frozen=True)
 class System:
-    """What one system makes of a move.
-
-    Attributes
-    ----------
-    name : str
-        What tables and pictures call it.
-    parameters : int or None
-        How many numbers it chooses; None where it is not a number of them that is chosen.
-    motion : Motion or None
-        Residual, energy and peaks by CVODES; None where its motion is not known.
-    wrong_residual : float or None
-        Residual [m] of the same joint motion when all natural frequencies of the plant are
-        `FREQUENCY_ERROR` lower or higher than assumed, the larger of the two.
-    seconds : float or None
-        Time to find it [s]; None where nothing is looked for, or the time is not known.
-    printed_energy : float or None
-        The energy that is printed, of a motion that is not known [J].
-    why : str
-        Why there is no motion.
-    """
+    """What one system makes of a move."""
 
     name: str
     parameters: int | None = None
@@ -77,22 +58,7 @@ class System:
 
 @dataclass(frozen=True)
 class Found:
-    """What was solved and searched for a move.
-
-    Attributes
-    ----------
-    in_box, free : Plan
-        The polynomial by gradient, in the case's box and without one.
-    robust : Plan or str
-        The polynomial without a box by gradient, for a plant whose frequencies may be
-        `FREQUENCY_ERROR` off; or why there is none.
-    others : mapping of str to Plan
-        Other profiles by gradient, by their names.
-    fronts : mapping of Method to sequence of Front
-        The polynomial in the box by a search, one front for each seed.
-    floor : Floor
-        The least energy of any joint motion.
-    """
+    """What was solved and searched for a move."""
 
     in_box: Plan
     free: Plan
@@ -103,20 +69,7 @@ class Found:
 
 
 def systems_of(case: Case, found: Found) -> tuple[System, ...]:
-    """Every system on a move, always in the same order.
-
-    Parameters
-    ----------
-    case : Case
-        The move and the box.
-    found : Found
-        What was solved and searched for it.
-
-    Returns
-    -------
-    tuple of System
-        What each makes of it.
-    """
+    """Every system on a move, always in the same order."""
     return (
         _of_plan(CYCLOID, evaluate_coefficients(case.task, []), looked_for=False),
         *(_shaped(case, shaper) for shaper in SHAPERS),
@@ -182,22 +135,7 @@ def _paper(case: Case) -> System:
 
 
 def searched(case: Case, method: Method, fronts: Sequence[Front]) -> System:
-    """What a search found.
-
-    Parameters
-    ----------
-    case : Case
-        The move.
-    method : Method
-        The search.
-    fronts : sequence of Front
-        One for each seed.
-
-    Returns
-    -------
-    System
-        The cheapest point within `residual_level`, of the seed whose energy is in the middle.
-    """
+    """What a search found."""
     level = residual_level(case, COMPARED_TERMS)
     still = [front for front in fronts if not math.isnan(energy_at(front, level))]
     if not still:

@@ -20,17 +20,7 @@ def plan_beside(floor: Floor) -> Plan | None:
 
 
 def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
-    """Print a floor: its energy, what is left, how it was found.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    floor : Floor
-        The floor.
-    plan : Plan or None
-        The plan to compare it with.
-    """
+    """Print a floor: its energy, what is left, how it was found."""
     motion, check = floor.motion, floor.verification
     kind = "smooth (jerk free)" if floor.smooth else "acceleration free"
     beside = "none within these limits" if floor.complete else "not looked for"

@@ -20,15 +20,7 @@ _ROUNDING = 1e-12
 
 
 def print_plan(console: Console, plan: Plan) -> None:
-    """Print a plan's coefficients, figures and verification.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    plan : Plan
-        The plan.
-    """
+    """Print a plan's coefficients, figures and verification."""
     motion = plan.motion
     rows = [
         *move_rows(plan.task, motion),

@@ -12,15 +12,7 @@ from rich.console import Console
 
 
 def print_fronts(console: Console, fronts: Sequence[Front]) -> None:
-    """Print the ends and the knee of every front, and the spread of those that are complete.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    fronts : sequence of Front
-        One for every seed.
-    """
+    """Print the ends and the knee of every front, and the spread of those that are complete."""
     for front in fronts:
         print_lines(console, *_front_lines(front))
     complete = [front for front in fronts if front.complete]

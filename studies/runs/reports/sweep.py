@@ -15,19 +15,7 @@ from rich.console import Console
 def print_sweep(
     console: Console, front: Front, asked_for: int, check: CrossCheck | None = None
 ) -> None:
-    """Print a front: how it was found, its ends and knee, energies, what could not be found.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-        Where to.
-    front : Front
-        The front, with a point at least.
-    asked_for : int
-        How many points were asked for.
-    check : CrossCheck, optional
-        Points by the other solver.
-    """
+    """Print a front: how it was found, its ends and knee, energies, what could not be found."""
     state = "" if front.complete else " (interrupted: what was found until then)"
     print_lines(
         console,
