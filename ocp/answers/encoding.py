@@ -24,7 +24,6 @@ from quietarm.ocp.answers.plants import (
     without_file,
     without_uncertainty,
 )
-from quietarm.ocp.base.printable import has_control_characters
 from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
 from quietarm.ocp.robustness.uncertain import UncertainPlant
 
@@ -95,7 +94,6 @@ def typed(document: Any, kind: type[T], name: str = "") -> T:
     ValueError
         When an entry is unknown, or not what it should be: in one line, where, its value and why.
     """
-    _refuse_control_characters(document, name)
     try:
         value = msgspec.convert(document, kind, dec_hook=_named_or_array)
     except msgspec.ValidationError as error:
@@ -177,24 +175,6 @@ def _refuse_other_entries(found: Any, wanted: Any, place: str = "") -> None:
     elif isinstance(wanted, list):
         for i, (entry, written) in enumerate(zip(found, wanted, strict=True)):
             _refuse_other_entries(entry, written, f"{place.removesuffix('.')}[{i}].")
-
-
-def _refuse_control_characters(document: Any, place: str = "") -> None:
-    """ValueError where a text in a document holds what would move a terminal's cursor."""
-    if isinstance(document, str):
-        if has_control_characters(document):
-            raise ValueError(
-                f"its entry {reprlib.repr(place)} has a control character in "
-                f"{reprlib.repr(document)}; take it out"
-            )
-    elif isinstance(document, dict):
-        for name, entry in document.items():
-            _refuse_control_characters(name, place)
-            _refuse_control_characters(entry, f"{place}.{name}" if place else name)
-    elif isinstance(document, list):
-        for i, entry in enumerate(document):
-            if isinstance(entry, str | dict | list):  # most are numbers
-                _refuse_control_characters(entry, f"{place}[{i}]")
 
 
 def _in_words(text: str, document: Any, name: str) -> KeyError | ValueError:

@@ -13,7 +13,6 @@ from matplotlib.figure import SubFigure
 from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from quietarm.models import Body
-from quietarm.ocp.base.printable import printable
 from quietarm.studies.animation.cast import Actor, Array
 from quietarm.studies.animation.clock import Clock
 from quietarm.studies.animation.formats import Picture
@@ -230,6 +229,5 @@ def _figures(actor: Actor) -> str:
 
 
 def _short(text: str, most: int) -> str:
-    """A line that fits: cut where it is longer, control characters spelled out."""
-    text = printable(text)
+    """A line that fits: cut where it is longer."""
     return text if len(text) <= most else f"{text[: most - 3]}..."

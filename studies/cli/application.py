@@ -13,8 +13,6 @@ from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.base.files import written
 from quietarm.ocp.base.interrupts import as_ctrl_c
 from quietarm.ocp.base.names import unknown
-from quietarm.ocp.base.printable import printable
-from quietarm.studies.cli.drawing_words import matplotlib_in_one_line
 from quietarm.studies.cli.refusals import in_our_words
 from quietarm.studies.cli.streams import patient_streams
 
@@ -98,7 +96,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if arguments is None:  # pictures go to files: no window, whatever the user's notebooks use
         os.environ["MPLBACKEND"] = "agg"
     try:
-        with patient_streams() as out, as_ctrl_c(), matplotlib_in_one_line():
+        with patient_streams() as out, as_ctrl_c():
             status = _run(arguments)
             out.flush()
             if out.trouble:
@@ -143,7 +141,7 @@ def _what_is_kept() -> str:
 
 
 def _complain(message: str, status: int) -> int:
-    line = printable(" ".join(message.split()))
+    line = " ".join(message.split())
     click.echo(f"quietarm: {line}", err=True)
     return status
 

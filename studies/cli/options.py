@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -92,8 +91,6 @@ def _is_file(text: str) -> Path:
 
 def _is_output(text: str) -> Path:
     if text == str(STDOUT):
-        if sys.stdout.closed:
-            raise ValueError("standard output is closed; give a file")
         return STDOUT
     return check_writable(_named(text))
 

@@ -1,4 +1,4 @@
-"""Standard output and error that may be closed, full or read only in part."""
+"""Standard output and error that may be full, or read only in part."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class Stream:
     work goes on, and its files are written.
     """
 
-    def __init__(self, stream: TextIO, closed: bool = False) -> None:
-        self._stream, self.closed = stream, closed
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
         self.failure: OSError | None = None
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # the name of a file may be any bytes
@@ -40,9 +40,6 @@ class Stream:
                 self._stream.flush()
             except OSError as error:
                 self._give_up(error)
-
-    def close(self) -> None:
-        """Stay open: a plant's file that closes it ends no output."""
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
@@ -65,52 +62,14 @@ class Stream:
 @contextmanager
 def patient_streams() -> Iterator[Stream]:
     """Let the block write to both streams even where they fail; yields the output's."""
-    closed = _open_what_is_closed()
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
     before = sys.stdout, sys.stderr
-    with _of_its_own(sys.stdout) as stdout:
-        out, err = Stream(stdout, 1 in closed), Stream(sys.stderr, 2 in closed)
-        sys.stdout, sys.stderr = out, err  # pyright: ignore[reportAttributeAccessIssue]
-        try:
-            yield out
-        finally:
-            out.flush()
-            err.flush()
-            sys.stdout, sys.stderr = before
-
-
-@contextmanager
-def _of_its_own(stdout: TextIO) -> Iterator[TextIO]:
-    """The process's output under a number of its own, and number 1 as another one of its errors.
-
-    What a plant's file, a library or a command that they start write to number 1 is no answer.
-    """
-    if stdout is not sys.__stdout__:
-        yield stdout
-        return
-    stdout.flush()
-    own = os.dup(1)
-    os.dup2(2, 1)
+    out, err = Stream(sys.stdout), Stream(sys.stderr)
+    sys.stdout, sys.stderr = out, err  # pyright: ignore[reportAttributeAccessIssue]
     try:
-        yield os.fdopen(own, "w", encoding=stdout.encoding, errors=stdout.errors, closefd=False)
+        yield out
     finally:
-        os.dup2(own, 1)
-        os.close(own)
-
-
-def _open_what_is_closed() -> list[int]:
-    """Open the streams that the shell closed; else a file that is opened later takes their number.
-
-    Returns the numbers of those.
-    """
-    closed = list[int]()
-    for number in (0, 1, 2):
-        try:
-            os.fstat(number)
-        except OSError:
-            closed.append(os.open(os.devnull, os.O_RDWR))  # takes the lowest number that is free
-    for name, number in (("stdout", 1), ("stderr", 2)):
-        if getattr(sys, name) is None:
-            setattr(sys, name, os.fdopen(number, "w", closefd=False))
-    return closed
+        out.flush()
+        err.flush()
+        sys.stdout, sys.stderr = before

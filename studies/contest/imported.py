@@ -14,7 +14,6 @@ from quietarm.ocp import Front, SolverFailedError
 from quietarm.ocp.answers.documents import read_bytes
 from quietarm.ocp.answers.provenance import Setting
 from quietarm.ocp.answers.saved import Saved
-from quietarm.ocp.base.printable import printable
 from quietarm.ocp.base.ranges import CountFromOne
 from quietarm.studies.contest.names import name_given
 from quietarm.studies.contest.problems import Yardstick
@@ -77,12 +76,12 @@ def _named(text: str) -> tuple[str, Path]:
         whole = path.resolve() if path.name in ("", "..") else path  # as . and /
         name = whole.stem if whole.suffix and not whole.is_dir() else whole.name
     elif not rest:
-        raise ValueError(f"nothing follows {printable(text)}; give a file or folder to --import")
+        raise ValueError(f"nothing follows {text}; give a file or folder to --import")
     else:
         path = Path(rest)
     if not path.exists():
-        raise ValueError(f"there is no file or folder {printable(str(path))}; give one to --import")
-    return name_given(printable(name)), path
+        raise ValueError(f"there is no file or folder {path!s}; give one to --import")
+    return name_given(name), path
 
 
 def _files(path: Path) -> list[Path]:
@@ -105,7 +104,7 @@ def imported_run(
             f"{path} has {columns} coefficients a motion, and {problem.name} takes {size}; give a "
             "file of that problem"
         )
-    settings: dict[str, Setting] = {"imported": printable(path.name), "bound": problem.bound}
+    settings: dict[str, Setting] = {"imported": path.name, "bound": problem.bound}
     try:
         front, claims = import_front(problem.task, problem.profile, found, method, settings)
     except (ValueError, SolverFailedError) as error:
@@ -113,7 +112,7 @@ def imported_run(
     return Imported(
         problem=problem.name,
         method=method,
-        file=printable(path.name),
+        file=path.name,
         digest=sha256(read_bytes(path)).hexdigest(),
         evaluations=evaluations,
         scale=yardstick.scale,

@@ -7,14 +7,13 @@ from math import degrees
 
 from quietarm.models import Plant
 from quietarm.ocp import PointToPoint, UncertainPlant
-from quietarm.ocp.base.printable import printable
 from quietarm.ocp.task.quantities import QUANTITIES
 from rich.console import Console
 
 
 def print_lines(console: Console, *lines: str) -> None:
     """Print lines as they are, however narrow the console."""
-    text = "\n".join(printable(line) for part in lines for line in part.split("\n"))
+    text = "\n".join(lines)
     console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.answers.documents import read_bytes
 from quietarm.ocp.base.files import MOST_BYTES
-from quietarm.ocp.base.printable import printable
 from quietarm.studies.display.words import counted
 
 Array = NDArray[np.float64]
@@ -95,7 +94,7 @@ def _of_text(content: bytes) -> Found:
             try:
                 row[k] = _number(cell, between)
             except ValueError:
-                shown = printable(repr(cell[:30]))
+                shown = repr(cell[:30])
                 raise FileFormatError(
                     f"line {i} has {shown} where a number should be; give a number there, and put "
                     "semicolons between numbers with decimal commas"
@@ -131,7 +130,7 @@ def _by_columns(names: Sequence[str] | None, table: Array) -> Found:
             which, unit = claim
             claims[:, which] = table[:, column] * unit
         else:
-            ignored.append(printable(name[:30]) or "a column without a name")
+            ignored.append(name[:30] or "a column without a name")
     order = sorted(numbered)
     if not order:
         raise FileFormatError(
@@ -196,7 +195,7 @@ def _by_variables(values: Mapping[str, Any]) -> Found:
         tables = [name for name, value in values.items() if np.ndim(value) == 2]
         tables = [name for name in tables if min(np.shape(values[name])) > 1]
         if len(tables) != 1:
-            listed = printable(", ".join(values)[:200]) or "none"
+            listed = ", ".join(values)[:200] or "none"
             raise FileFormatError(f"name the matrix of coefficients X (its variables: {listed})")
         matrices = tables
     coefficients = _matrix(values[matrices[0]], matrices[0])
@@ -213,23 +212,19 @@ def _by_variables(values: Mapping[str, Any]) -> Found:
         else:
             continue
         used.add(name)
-    ignored = tuple(printable(name[:30]) for name in values if name not in used)
+    ignored = tuple(name[:30] for name in values if name not in used)
     return Found(coefficients, claims, ignored)
 
 
 def _matrix(values: Any, name: str) -> Array:
     table = _numbers(values, name)
     if table.ndim != 2:
-        raise FileFormatError(
-            f"{printable(name[:30])} has shape {table.shape}; give (motions, coefficients)"
-        )
+        raise FileFormatError(f"{name[:30]} has shape {table.shape}; give (motions, coefficients)")
     return table
 
 
 def _numbers(values: Any, name: str) -> Array:
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
-        raise FileFormatError(
-            f"{printable(name[:30])} is no array of real numbers; save it as numbers"
-        )
+        raise FileFormatError(f"{name[:30]} is no array of real numbers; save it as numbers")
     return array.astype(float)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from quietarm.metaheuristics.objective.claims import check_figures, check_plan
 from quietarm.ocp import Front, Plan
-from quietarm.ocp.base.printable import printable
 
 
 def load_front(path: Path) -> Front:
@@ -28,7 +27,6 @@ def load_plans(paths: Sequence[Path]) -> dict[str, Plan]:
             raise ValueError(f"{path} is given twice; give it once")
     stems = [path.stem for path in paths]
     names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
-    names = [printable(name) for name in names]  # no picture or table takes bytes that are no text
     plans = {name: Plan.load(path) for name, path in zip(names, paths, strict=True)}
     for plan, path in zip(plans.values(), paths, strict=True):
         check_plan(plan, str(path))

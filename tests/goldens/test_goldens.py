@@ -29,13 +29,14 @@ def answer(line):
     """What a line prints and with which status it ends."""
     from quietarm.studies.cli import main
 
-    out, status = io.StringIO(), 0
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
+    out, err, status = io.StringIO(), io.StringIO(), 0
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
             main(shlex.split(line))
         except SystemExit as end:
             status = end.code or 0
-    text = "\n".join(one.rstrip() for one in out.getvalue().splitlines())
+    said = [one for one in err.getvalue().splitlines() if one.startswith("quietarm: ")]
+    text = "\n".join(one.rstrip() for one in [*out.getvalue().splitlines(), *said])
     return f"$ quietarm {line}\n{EFFORT.sub('...', text)}\nstatus {status}\n"
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.base.files import write_whole
-from quietarm.ocp.base.printable import printable
 from quietarm.ocp.floor.search import energy_floor
 from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.studies.comparison.measures import Comparison
@@ -51,7 +50,7 @@ def print_comparison(console: Console, comparison: Comparison) -> None:
     for table in tables(comparison).values():
         print_table(console, table)
     for line in (*how_to_read(comparison), *units(comparison)):
-        console.print(f"- {printable(line)}", highlight=False, style="dim")
+        console.print(f"- {line}", highlight=False, style="dim")
 
 
 def comparison_files(folder: Path, comparison: Comparison) -> list[File]:

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import Plan, Robustness, Sweep
 from quietarm.ocp.base.files import write_whole
-from quietarm.ocp.base.printable import printable
 from quietarm.ocp.robustness.measures import TOLERATED
 from quietarm.studies.display.saving import File, drawing, inside
 from quietarm.studies.display.tables import Cell, Column, Table, print_table
@@ -120,7 +119,7 @@ def print_robustness(console: Console, plans: Figured) -> None:
     """Print the table and how to read it."""
     print_table(console, robustness_table(plans))
     for line in how_to_read(plans):
-        console.print(f"- {printable(line)}", highlight=False, style="dim")
+        console.print(f"- {line}", highlight=False, style="dim")
 
 
 def robustness_files(folder: Path, plans: Figured) -> list[File]:

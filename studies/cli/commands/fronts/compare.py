@@ -45,7 +45,6 @@ def compare(
       quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.ocp import QuietarmError
-    from quietarm.ocp.base.printable import printable
     from quietarm.studies.comparison.measures import FILL, compare_fronts
     from quietarm.studies.display.saving import finish
     from quietarm.studies.runs.loading import load_front
@@ -60,8 +59,8 @@ def compare(
         loaded = [load_front(path) for path in fronts]
         named = None if reference is None else load_front(reference)
         comparison = compare_fronts(
-            loaded, [printable(str(front)) for front in fronts], reference=named,
-            reference_name=printable(str(reference)),
+            loaded, [str(front) for front in fronts], reference=named,
+            reference_name=str(reference),
             fill=0 if as_found else FILL,
         )  # fmt: skip
     if floor:

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.ocp.base.printable import printable
 from quietarm.studies.cli.arguments import task_of
 from quietarm.studies.cli.options import (
     INPUT,
@@ -77,9 +76,9 @@ def import_(
         motions = FAMILIES[profile].of_size(columns)
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from None
-    settings: dict[str, Any] = {"imported": printable(file.name)}
+    settings: dict[str, Any] = {"imported": file.name}
     if bound is not None:
         settings["bound"] = bound
-    name = printable(method or file.stem)
+    name = method or file.stem
     files = FrontFiles(output, csv_file, figure)
     run_import(file, task, motions, found, name, settings, files, quiet)

@@ -71,29 +71,6 @@ def test_a_window_system_that_matplotlib_does_not_know_spoils_no_picture(tmp_pat
     assert "matplotlib" in found  # the tests above look for the right name
 
 
-@pytest.mark.parametrize(
-    ("content", "said", "drawn"),
-    [
-        (b"foo.bar: 3\nfont.family: Nope\n", "matplotlib says: Bad key foo.bar in file "
-         "matplotlibrc, line 1 ('foo.bar: 3'); mend that line, or take it out\n"
-         "quietarm: matplotlib says: findfont: Font family 'Nope' not found", True),
-        (b"\xff\xfe", "matplotlib says: Cannot decode configuration file 'matplotlibrc' as utf-8\n"
-         "quietarm: m.png cannot be drawn: matplotlibrc is no text in UTF-8; save it so, or take "
-         "it away", False),
-    ],
-)  # fmt: skip
-def test_a_matplotlibrc_that_is_broken_is_told_in_a_line(tmp_path, content, said, drawn):
-    (tmp_path / "matplotlibrc").write_bytes(content)
-    line = f"evaluate {MOVE} --coefficients=0 --quiet --output p.json --figure m.png"
-    ran = subprocess.run(
-        [sys.executable, "-m", "quietarm", *line.split()],
-        cwd=tmp_path, capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
-    assert (ran.stderr, ran.returncode) == (f"quietarm: {said}\n", 0 if drawn else 2)
-    assert (tmp_path / "p.json").exists()
-    assert (tmp_path / "m.png").exists() == drawn
-
-
 def test_what_is_asked_for_is_loaded(tmp_path):
     """The tests above look for the right name: here it is."""
     ran = subprocess.run(

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from lines import COARSELY, MOVE
-from quietarm.ocp import Plan
 
 EVALUATE = f"evaluate {MOVE} --coefficients=0.003347,-0.1697 --quiet"  # the paper's Table 1
 FULL = Path("/dev/full")
@@ -93,13 +92,6 @@ def test_a_full_output_costs_no_file_and_is_said(folder):
     assert sorted(path.name for path in folder.iterdir()) == ["o.csv", "o.json"]
 
 
-@pytest.mark.parametrize("closed", [">&-", ">&- 2>&-", "<&- >&- 2>&-"])
-def test_closed_streams_end_up_in_no_file(folder, closed):
-    ran = shell(f"quietarm {EVALUATE} --output o.json {closed}")
-    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "", "")
-    assert Plan.load("o.json").coefficients == (0.003347, -0.1697)
-
-
 def test_one_output_that_cannot_be_written_takes_no_other_with_it(call, folder, monkeypatch):
     replace = os.replace
 
@@ -118,28 +110,6 @@ def test_one_output_that_cannot_be_written_takes_no_other_with_it(call, folder, 
 
 
 # - is standard output
-
-
-def test_what_a_plant_file_writes_by_other_means_is_no_answer(folder):
-    (folder / "loud.py").write_text(
-        "import os\n"
-        "from quietarm.models import SingleLinkManipulator\n"
-        "class Loud(SingleLinkManipulator):\n"
-        "    name = 'loud'\n"
-        "os.write(1, b'by its number\\n')\n"
-        "os.system('echo by a command')\n"
-    )
-    move = "--target 30deg --duration 0.8 --coefficients=0"
-    ran = shell(f"quietarm evaluate --plant-file loud.py {move} --output -")
-    assert ran.returncode == 0
-    assert json.loads(ran.stdout)["coefficients"] == [0]
-    assert ran.stderr.startswith("by its number\nby a command\n")
-
-
-def test_a_dash_needs_a_standard_output_that_is_open(folder):
-    ran = shell(f"quietarm {EVALUATE} --output - >&-")
-    words = "quietarm: --output: standard output is closed; give a file\n"
-    assert (ran.returncode, ran.stderr) == (2, words)
 
 
 def test_a_dash_is_standard_output_and_words_go_beside_it(folder):

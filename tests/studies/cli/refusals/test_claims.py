@@ -141,44 +141,6 @@ def test_a_file_larger_than_any_of_quietarm_is_refused(call, monkeypatch):
     assert "f.json is larger than 0.0001 MB, as no file of quietarm is; give another" in err
 
 
-@pytest.mark.parametrize("line", READS)
-@pytest.mark.parametrize(
-    ("where", "value"),
-    [
-        (["method"], "\x1b[2Jnsga2"),
-        (["format"], "\x1b[2J"),
-        (["settings", "bound"], "\x9b2J"),
-        (["method"], "\u202e2agsn"),  # turns what follows it around
-        (["settings", "\x1b[2J"], 1),
-        (["versions", "numpy"], "1\r2"),
-        (["failures"], [{"asked": {"residual_limit": 0.1}, "reason": "\x07"}]),
-        (["task", "plant", "name"], "\x1b]0;x\x07"),
-    ],
-)
-def test_control_characters_of_a_file_do_not_reach_the_terminal(call, line, where, value):
-    document = json.loads(Path("f.json").read_text())
-    inner = document
-    for key in where[:-1]:
-        inner = inner[key]
-    inner[where[-1]] = value
-    Path("f.json").write_text(json.dumps(document))
-    code, out, err = call(line)
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert err.rstrip("\n").isprintable()
-
-
-def test_control_characters_of_a_name_do_not_reach_the_terminal(call):
-    Path("f.json").rename("\x1b[31m.json")
-    code, out, err = call(["polish", "\x1b[31m.json", "--points", "2", "--output", "\x1b[2J.json"])
-    assert code == 0
-    assert out.splitlines()[-1] == r"wrote \x1b[2J.json"
-    code, out, err = call(["polish", "\x1b[32m.json"])
-    assert (code, err) == (
-        2,
-        "quietarm: \\x1b[32m.json cannot be read: no such file or directory; give another file\n",
-    )
-
-
 def test_verified_is_said_only_where_the_integrators_agree(call):
     def row(coefficients):
         code, out, _ = call(f"evaluate {MOVE} --coefficients={coefficients}")

@@ -186,11 +186,3 @@ def test_one_file_that_cannot_be_written_leaves_the_others(call, files):
     ]
     for name in FILES:
         assert (files / "compared" / name).is_file() == (name != "runs.csv")
-
-
-def test_a_front_whose_name_is_no_text_is_written(call, files, poor):
-    poor.save("x\udcff.json")
-    code, _, err = call(["compare", "good.json", "x\udcff.json", "--as-found", "--no-floor",
-                         "--quiet", "--output", "compared"])  # fmt: skip
-    assert (code, err) == (0, "")
-    assert "udcff" in (files / "compared" / "runs.csv").read_text()

@@ -91,14 +91,6 @@ def test_what_is_no_plan_is_refused(refused, folder):
         assert refused(f"animate {name} --output m.gif").strip().isprintable()
 
 
-def test_control_characters_of_a_name_are_spelled_out(call, folder):
-    (folder / "plan.json").rename("\x1b[31m$.json")
-    words = ["animate", "\x1b[31m$.json", "links.json", "--output", "\x1b[2J.gif", *SMALL.split()]
-    code, out, _ = call(words)
-    assert code == 0
-    assert out.endswith("wrote \\x1b[2J.gif\n")
-
-
 def test_ctrl_c_leaves_nothing_behind(call, folder, monkeypatch):
     drawn, draw = [], stage.Stage._set
 

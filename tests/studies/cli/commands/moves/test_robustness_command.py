@@ -290,10 +290,3 @@ def test_the_picture_has_a_panel_a_parameter_and_a_curve_a_plan(plans):
     marked = [line.get_xdata() for line in ax.lines if line.get_label().startswith("_")]
     ends = [[100 * end for end in one.sweeps[0].insensitivity] for one in found.values()]
     assert [list(entry) for entry in marked] == ends
-
-
-def test_a_plan_whose_name_is_no_text_is_drawn(call, folder, plans):
-    plans["ours"].save("x\udcff.json")
-    code, _, err = call("x\udcff.json --samples 1 --frequency 5% --quiet --output drawn")
-    assert (code, err) == (0, "")
-    assert {path.name for path in (folder / "drawn").iterdir()} == FILES
