@@ -15,7 +15,6 @@ from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
 from quietarm.ocp.base.checks import report_given
 from quietarm.ocp.base.files import check_writable
 from quietarm.ocp.base.interrupts import note_interrupts
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -101,7 +100,6 @@ def search(
     from quietarm.metaheuristics.runs.loop import Loop
 
     profile = CycloidPolynomial() if profile is None else profile
-    refuse_other_kinds(task, profile)
     report_given(report)
     bound = profile.default_bound if bound is None else bound
     method, chosen, asked = _chosen(algorithm, task, bound, population, generations, settings)

@@ -12,7 +12,6 @@ from quietarm.metaheuristics.objective.population import PopulationObjective, re
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
 from quietarm.ocp.answers.provenance import coefficient_bound
 from quietarm.ocp.base.names import unknown
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.simulation.rollout import default_steps
 from quietarm.ocp.task.quantities import QUANTITIES
 
@@ -65,7 +64,6 @@ class MoveFunction:
         threads: int = 1,
     ) -> None:
         profile = CycloidPolynomial() if profile is None else profile
-        refuse_other_kinds(task, profile)
         if isinstance(peaks, str):
             raise ValueError(f"peaks is {peaks!r}; give a list of quantities, as [{peaks!r}]")
         bound = profile.default_bound if bound is None else bound

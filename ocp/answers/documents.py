@@ -14,59 +14,23 @@ from typing import Any, TypeVar
 import msgspec
 from quietarm.ocp.answers.encoding import typed
 from quietarm.ocp.base.errors import FileFormatError
-from quietarm.ocp.base.files import read_whole, write_whole
+from quietarm.ocp.base.files import read_bytes, write_whole
 
 Document = dict[str, Any]
 T = TypeVar("T")
 
 
 def write_document(path: str | Path, name: str, version: int, content: Document) -> None:
-    """Write a document whole or not at all; ValueError when it cannot be written.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    name : str
-        What it holds, in a word: its format is called quietarm- and this.
-    version : int
-        Version of the format.
-    content : dict
-        The rest, in JSON's types.
-    """
+    """Write a document whole or not at all; ValueError when it cannot be written."""
     document = {"format": f"quietarm-{name}", "version": version, **content}
     write_whole(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
 
 
 def read_document(path: str | Path, name: str, version: int, kind: type[T]) -> T:
-    """Read a document of one kind.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    name : str
-        What it should hold.
-    version : int
-        Version of the format that can be read.
-    kind : type
-        What the document is to become.
-
-    Returns
-    -------
-    kind
-        The value.
-
-    Raises
-    ------
-    FileFormatError
-        When the file cannot be read, is not of this kind, not whole, or newer or too old.
-    """
+    """Read a document of one kind."""
     try:
         document = msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
-    except FileFormatError:
-        raise
-    except (ValueError, RecursionError) as error:
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise FileFormatError(
             f"{path} is not a {name}: it is not whole, valid JSON in UTF-8{_where(error)}; "
             f"write the {name} again, or save it so"
@@ -86,19 +50,8 @@ def _where(error: Exception) -> str:
     return f" at byte {at[1]}" if at else ""
 
 
-def read_bytes(path: str | Path) -> bytes:
-    """The content of a file; FileFormatError where it cannot be read, or is none to read."""
-    try:
-        return read_whole(path)
-    except ValueError as error:
-        raise FileFormatError(str(error)) from None
-
-
 def content_of(path: str | Path, document: Any, name: str, version: int) -> Document:
-    """What a document holds beside its format and version.
-
-    Arguments and errors as for `read_document`.
-    """
+    """What a document holds beside its format and version, which are checked."""
     content = dict(document) if isinstance(document, dict) else {}
     found_name, found = content.pop("format", None), content.pop("version", None)
     if found_name != f"quietarm-{name}":

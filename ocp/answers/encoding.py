@@ -11,49 +11,46 @@ import re
 import reprlib
 from collections.abc import Mapping
 from enum import Enum
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import msgspec
 import numpy as np
-from quietarm.models import Plant, known_plants
-from quietarm.ocp.answers.plants import (
-    PLANT_FILE,
-    UNCERTAIN,
-    Uncertainty,
-    file_entry,
-    without_file,
-    without_uncertainty,
-)
+from quietarm.models import Plant, file_of_plant, known_plants
 from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
 from quietarm.ocp.robustness.uncertain import UncertainPlant
 
 T = TypeVar("T")
 
+PLANT_FILE = "plant_file"
+"""The entry of a plant that tells of the file it was loaded from."""
+UNCERTAIN = "uncertain"
+"""The entry of a plant that tells how far it may be wrong."""
+_SHOWN = 12
+"""Digits of a digest that a message shows."""
+
+
+@dataclasses.dataclass(frozen=True)
+class _PlantFile:
+    path: str
+    sha256: str
+
+
+@dataclasses.dataclass(frozen=True)
+class _Uncertainty:
+    """The entry of an uncertain plant beside those of the assumed one; see `UncertainPlant`."""
+
+    ranges: Mapping[str, float]
+    samples: Annotated[tuple[tuple[float, ...], ...], msgspec.Meta(min_length=1)]
+
 
 def plain(value: Any) -> Any:
-    """A value in JSON's types, SI units and radians.
-
-    Parameters
-    ----------
-    value : Any
-        A dataclass, a container or a number. Of a plant or profile its name is written, too, and
-        the file that a plant was loaded from; of an uncertain plant the assumed one, and how far
-        it may be wrong.
-
-    Returns
-    -------
-    Any
-        Tables by the names of the attributes, lists, numbers and words.
-
-    Raises
-    ------
-    ValueError
-        When the class of a plant or profile could not be found by its name.
-    """
+    """A value in JSON's types, SI units and radians."""
     if isinstance(value, UncertainPlant):
         return {**plain(value.assumed), UNCERTAIN: _entries(value, "ranges", "samples")}
     if isinstance(value, Plant):
-        return {"name": _name_of(value), **file_entry(value), **_entries(value)}
+        file = file_of_plant(type(value))
+        recorded = {} if file is None else {PLANT_FILE: plain(_PlantFile(file.path, file.digest))}
+        return {"name": _name_of(value), **recorded, **_entries(value)}
     if isinstance(value, JointProfile):
         return {"name": _name_of(value), **_entries(value)}
     if dataclasses.is_dataclass(value):
@@ -70,30 +67,7 @@ def plain(value: Any) -> Any:
 
 
 def typed(document: Any, kind: type[T], name: str = "") -> T:
-    """The value of a document: the opposite of `plain`.
-
-    Parameters
-    ----------
-    document : Any
-        In JSON's types.
-    kind : type
-        What it should be, usually a dataclass.
-    name : str, optional
-        What to call it in a message, where it is an entry of something.
-
-    Returns
-    -------
-    kind
-        The value. `plain` of it is the document, but for entries that are not set (None): these
-        may be missing.
-
-    Raises
-    ------
-    KeyError
-        When an entry is missing.
-    ValueError
-        When an entry is unknown, or not what it should be: in one line, where, its value and why.
-    """
+    """The value of a document: the opposite of `plain`."""
     try:
         value = msgspec.convert(document, kind, dec_hook=_named_or_array)
     except msgspec.ValidationError as error:
@@ -121,22 +95,51 @@ def _name_of(value: Plant | JointProfile) -> str:
 def _named_or_array(kind: Any, entry: Any) -> Any:
     """What msgspec does not know: plants and profiles by their name, arrays."""
     if kind is Plant:
-        assumed, uncertain = without_uncertainty(entry)
-        plant = _named("plant", without_file(assumed), known_plants())
-        if uncertain is None:
-            return plant
-        return UncertainPlant(plant, **vars(typed(uncertain, Uncertainty, UNCERTAIN)))
+        return _plant(_table("plant", entry))
     if kind is JointProfile:
-        return _named("profile", entry, known_profiles())
+        return _named("profile", _table("profile", entry), known_profiles())
     try:
         return np.array(msgspec.convert(entry, list[float]), dtype=float)
     except msgspec.ValidationError:
         raise ValueError(f"{reprlib.repr(entry)} is no list of numbers") from None
 
 
-def _named(what: str, entry: Any, known: Mapping[str, type[Any]]) -> Any:
+def _table(what: str, entry: Any) -> dict[str, Any]:
     if not isinstance(entry, dict):
         raise ValueError(f"{what} is {reprlib.repr(entry)}; give a table with its name")
+    return dict(entry)
+
+
+def _plant(entry: dict[str, Any]) -> Plant:
+    """The plant of an entry, whose file is checked: nothing is run but what the user named."""
+    file, uncertain = entry.pop(PLANT_FILE, None), entry.pop(UNCERTAIN, None)
+    if file is not None:
+        _check_file(entry["name"], typed(file, _PlantFile, PLANT_FILE))
+    plant = _named("plant", entry, known_plants())
+    if uncertain is None:
+        return plant
+    return UncertainPlant(plant, **vars(typed(uncertain, _Uncertainty, UNCERTAIN)))
+
+
+def _check_file(name: str, file: _PlantFile) -> None:
+    """ValueError when the plant of that name here is of another file, or the file has changed."""
+    plant = known_plants().get(name)
+    mine = None if plant is None else file_of_plant(plant)
+    if mine is None:
+        here = "is not known here" if plant is None else "is not the one that is known here"
+        raise ValueError(
+            f"its plant {name!r} {here}; give its file {file.path!r} again, by --plant-file or "
+            "load_plant_file"
+        )
+    if mine.digest != file.sha256:
+        raise ValueError(
+            f"its plant {name!r} was in {file.path!r} with SHA-256 {file.sha256[:_SHOWN]!r}, and "
+            f"{mine.path!r} has {mine.digest[:_SHOWN]!r}: the equations may have changed; give the "
+            "file as it was, or compute anew"
+        )
+
+
+def _named(what: str, entry: dict[str, Any], known: Mapping[str, type[Any]]) -> Any:
     name = entry["name"]
     if not isinstance(name, str) or name not in known:
         raise ValueError(
@@ -183,7 +186,7 @@ def _in_words(text: str, document: Any, name: str) -> KeyError | ValueError:
     place = "".join(part.rstrip("`") for part in reversed(places)).lstrip(".")
     missing = re.fullmatch(r"Object missing required field `(.*)`", said)
     if missing:
-        return KeyError(".".join(filter(None, [place, missing[1]])))
+        return KeyError(".".join(filter(None, [name, place, missing[1]])))
     expected = re.fullmatch(r"Expected `([^`]*)`(.*?)(, got .*)?", said)
     if expected:
         kinds = " or ".join(_KINDS.get(kind, kind) for kind in expected[1].split(" | "))

@@ -11,9 +11,8 @@ from typing import Generic, Literal, TypeVar
 import casadi as ca
 import numpy as np
 from quietarm.models import __version__
-from quietarm.ocp.base.checks import finite, of_kind, positive, whole
+from quietarm.ocp.base.checks import finite, positive, whole
 from quietarm.ocp.base.ranges import CountFromOne, NotNegative
-from quietarm.ocp.base.readonly import ReadOnlyDict
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.rollout import MOST_STEPS
 
@@ -74,29 +73,12 @@ class SolveSettings:
             object.__setattr__(self, "guess", tuple(finite("guess", a) for a in self.guess))
 
 
-def settings_given(settings: object) -> ReadOnlyDict:
-    """Settings by name, as an answer holds them.
-
-    Parameters
-    ----------
-    settings : object
-        What was given.
-
-    Returns
-    -------
-    ReadOnlyDict
-        The settings.
-
-    Raises
-    ------
-    ValueError
-        When they are no table, or a number among them is not finite, which no file can hold.
-    """
-    table = of_kind("settings", settings, Mapping, "a table of values by name, as {'bound': 0.2}")
-    for name, value in table.items():
+def settings_given(settings: Mapping[str, Setting]) -> dict[str, Setting]:
+    """Settings by name, as an answer holds them; ValueError where no file could hold one."""
+    for name, value in settings.items():
         if isinstance(value, float):
             finite(f"setting {name}", value)
-    return ReadOnlyDict(table)
+    return dict(settings)
 
 
 def number_of_starts(value: object) -> int:
@@ -180,20 +162,15 @@ class Provenance(Generic[S]):
         How long it took; not compared.
     stopped : str or None
         After what Ctrl-C ended the work early, in words; None where it ran to its end.
-
-    Raises
-    ------
-    ValueError
-        When the settings of the search are no table, or a number among them is not finite.
     """
 
     method: str
     settings: S
-    search: Mapping[str, Setting] = field(default_factory=dict)
-    versions: Mapping[str, str] = field(default_factory=versions)
+    search: Mapping[str, Setting] = field(default_factory=dict, hash=False)
+    versions: Mapping[str, str] = field(default_factory=versions, hash=False)
     seconds: NotNegative = field(default=0.0, compare=False)
     stopped: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "search", settings_given(self.search))
-        object.__setattr__(self, "versions", ReadOnlyDict(self.versions))
+        object.__setattr__(self, "versions", dict(self.versions))

@@ -15,29 +15,7 @@ T = TypeVar("T")
 
 
 def of_kind(name: str, value: object, kind: type[T], remedy: str) -> T:
-    """A value of a class.
-
-    Parameters
-    ----------
-    name : str
-        What the value is, for the message.
-    value : object
-        What was given.
-    kind : type
-        Its class.
-    remedy : str
-        What to give, for the message.
-
-    Returns
-    -------
-    kind
-        The value.
-
-    Raises
-    ------
-    ValueError
-        When it is of another class, or the class itself.
-    """
+    """A value of a class."""
     if not isinstance(value, kind):
         raise ValueError(f"{name} is {reprlib.repr(value)}; give {remedy}")
     return value
@@ -51,27 +29,7 @@ def report_given(report: T) -> T:
 
 
 def listed(name: str, values: Any, remedy: str) -> list[Any]:
-    """Several values as a list.
-
-    Parameters
-    ----------
-    name : str
-        What they are, for the message.
-    values : object
-        What was given: anything that gives one value after another, but neither text nor a table.
-    remedy : str
-        What to give, for the message.
-
-    Returns
-    -------
-    list
-        The values.
-
-    Raises
-    ------
-    ValueError
-        When it is a single value, text or a table.
-    """
+    """Several values as a list."""
     try:
         if isinstance(values, str | bytes | Mapping):
             raise TypeError
@@ -82,27 +40,7 @@ def listed(name: str, values: Any, remedy: str) -> list[Any]:
 
 
 def real_array(name: str, values: Any, remedy: str) -> NDArray[np.float64]:
-    """Numbers as an array of any shape.
-
-    Parameters
-    ----------
-    name : str
-        What they are, for the message.
-    values : object
-        What was given.
-    remedy : str
-        What to give, for the message.
-
-    Returns
-    -------
-    ndarray
-        The numbers.
-
-    Raises
-    ------
-    ValueError
-        When they are no real numbers, or in rows of different lengths.
-    """
+    """Numbers as an array of any shape."""
     try:
         if values is None or np.iscomplexobj(values):
             raise TypeError  # NumPy takes None for nan, and drops an imaginary part
@@ -112,43 +50,18 @@ def real_array(name: str, values: Any, remedy: str) -> NDArray[np.float64]:
 
 
 def finite(name: str, value: object, unit: str = "") -> float:
-    """A finite number as a float.
-
-    Parameters
-    ----------
-    name : str
-        What the number is, for the message.
-    value : object
-        What was given; numpy's numbers count, booleans and text do not.
-    unit : str
-        Its unit, for the message.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    ValueError
-        When it is no number, or not finite.
-    """
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value.item()
+    """A finite number as a float: numpy's numbers count, booleans and text do not."""
     wanted = f"number in {unit}" if unit else "number"
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"{name} is {value!r}; give a {wanted}")
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
+    number = float(value)
     if not math.isfinite(number):
         raise ValueError(f"{name} is {value}; give a finite {wanted}")
     return number
 
 
 def positive(name: str, value: object, unit: str = "") -> float:
-    """A positive finite number as a float; arguments and errors as for `finite`."""
+    """A positive finite number as a float."""
     number = finite(name, value, unit)
     if number <= 0:
         raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
@@ -156,7 +69,7 @@ def positive(name: str, value: object, unit: str = "") -> float:
 
 
 def not_negative(name: str, value: object, unit: str = "") -> float:
-    """A finite number of 0 or more as a float; arguments and errors as for `finite`."""
+    """A finite number of 0 or more as a float."""
     number = finite(name, value, unit)
     if number < 0:
         raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give 0 or more")
@@ -164,31 +77,7 @@ def not_negative(name: str, value: object, unit: str = "") -> float:
 
 
 def whole(name: str, value: object, least: int, most: int | None = None, because: str = "") -> int:
-    """A whole number as an int.
-
-    Parameters
-    ----------
-    name : str
-        What the number is, for the message.
-    value : object
-        What was given; numpy's numbers count, booleans and text do not.
-    least : int
-        The least that it may be.
-    most : int, optional
-        The most that it may be.
-    because : str
-        Why no more, for the message.
-
-    Returns
-    -------
-    int
-        The number.
-
-    Raises
-    ------
-    ValueError
-        When it is no whole number, or out of range.
-    """
+    """A whole number as an int."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
     number = int(value)

@@ -18,7 +18,6 @@ from quietarm.ocp.plan.feasibility import rescued, true_peaks, unmet
 from quietarm.ocp.plan.solver import plan_move
 from quietarm.ocp.plan.verification import refuse_passed, tightened
 from quietarm.ocp.profiles.joint_profile import JointPath
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.residual import residual_samples
@@ -93,7 +92,6 @@ def energy_floor(
     KeyboardInterrupt
         After Ctrl-C before a start was solved.
     """
-    refuse_other_kinds(task)
     settings = FloorSettings(smooth, starts, seed, tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)

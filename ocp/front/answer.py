@@ -16,12 +16,10 @@ from quietarm.ocp.answers.saved import Saved
 from quietarm.ocp.base.checks import not_negative, of_kind
 from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.base.ranges import Count, NotNegative, Positive
-from quietarm.ocp.base.readonly import ReadOnlyDict
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.front.evaluation import evaluated, table_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.simulation.rollout import rollout
 from quietarm.ocp.task.point_to_point import PointToPoint
@@ -86,7 +84,7 @@ class Front(Saved):
     profile: JointProfile
     points: tuple[FrontPoint, ...]
     method: str
-    settings: Mapping[str, Setting]
+    settings: Mapping[str, Setting] = field(hash=False)
     seed: Count | None
     reference: tuple[Positive, Positive]
     evaluations: Count = 0
@@ -97,16 +95,15 @@ class Front(Saved):
     gaps: tuple[tuple[NotNegative, NotNegative], ...] = ()
     history: tuple[Generation, ...] = ()
     complete: bool = True
-    versions: Mapping[str, str] = field(default_factory=versions)
+    versions: Mapping[str, str] = field(default_factory=versions, hash=False)
     seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
-        refuse_other_kinds(self.task, self.profile)
         self._check_entries("task", "profile", "points")
         if not self.method.strip():
             raise ValueError(f"method is {self.method!r}; give the name of what found the points")
         object.__setattr__(self, "settings", settings_given(self.settings))
-        object.__setattr__(self, "versions", ReadOnlyDict(self.versions))
+        object.__setattr__(self, "versions", dict(self.versions))
         object.__setattr__(self, "points", tuple(self.points))
         for i, point in enumerate(self.points, start=1):
             if not isinstance(point, FrontPoint):
@@ -206,7 +203,6 @@ class Front(Saved):
             When the array is no table of finite numbers, or does not fit the profile or the bound.
         """
         began = time.perf_counter()
-        refuse_other_kinds(task)
         settings = settings_given({} if settings is None else settings)
         table = table_of(coefficients)
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile

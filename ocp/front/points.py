@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from numbers import Real
 
 import numpy as np
 from quietarm.ocp.base.checks import listed, of_kind
 from quietarm.ocp.base.ranges import Count, NotNegative, Share
-from quietarm.ocp.base.readonly import ReadOnlyDict
 
 LEVELS = (1e-4, 1e-3, 5e-3)
 """Residuals [m] at which the energies of fronts are compared; those that are compared have a point
@@ -60,11 +59,11 @@ class FailedPoint:
         Why there is none.
     """
 
-    asked: Mapping[str, float]
+    asked: Mapping[str, float] = field(hash=False)
     reason: str
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "asked", ReadOnlyDict(self.asked))
+        object.__setattr__(self, "asked", dict(self.asked))
 
 
 @dataclass(frozen=True)

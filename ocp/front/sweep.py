@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.plan.starts import first_steps, start_coefficients
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
 from quietarm.ocp.program.solving import Row, solve
@@ -65,7 +64,6 @@ class Sweep:
     began: float = field(default_factory=time.perf_counter)
 
     def __post_init__(self) -> None:
-        refuse_other_kinds(self.task, self.profile)
         if self.profile.size == 0:
             raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
         self.steps = first_steps(self.task, self.profile, self.settings)

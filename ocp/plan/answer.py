@@ -20,7 +20,6 @@ from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.base.status import SolveStatus
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.robustness.worst import Worst, worst_of
 from quietarm.ocp.simulation.cvodes import Trajectory
@@ -172,7 +171,6 @@ def evaluate_coefficients(
     began, settings = time.perf_counter(), {} if settings is None else settings
     if profile is None:
         profile = CycloidPolynomial.of_size(numbers_of(coefficients).size)
-    refuse_other_kinds(task, profile)
     checked = profile.checked(coefficients)
     motion = resimulate(task, profile, checked)
     fixed = rollout(task, profile, checked)

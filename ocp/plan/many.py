@@ -16,7 +16,6 @@ from quietarm.ocp.plan.finer import EVERY, SAME, finer_values
 from quietarm.ocp.plan.starts import first_steps, start_coefficients
 from quietarm.ocp.plan.verification import OF_A_PLAN, verified
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.batch import Values
 from quietarm.ocp.program.program import Program, programs_of
@@ -283,7 +282,6 @@ def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
     if not tasks:
         raise ValueError("no moves are given; give one task or more")
     for i, task in enumerate(tasks, start=1):
-        refuse_other_kinds(task, profile)
         if isinstance(task.plant, UncertainPlant):
             raise ValueError(f"the plant of move {i} is uncertain; plan such moves by plan_move")
         if task.plant != tasks[0].plant or set(task.limits) != set(tasks[0].limits):

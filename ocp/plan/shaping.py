@@ -6,7 +6,6 @@ from typing import Literal
 
 import numpy as np
 from quietarm.ocp.base.threads import one_at_a_time
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 from quietarm.ocp.robustness.uncertain import on_assumed
@@ -45,7 +44,6 @@ def shaped_cycloid(
         When the task's duration is too short for the shaper, an argument is not known, or the
         plant does not vibrate.
     """
-    refuse_other_kinds(task)
     if at not in ("target", "average"):
         raise ValueError(f"at is {at!r}; give 'target' or 'average'")
     task = on_assumed(task)

@@ -18,7 +18,6 @@ from quietarm.ocp.plan.robust import limit_of, robust_plan
 from quietarm.ocp.plan.starts import first_steps, from_starts, start_coefficients
 from quietarm.ocp.plan.verification import HURRIED, verified
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, Ask
@@ -91,7 +90,6 @@ def plan_move(
         After Ctrl-C before a start was solved.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    refuse_other_kinds(task, profile)
     if guess is not None:
         guess = profile.checked(guess)
     least = 0.0 if residual_limit is None else residual_limit

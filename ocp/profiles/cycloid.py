@@ -20,16 +20,6 @@ class Cycloid(JointProfile):
 
     Whatever the coefficients, U is 0 at the start
     and 1 on arrival, so the joint is at its ends there, with speed and acceleration zero, eq (5).
-
-    Parameters
-    ----------
-    terms : int
-        Size of the family, `least_terms` to `most_terms`.
-
-    Raises
-    ------
-    ValueError
-        When `terms` is not a whole number in that range.
     """
 
     least_terms: ClassVar[int] = 1
@@ -67,20 +57,7 @@ class Cycloid(JointProfile):
     def input(
         self, coefficients: Sequence[Expression], fraction: Expression
     ) -> tuple[Expression, Expression, Expression]:
-        """U and its first two derivatives by the fraction.
-
-        Parameters
-        ----------
-        coefficients : sequence of Expression
-            `size` coefficients.
-        fraction : Expression
-            t / duration, between 0 and 1.
-
-        Returns
-        -------
-        tuple of Expression
-            U, 0 and 1 at the ends; dU/d(fraction), d2U/d(fraction)2.
-        """
+        """U, 0 and 1 at the ends, and its first two derivatives by the fraction."""
 
     def derivatives(
         self,
@@ -91,29 +68,18 @@ class Cycloid(JointProfile):
         duration: Expression,
     ) -> tuple[Expression, ...]:
         """Theta by eq (1), theta' by eq (2), theta'' by eq (3) mended."""
-        inputs = self.inner(coefficients, fraction, start, target, duration)
-        return self.outer(inputs, start, target, duration)[:3]
+        return self.outer(self.input(coefficients, fraction), start, target, duration)[:3]
 
     def inner(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
+        self, coefficients: Sequence[Expression], fraction: Expression, *move: Expression
     ) -> Sequence[Expression]:
         """U and its derivatives by the fraction, which do not depend on the move."""
-        del start, target, duration
+        del move
         return self.input(coefficients, fraction)
 
-    def outer(
-        self,
-        inner: Sequence[Expression],
-        start: Expression,
-        target: Expression,
-        duration: Expression,
-    ) -> JointMotion:
+    def outer(self, inner: Sequence[Expression], *move: Expression) -> JointMotion:
         """The cycloid of U: eqs (1), (2) and (3), the latter mended."""
+        start, target, duration = move
         U, dU, ddU = inner[0], inner[1] / duration, inner[2] / duration**2
         sine, cosine = ca.sin(math.pi * U), ca.cos(math.pi * U)
         span, pi = target - start, math.pi
@@ -127,20 +93,7 @@ class Cycloid(JointProfile):
 def with_bump(
     fraction: Expression, p: Expression, dp: Expression, ddp: Expression
 ) -> tuple[Expression, Expression, Expression]:
-    """U = t/TE + (1 - T^2) p, whose bump holds the ends, and its derivatives by the fraction.
-
-    Parameters
-    ----------
-    fraction : Expression
-        t / TE.
-    p, dp, ddp : Expression
-        What shapes the input, as eq (6) has its polynomial, and its derivatives by T.
-
-    Returns
-    -------
-    tuple of Expression
-        U, dU/d(fraction), d2U/d(fraction)2.
-    """
+    """U = t/TE + (1 - T^2) p, whose bump holds the ends, and its derivatives by the fraction."""
     T = 2 * fraction - 1  # eq (7)
     bump = 1 - T * T
     return (

@@ -11,20 +11,7 @@ from quietarm.models import Expression, JointMotion
 
 
 def joint_after(derivatives: Sequence[Expression], t: Expression) -> JointMotion:
-    """The joint a time `t` [s] after these values, by a constant last derivative.
-
-    Parameters
-    ----------
-    derivatives : sequence of Expression
-        Angle [rad], speed, acceleration and, where the acceleration is not constant, jerk.
-    t : Expression
-        The time [s].
-
-    Returns
-    -------
-    JointMotion
-        The joint.
-    """
+    """The joint a time `t` [s] after these values, by a constant last derivative."""
     angle, speed, acceleration, *rest = derivatives
     jerk = rest[0] if rest else 0.0
     return JointMotion(

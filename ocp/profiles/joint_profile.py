@@ -6,14 +6,12 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from numbers import Integral
 from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
-from quietarm.ocp.base.checks import real_array
 
 UNBOUNDED_SPREAD = 0.2
 """Random starts lie within this of the plain cycloid where the coefficients have no bound."""
@@ -124,62 +122,40 @@ class JointProfile(ABC):
         """
 
     def inner(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
+        self, coefficients: Sequence[Expression], fraction: Expression, *move: Expression
     ) -> Sequence[Expression]:
         """The values that the coefficients enter; `outer` makes the joint's motion of these three.
 
         A profile whose coefficients enter linearly somewhere on the way to the joint says so by
         these two methods; the gradient is then several times cheaper. By default it is the motion
-        itself. Arguments as in `derivatives`.
+        itself. The move is start, target and duration, as in `derivatives`.
         """
-        return self.derivatives(coefficients, fraction, start, target, duration)[:3]
+        return self.derivatives(coefficients, fraction, *move)[:3]
 
-    def outer(
-        self,
-        inner: Sequence[Expression],
-        start: Expression,
-        target: Expression,
-        duration: Expression,
-    ) -> JointMotion:
+    def outer(self, inner: Sequence[Expression], *move: Expression) -> JointMotion:
         """Angle, speed and acceleration of the joint from the values of `inner`."""
-        del start, target, duration
+        del move
         return JointMotion(*inner)
 
     def motion(
         self,
         coefficients: Sequence[Expression],
         fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
+        *move: Expression,
         jerk: bool = False,
     ) -> JointMotion:
-        """Angle, speed and acceleration of the joint, and its jerk where it is asked for.
-
-        Other arguments as in `derivatives`.
-        """
-        arguments = coefficients, fraction, start, target, duration
+        """Angle, speed and acceleration of the joint, and its jerk where it is asked for."""
         if not jerk:
-            angle, speed, acceleration = self.derivatives(*arguments)[:3]
+            angle, speed, acceleration = self.derivatives(coefficients, fraction, *move)[:3]
             return JointMotion(angle, speed, acceleration)
-        values, rates = _with_rates(self.derivatives, arguments, slice(2, 3))
+        values, rates = _with_rates(self.derivatives, coefficients, fraction, move, slice(2, 3))
         return JointMotion(*values[:3], *rates)
 
     def inner_with_rates(
-        self,
-        coefficients: Sequence[Expression],
-        fraction: Expression,
-        start: Expression,
-        target: Expression,
-        duration: Expression,
+        self, coefficients: Sequence[Expression], fraction: Expression, *move: Expression
     ) -> Sequence[Expression]:
-        """The values of `inner`, then their time derivatives; arguments as in `derivatives`."""
-        values, rates = _with_rates(self.inner, (coefficients, fraction, start, target, duration))
+        """The values of `inner`, then their time derivatives."""
+        values, rates = _with_rates(self.inner, coefficients, fraction, move)
         return *values, *rates
 
     def path(
@@ -231,12 +207,9 @@ class JointProfile(ABC):
         return tuple(float(value) for value in values)
 
 
-def numbers_of(coefficients: object) -> NDArray[np.float64]:
-    """Coefficients as an array of one axis; ValueError where they are no numbers in a row."""
-    values = np.atleast_1d(real_array("coefficients", coefficients, "a list of numbers"))
-    if values.ndim != 1:
-        raise ValueError(f"coefficients have shape {values.shape}; give one row of numbers")
-    return values
+def numbers_of(coefficients: ArrayLike) -> NDArray[np.float64]:
+    """Coefficients as an array of one axis."""
+    return np.atleast_1d(np.asarray(coefficients, dtype=float))
 
 
 def _rounded_up(value: float, digits: int = 4) -> float:
@@ -247,14 +220,15 @@ def _rounded_up(value: float, digits: int = 4) -> float:
 
 def _with_rates(
     of: Callable[..., Sequence[Expression]],
-    arguments: tuple[Sequence[Expression], Expression, Expression, Expression, Expression],
+    coefficients: Sequence[Expression],
+    fraction: Expression,
+    move: Sequence[Expression],
     rates_of: slice = slice(None),
 ) -> tuple[list[Expression], list[Expression]]:
     """What a method of a profile gives, and time derivatives of some of it by casadi.
 
     casadi differentiates by symbols only: the fraction is a symbol first, replaced afterwards.
     """
-    coefficients, fraction, *move = arguments
     kinds = {type(one) for one in (*coefficients, fraction, *move)}
     kind: Any = ca.SX if ca.SX in kinds else ca.MX
     place = fraction if type(fraction) is kind else kind(ca.DM(fraction))
@@ -317,7 +291,7 @@ class JointPath:
         ValueError
             When `order` is not 0, 1, 2 or 3, or a time is not finite.
         """
-        if isinstance(order, bool) or not isinstance(order, Integral) or not 0 <= order <= 3:
+        if order not in range(4):
             raise ValueError(f"derivative order is {order!r}; give 0, 1, 2 or 3")
         t = np.asarray(time, dtype=float)
         if not np.all(np.isfinite(t)):

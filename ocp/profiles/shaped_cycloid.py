@@ -9,7 +9,6 @@ from functools import lru_cache
 from typing import ClassVar
 
 import casadi as ca
-import numpy as np
 from quietarm.models import Expression
 from quietarm.ocp.base.checks import finite, positive
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -51,10 +50,10 @@ class ShapedCycloid(JointProfile):
     damping_ratios: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        if self.shaper not in list(SHAPERS):
+        if self.shaper not in SHAPERS:
             raise ValueError(f"shaper is {self.shaper!r}; give {', '.join(SHAPERS)}")
-        frequencies = tuple(positive("frequency", w, "rad/s") for w in _listed(self.frequencies))
-        damping = tuple(finite("damping ratio", zeta) for zeta in _listed(self.damping_ratios))
+        frequencies = tuple(positive("frequency", w, "rad/s") for w in self.frequencies)
+        damping = tuple(finite("damping ratio", zeta) for zeta in self.damping_ratios)
         if not frequencies or len(frequencies) != len(damping):
             raise ValueError(
                 f"got {len(frequencies)} frequencies and {len(damping)} damping ratios; give one "
@@ -135,10 +134,3 @@ class ShapedCycloid(JointProfile):
 @lru_cache(maxsize=64)
 def _impulses(shaper: str, frequencies: Sequence[float], damping: Sequence[float]) -> Impulses:
     return convolved([SHAPERS[shaper](*mode) for mode in zip(frequencies, damping, strict=True)])
-
-
-def _listed(values: object) -> list[object]:
-    """The entries of a sequence; ValueError where it is none."""
-    if isinstance(values, list | tuple | np.ndarray):
-        return list(values)
-    raise ValueError(f"got {values!r} for the modes; give a list of numbers, one for each")

@@ -34,36 +34,17 @@ class Impulses(NamedTuple):
 
 
 def zv(frequency: float, damping_ratio: float) -> Impulses:
-    """Zero vibration: two impulses, half a damped period apart.
-
-    Parameters
-    ----------
-    frequency : float
-        Undamped angular frequency of the mode [rad/s].
-    damping_ratio : float
-        Its damping ratio, between -1 and 1.
-
-    Returns
-    -------
-    Impulses
-        The shaper.
-    """
+    """Zero vibration: two impulses, half a damped period apart; the frequency in rad/s."""
     return _half_periods_apart([1.0, 1.0], frequency, damping_ratio)
 
 
 def zvd(frequency: float, damping_ratio: float) -> Impulses:
-    """Zero vibration and derivative by the frequency: three impulses; arguments as for `zv`."""
+    """Zero vibration and derivative by the frequency: three impulses."""
     return _half_periods_apart([1.0, 2.0, 1.0], frequency, damping_ratio)
 
 
 def ei(frequency: float, damping_ratio: float) -> Impulses:
-    """Extra insensitive: `TOLERATED` of the vibration is left; arguments as for `zv`.
-
-    Raises
-    ------
-    ValueError
-        When the damping ratio is above `MOST_DAMPING_OF_EI`: the middle impulse would be negative.
-    """
+    """Extra insensitive: `TOLERATED` of the vibration is left."""
     if damping_ratio > MOST_DAMPING_OF_EI:
         raise ValueError(
             f"damping ratio is {damping_ratio:g}, for which the ei shaper would have a negative "
@@ -80,18 +61,7 @@ SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {"zv": zv, "zvd": zv
 
 
 def convolved(shapers: Sequence[Impulses]) -> Impulses:
-    """Several shapers one after another as a single one, as for several modes.
-
-    Parameters
-    ----------
-    shapers : sequence of Impulses
-        The shapers.
-
-    Returns
-    -------
-    Impulses
-        As many impulses as the product of theirs.
-    """
+    """Several shapers one after another as a single one, as for several modes."""
     impulses = [(0.0, 1.0)]
     for shaper in shapers:
         impulses = [

@@ -71,22 +71,7 @@ class CycloidSpline(Cycloid):
 
 
 def b_splines(knots: Sequence[float], degree: int, at: Expression) -> list[Expression]:
-    """Every B-spline of a degree on clamped knots, by de Boor's recursion.
-
-    Parameters
-    ----------
-    knots : sequence of float
-        Rising knots, the first and the last `degree` + 1 times.
-    degree : int
-        Degree of the pieces.
-    at : Expression
-        Between the first knot and the last.
-
-    Returns
-    -------
-    list of Expression
-        ``len(knots) - degree - 1`` values, whose sum is 1.
-    """
+    """Every B-spline of a degree on clamped knots, by de Boor's recursion."""
     last = len(knots) - degree - 2
     row: dict[int, Expression] = {}
     for i in range(degree, last + 1):  # degree 0: in which piece it is, the ends included

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp.base.checks import not_negative, report_given, whole
-from quietarm.ocp.base.readonly import ReadOnlyDict
+from quietarm.ocp.base.checks import whole
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.robustness.population import ErrorPopulation, Figures
 from quietarm.ocp.robustness.uncertain import on_assumed
@@ -97,7 +95,7 @@ class Robustness:
     seed: int
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "ranges", ReadOnlyDict(self.ranges))
+        object.__setattr__(self, "ranges", dict(self.ranges))
         self.errors.setflags(write=False)
 
     @property
@@ -119,18 +117,8 @@ class Robustness:
         -------
         float
             The value that this share of the samples stays within, in SI units.
-
-        Raises
-        ------
-        ValueError
-            When there is no such figure, or the percentage is not within 0 to 100.
         """
-        values = dict(vars(self.samples))
-        if figure not in values:
-            raise ValueError(f"no figure is called {figure!r}; give one of {', '.join(values)}")
-        if not_negative("percentage", share) > 100:
-            raise ValueError(f"percentage is {share:g}; give 0 to 100")
-        return float(np.percentile(values[figure], share))
+        return float(np.percentile(getattr(self.samples, figure), share))
 
 
 def tolerated_residual(task: PointToPoint) -> float:
@@ -195,12 +183,10 @@ def evaluate_robustness(
         When there is no such parameter, a number is out of range, a plant within the ranges breaks
         its contract, or the coefficients or the duration do not fit the profile.
     """
-    refuse_other_kinds(task, profile)
     task = on_assumed(task)
     ranges = checked_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)
-    report = None if report is None else report_given(report)
     population = ErrorPopulation(task, profile, coefficients, ranges)
     largest = np.array(list(ranges.values()))
     shares = np.arange(-_SIDE, _SIDE + 1) / _SIDE

@@ -69,17 +69,6 @@ class ErrorPopulation:
     """Residual, energy and peak torque of one motion on plants with errors.
 
     The joint follows its planned path whatever the plant; energy and torque are what that takes.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move of the assumed plant.
-    profile : JointProfile
-        How the joint moves.
-    coefficients : array_like, shape (profile.size,)
-        The profile's coefficients.
-    ranges : mapping of str to float
-        Largest errors by name, as by `checked_ranges`.
     """
 
     @keep_interrupts()  # casadi loses a Ctrl-C
@@ -106,28 +95,8 @@ class ErrorPopulation:
     def __call__(
         self, errors: ArrayLike, report: Callable[[int, int], object] | None = None
     ) -> Figures:
-        """Evaluate plants with errors.
-
-        Parameters
-        ----------
-        errors : array_like, shape (plants, names)
-            Relative errors, in the order of the ranges.
-        report : callable, optional
-            Is told how many plants of how many are done.
-
-        Returns
-        -------
-        Figures
-            One entry a plant.
-
-        Raises
-        ------
-        ValueError
-            When the shape does not fit the names.
-        """
+        """Evaluate plants by their errors, shape (plants, names), in the order of the ranges."""
         plants = np.asarray(errors, dtype=float)
-        if plants.ndim != 2 or plants.shape[1] != len(self.names):
-            raise ValueError(f"errors have shape {plants.shape}; give (plants, {len(self.names)})")
         rows = [np.empty((0, 3))]
         for first in range(0, len(plants), _BLOCK):
             block = plants[first : first + _BLOCK]

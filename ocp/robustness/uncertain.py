@@ -9,8 +9,7 @@ from itertools import product
 from typing import Any
 
 from quietarm.models import Body, Expression, JointMotion, Plant
-from quietarm.ocp.base.checks import finite, listed, of_kind
-from quietarm.ocp.base.readonly import ReadOnlyDict
+from quietarm.ocp.base.checks import finite
 from quietarm.ocp.simulation.errors import checked_ranges, with_errors
 from quietarm.ocp.task.point_to_point import PointToPoint
 
@@ -50,7 +49,6 @@ class UncertainPlant(Plant):
     samples: tuple[tuple[float, ...], ...] = ()
 
     def __post_init__(self) -> None:
-        of_kind("assumed plant", self.assumed, Plant, "a Plant, such as SingleLinkManipulator()")
         if isinstance(self.assumed, UncertainPlant):
             raise ValueError("the plant is uncertain already; give the assumed one")
         ranges = checked_ranges(self.assumed, self.ranges)
@@ -61,7 +59,7 @@ class UncertainPlant(Plant):
             )
         corners = product(*((-size, size) for size in ranges.values()))
         samples = tuple(_sample(one, ranges) for one in self.samples or corners)
-        kept: dict[str, Any] = {"ranges": ReadOnlyDict(ranges), "samples": samples}
+        kept: dict[str, Any] = {"ranges": dict(ranges), "samples": samples}
         kept |= {name: getattr(self.assumed, name) for name in ("name", "small_deflection")}
         kept["modes"] = (1 + len(samples)) * self.assumed.modes
         for name, value in kept.items():
@@ -125,7 +123,6 @@ def _parts(
 
 
 def _sample(errors: Sequence[float], ranges: Mapping[str, float]) -> tuple[float, ...]:
-    errors = listed("sample", errors, "a list of errors, one for each range, as (0.05,)")
     if len(errors) != len(ranges):
         raise ValueError(f"sample {tuple(errors)} has {len(errors)} errors; give {len(ranges)}")
     for error, (name, most) in zip(errors, ranges.items(), strict=True):

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.base.ranges import NotNegative
-from quietarm.ocp.base.readonly import ReadOnlyDict
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness.population import ErrorPopulation
 from quietarm.ocp.robustness.uncertain import UncertainPlant, on_assumed, uncertain_plant
@@ -34,43 +33,20 @@ class Worst:
         F1 there [m], by CVODES.
     """
 
-    errors: Mapping[str, float]
+    errors: Mapping[str, float] = field(hash=False)
     residual: NotNegative
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "errors", ReadOnlyDict(self.errors))
+        object.__setattr__(self, "errors", dict(self.errors))
 
 
 def peaks_between(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, most: int = 1
 ) -> tuple[Worst, NDArray[np.float64]]:
-    """Find the errors within the ranges of an uncertain plant at which a motion leaves most.
+    """The errors within an uncertain plant's ranges at which a motion leaves most.
 
-    Parameters
-    ----------
-    task : PointToPoint
-        A move of an `UncertainPlant`.
-    profile : JointProfile
-        How the joint moves.
-    coefficients : array_like, shape (profile.size,)
-        The profile's coefficients.
-    most : int
-        How many peaks of the residual are looked for.
-
-    Returns
-    -------
-    Worst
-        The largest.
-    ndarray, shape (peaks, 1 + ranges)
-        Residual [m] and errors of each peak, the largest first. Peaks are looked for by fixed
-        steps; what they are worth is by CVODES.
-
-    Raises
-    ------
-    ValueError
-        When the plant is not uncertain, or coefficients or duration do not fit the profile.
-    SolverFailedError
-        When CVODES cannot follow the motion.
+    And of every peak, the largest first, the residual [m] and errors: looked for by fixed steps,
+    valued by CVODES.
     """
     plant = uncertain_plant(task.plant)
     assumed, largest = on_assumed(task), np.array(list(plant.ranges.values()))

@@ -15,11 +15,6 @@ class BufferedFunction:
     A plain call of a casadi function allocates its working memory anew and passes every number of
     its results through a Python list. For a population that takes as long as two steps of it, for
     the samples of a simulation by CVODES a third of the simulation.
-
-    Parameters
-    ----------
-    function : casadi.Function
-        The function; its inputs and outputs are dense.
     """
 
     def __init__(self, function: ca.Function) -> None:
@@ -33,13 +28,7 @@ class BufferedFunction:
             self._buffer.set_res(i, values.data)
 
     def __call__(self, *inputs: ArrayLike) -> list[NDArray[np.float64]]:
-        """The outputs, transposed as the inputs are; the next call overwrites them.
-
-        Raises
-        ------
-        RuntimeError
-            When the function fails, as a plain call does.
-        """
+        """The outputs, transposed as the inputs are; the next call overwrites them."""
         for own, values in zip(self._inputs, inputs, strict=True):
             own[...] = values
         self._run()

@@ -44,18 +44,6 @@ def mesh(index: Expression, steps: int) -> tuple[Expression, Expression]:
     Steps are finer at the ends of the move, by a blend of even and Chebyshev spacing: there the
     powers of T in the profile change fastest. For random coefficients in the paper's boxes this
     takes a tenth to a thirtieth of the error of even steps.
-
-    Parameters
-    ----------
-    index : Expression
-        Index of the step, from 0; any shape.
-    steps : int
-        Number of steps.
-
-    Returns
-    -------
-    begin, length : Expression
-        Fractions of the duration.
     """
 
     def boundary(k: Expression) -> Expression:
@@ -70,18 +58,6 @@ def end_to_end(fraction: Expression, steps: int) -> Expression:
     """The nodes' times stretched, so that the first is the start of the move and the last its end.
 
     The jerk is sampled there: unlike all else it may be largest at the very ends, where it jumps.
-
-    Parameters
-    ----------
-    fraction : Expression
-        Times of nodes, as fractions of the duration.
-    steps : int
-        Number of steps of `mesh`.
-
-    Returns
-    -------
-    Expression
-        Fractions of the duration.
     """
     first = float(mesh(0, steps)[1]) * GAUSS_NODES[0]
     return (fraction - first) / (1 - 2 * first)
@@ -109,18 +85,6 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
 
     The equations are affine in the modes (`Plant.validate`), so that their values at zero and at
     each unit vector give the coefficients without a derivative, element by element.
-
-    Parameters
-    ----------
-    plant : Plant
-        What moves.
-    joint : JointMotion
-        The joint's motion.
-
-    Returns
-    -------
-    ModalSystem
-        g, K and D; 0.0 between modes that do not act on each other.
     """
     parts = [_system_of(part, joint) for part in plant.parts]
     if len(parts) == 1:
@@ -274,24 +238,9 @@ class Step:
 
 
 def step(plant: Plant, joints: Sequence[JointMotion], h: Expression, forced: bool = False) -> Step:
-    """Build one step from the joint's motion at its nodes.
+    """One step of length h [s] from the joint at its nodes, each of any number of steps at once.
 
-    Parameters
-    ----------
-    plant : Plant
-        What moves.
-    joints : sequence of JointMotion
-        The joint at the step's Gauss nodes, `NODES` entries; an entry may hold every step of every
-        candidate at once.
-    h : Expression
-        Length of the step [s].
-    forced : bool
-        Whether the step can be `driven_by` another excitation.
-
-    Returns
-    -------
-    Step
-        The affine map.
+    Where it is asked for, the step can be `driven_by` another excitation.
     """
     modes = range(plant.modes)
     matrix: list[list[Expression]] = []
@@ -347,16 +296,6 @@ def eliminate(
     Without pivoting, since candidates computed together must share the order of elimination. The
     matrix is the identity plus terms of the order of a step over the shortest period, which
     `default_steps` keeps small.
-
-    Parameters
-    ----------
-    matrix, right : list of list of Expression
-        Rows of a square matrix and as many rows to its right; both are overwritten.
-
-    Returns
-    -------
-    list of list of Expression
-        x, row by row.
     """
     size = len(matrix)
     for i in range(size):

@@ -110,21 +110,9 @@ class Trajectory:
 
 
 def outputs_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression:
-    """What a trajectory holds, from the joint and the modes.
+    """Rows angle, speed, acceleration, jerk, W, tips, torque of a trajectory; a column a sample.
 
-    Parameters
-    ----------
-    plant : Plant
-        What moves.
-    joint : JointMotion
-        The joint with its jerk, each entry a scalar or of shape (1, samples).
-    states : Expression, shape (2 * modes, samples)
-        W (m) and then W' (m/s).
-
-    Returns
-    -------
-    Expression, shape (4 + modes + tips + 1, samples)
-        Rows angle, speed, acceleration, jerk, W, tips, torque.
+    The states, (2 * modes, samples), are W [m] and then W' [m/s].
     """
     W, dW, ddW = _modes(plant, joint, states)
     rows = (*joint, *W, *plant.tip_displacements(W), plant.torque(joint, W, dW, ddW))
@@ -132,7 +120,7 @@ def outputs_of(plant: Plant, joint: JointMotion, states: Expression) -> Expressi
 
 
 def rates_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression:
-    """Time derivative of the states; arguments and shape as in `outputs_of`."""
+    """Time derivative of the states of `outputs_of`."""
     _, dW, ddW = _modes(plant, joint, states)
     return ca.vertcat(*dW, *ddW)
 
@@ -147,18 +135,7 @@ def _modes(
 
 @contextmanager
 def cvodes_for(motion: str) -> Iterator[None]:
-    """Let CVODES be called in this block; name the motion that it cannot follow.
-
-    Parameters
-    ----------
-    motion : str
-        The end of the message: what is wrong with the motion.
-
-    Raises
-    ------
-    SolverFailedError
-        When CVODES fails in the block.
-    """
+    """Let CVODES be called in this block; name the motion that it cannot follow."""
     try:
         with silent_errors():  # the error below is enough
             yield
@@ -170,16 +147,6 @@ def options_for(times: ArrayLike) -> dict[str, str | float | int]:
     """Options of a run that ends within some seconds, also where it cannot follow the motion.
 
     CVODES counts its steps from one sample to the next.
-
-    Parameters
-    ----------
-    times : array_like, shape (samples,)
-        Increasing times of the samples, beyond 0.
-
-    Returns
-    -------
-    dict
-        Options for ``casadi.integrator``.
     """
     gaps = np.diff(np.asarray(times, dtype=float), prepend=0.0)
     share = float(gaps.max() / gaps.sum())
@@ -189,24 +156,9 @@ def options_for(times: ArrayLike) -> dict[str, str | float | int]:
 def after_arrival(
     plant: Plant, target: float, times: NDArray[np.float64], names: Sequence[str] = ()
 ) -> ca.Function:
-    """CVODES from the state at arrival.
+    """CVODES from `x0`, W [m] and then W' [m/s] at arrival, with errors `p` of these names.
 
-    Parameters
-    ----------
-    plant : Plant
-        What moves.
-    target : float
-        Where the joint rests [rad].
-    times : ndarray, shape (samples,)
-        Increasing times since arrival [s], beyond 0.
-    names : sequence of str
-        What may be wrong of the plant, as by `with_errors`.
-
-    Returns
-    -------
-    Function
-        The integrator: from `x0`, W (m) and then W' (m/s), with errors `p`, to `xf`, a column a
-        time.
+    Its `xf` has a column for each of the times since arrival [s], which increase from beyond 0.
     """
     state, errors = ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("e", len(names))
     wrong = with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))

@@ -6,13 +6,14 @@ import copy
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from numbers import Real
 
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.contract import outputs_of
-from quietarm.ocp.base.checks import of_kind, positive
+from quietarm.ocp.base.checks import positive
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.names import has_no
 from quietarm.ocp.simulation.collocation import modal_system
@@ -31,13 +32,6 @@ class ScaledModes(Plant):
     W'' = -s d D W' - s^2 K W: as if time ran s times as fast, so that every frequency is exactly s
     times the assumed one, with the same damping ratio; and d scales the damping, exactly where the
     modes are damped each on its own. What the moving joint adds stays as it is.
-
-    Parameters
-    ----------
-    plant : Plant
-        The assumed plant.
-    frequency, damping : Expression
-        The factors s and d.
     """
 
     plant: Plant
@@ -132,32 +126,14 @@ def _with_symbols(plant: Plant, values: Mapping[str, Expression]) -> Plant:
 
 
 def checked_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
-    """The errors that a plant may have, each from minus to plus its range.
-
-    Parameters
-    ----------
-    plant : Plant
-        The assumed plant.
-    ranges : mapping of str to float
-        Largest relative errors by name, as 0.1 for 10 %.
-
-    Returns
-    -------
-    dict of str to float
-        The same.
-
-    Raises
-    ------
-    ValueError
-        When there is no such parameter, a range is not between 0 and 1, or a plant at the end of
-        a range breaks the contract of plants.
-    """
-    of_kind("ranges", ranges, Mapping, "errors by name, as {'frequency': 0.1} for 10 %")
+    """The errors that a plant may have, each from minus to plus its range."""
     if not ranges:
         raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
     return {name: _checked_range(plant, name, size) for name, size in ranges.items()}
 
 
+@lru_cache(maxsize=256, typed=True)  # a robust plan asks again for every error that it adds
+@keep_interrupts()  # casadi loses a Ctrl-C
 def _checked_range(plant: Plant, name: str, size: float) -> float:
     refuse_unknown(plant, [name])
     size = positive(f"range of {name}", size)
@@ -174,8 +150,7 @@ def _checked_range(plant: Plant, name: str, size: float) -> float:
         )
     for error in (-size, size):
         try:
-            with keep_interrupts():  # casadi loses a Ctrl-C
-                with_errors(plant, {name: error}).validate()
+            with_errors(plant, {name: error}).validate()
         except ValueError as problem:
             side = "lower" if error < 0 else "higher"
             raise ValueError(f"with {name} {100 * size:g} % {side}, {problem}") from None

@@ -19,18 +19,6 @@ def extremes(times: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[n
     A polynomial of degree six goes through the extreme sample and its neighbours; Newton's method
     finds the root of its derivative. Where a row jumps or bends sharply, its extreme sample is
     returned. A function in pieces may jump from one to the next.
-
-    Parameters
-    ----------
-    times : ndarray, shape (samples,)
-        Times of the samples of a piece, increasing.
-    rows : ndarray, shape (rows, pieces * samples)
-        Values, one piece after another.
-
-    Returns
-    -------
-    ndarray, shape (rows, 2)
-        Least and largest value.
     """
     signed = np.concatenate([-rows, rows])
     at = np.argmax(signed, axis=1)

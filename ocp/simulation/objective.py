@@ -31,20 +31,6 @@ def resolved_energy(
     zeros and zeros outside the step need no special case. Terms of third and fourth degree that
     vanish at the nodes move work across a zero and add none to the step; the zeros stay those of
     the quadratic, since the work hardly changes near a zero.
-
-    Parameters
-    ----------
-    power : sequence of Expression
-        Power at the Gauss nodes of every step [W]: three entries of shape (candidates, steps).
-    h : Expression
-        Length of every step [s], of the shape of an entry of `power`.
-    cubic, quartic : Expression, optional
-        Terms of the power beyond the quadratic [W], as by `beyond_quadratic`.
-
-    Returns
-    -------
-    Expression
-        Energy [J], shape (candidates, 1).
     """
     c = _quadratic(power)
     return ca.sum2(h * _parted_energy(c, cubic, quartic, _breaks(c)))
@@ -96,12 +82,6 @@ def energy_derivatives() -> ca.Function:
     Second derivatives come from the zeros that move: 2 g g' / |slope| for each, with g the gradient
     of the power there, never negative; the rest is linear in the power. Where zeros meet, that
     curvature is without bound, though only there: the slope counts as `least_slope` at least.
-
-    Returns
-    -------
-    Function
-        (power at the nodes [3], least_slope) -> (its gradient by the power [3], second derivatives
-        by the power [3, 3]).
     """
     power, least_slope = ca.SX.sym("p", NODES), ca.SX.sym("least")
     breaks = ca.SX.sym("x", 2)
@@ -126,16 +106,6 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
 
     The quartic through five nodes in a row, the step's own three in the middle, is the quadratic
     through these plus (x - node 1)(x - node 2)(x - node 3) (cubic + quartic (x - 1/2)).
-
-    Parameters
-    ----------
-    steps : int
-        Number of steps of `mesh`.
-
-    Returns
-    -------
-    tuple of DM, each of shape (NODES * steps, steps), sparse
-        Weights of `horzcat(*power)` in `cubic` and in `quartic`.
     """
     if steps == 1:
         return ca.DM(NODES, 1), ca.DM(NODES, 1)  # no neighbour
@@ -186,8 +156,7 @@ class Motion(WithPeaks):
     overshoot : float
         How far the joint passes the target on its way [rad], 0 where it does not.
     peak_jerk : float or None
-        Largest absolute value during the move [rad/s^3]; None where the acceleration jumps, and in
-        older files.
+        Largest absolute value during the move [rad/s^3]; None where the acceleration jumps.
     """
 
     residual: float

@@ -5,9 +5,8 @@ A profile is one piece; a free motion has one for every interval of its grid.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,16 +19,11 @@ _STRANGE = 100.0
 """So many times its default a parameter is suspected, and a coefficient from this on."""
 
 
-class Law(Protocol):
-    """How the joint moves on a piece; equal laws share a compiled CVODES."""
+Law = Callable[..., JointMotion]
+"""How the joint moves on a piece, by what it is given there and the fraction of the piece.
 
-    def __call__(
-        self, given: Sequence[Expression], fraction: Expression, *, jerk: bool
-    ) -> JointMotion:
-        """The joint at a fraction of the piece; the last of the given numbers is its length [s]."""
-        ...
-
-    def __hash__(self) -> int: ...
+The last of the given numbers is the piece's length [s]; equal laws share a compiled CVODES.
+"""
 
 
 @dataclass(frozen=True)

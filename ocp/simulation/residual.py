@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import JointMotion, Plant
-from quietarm.ocp.base.checks import of_kind, whole
+from quietarm.ocp.base.checks import whole
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.simulation.collocation import NODES, modal_system, step
@@ -28,20 +28,9 @@ def fastest_mode(task: PointToPoint) -> float:
 
 
 def vibrations(plant: Plant, angle: float) -> list[tuple[float, float]]:
-    """Frequencies and damping of the plant with its joint at rest.
+    """Undamped frequency [rad/s] and damping ratio of every mode that oscillates at rest.
 
-    Parameters
-    ----------
-    plant : Plant
-        What vibrates.
-    angle : float
-        Where the joint rests [rad].
-
-    Returns
-    -------
-    list of (float, float)
-        Undamped angular frequency [rad/s] and damping ratio of every mode that oscillates, the
-        slowest first.
+    The slowest first.
     """
     values = _eigenvalues(plant, angle)
     oscillating = sorted(values[values.imag > 0], key=abs)
@@ -62,20 +51,7 @@ def _eigenvalues(plant: Plant, angle: float) -> NDArray[np.complex128]:
 
 
 def state_matrices(plant: Plant, angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What gives (W', W'') by (W, W') with the joint at rest at each of some angles.
-
-    Parameters
-    ----------
-    plant : Plant
-        What moves.
-    angles : ndarray, shape (n,)
-        Where the joint rests [rad].
-
-    Returns
-    -------
-    ndarray, shape (n, 2 * modes, 2 * modes)
-        The matrices [1/s].
-    """
+    """What gives (W', W'') by (W, W') with the joint at rest at each angle [1/s]."""
     system, modes = modal_system(plant, JointMotion(ca.DM(angles), 0.0, 0.0)), plant.modes
     matrices = np.zeros((len(angles), 2 * modes, 2 * modes))
     matrices[:, :modes, modes:] = np.eye(modes)
@@ -89,21 +65,9 @@ def state_matrices(plant: Plant, angles: NDArray[np.float64]) -> NDArray[np.floa
 def residuals_at_rest(
     task: PointToPoint, targets: NDArray[np.float64], arrivals: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """F1 of many moves of a task's plant and window, by modal decomposition.
+    """F1 [m] of many moves of a task's plant and window, by modal decomposition.
 
-    Parameters
-    ----------
-    task : PointToPoint
-        Its plant and its window count.
-    targets : ndarray, shape (n,)
-        Where the joint rests [rad].
-    arrivals : ndarray, shape (n, 2 * modes)
-        W [m] and then W' [m/s] on arrival.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        F1 [m], at times `RADIANS_A_SAMPLE` of the fastest mode apart.
+    The joint rests at the targets [rad]; a row of arrivals is W [m] and then W' [m/s].
     """
     plant, modes = task.plant, task.plant.modes
     values, vectors = np.linalg.eig(state_matrices(plant, targets))
@@ -157,9 +121,8 @@ def residual_matrix(task: PointToPoint, samples: int | None = None) -> NDArray[n
     Raises
     ------
     ValueError
-        When it is no task, or its window cannot be resolved by so many samples.
+        When its window cannot be resolved by so many samples.
     """
-    of_kind("task", task, PointToPoint, "a PointToPoint")
     if samples is not None:
         memory = "a matrix of more takes too much memory"
         samples = whole("samples", samples, 2, MOST_SAMPLES, memory)
@@ -210,18 +173,6 @@ def extreme_rows(matrix: NDArray[np.float64], tips: int) -> NDArray[np.float64]:
 
     The tip turns in a plane when one mode moves it: of its rows and their negatives those on the
     convex hull suffice, about half a period of them.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (samples * tips, 2 * modes)
-        As by `residual_matrix`.
-    tips : int
-        Number of tips, whose rows alternate.
-
-    Returns
-    -------
-    ndarray, shape (rows, 2 * modes)
-        max |rows @ z| = max |matrix @ z| for every z.
     """
     kept: list[NDArray[np.float64]] = []
     for tip in range(tips):

@@ -22,7 +22,6 @@ from quietarm.models import Plant
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from quietarm.ocp.simulation.cvodes import (
@@ -85,7 +84,6 @@ def sample_trajectory(
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    refuse_other_kinds(task, profile)
     grid = np.atleast_1d(np.asarray(times, dtype=float))
     ordered = grid.ndim == 1 and grid.size and grid[0] >= 0 and np.all(np.diff(grid) > 0)
     if not (ordered and np.all(np.isfinite(grid))):
@@ -132,7 +130,6 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    refuse_other_kinds(task, profile)
     return resimulated(task, PiecewiseMotion.of_profile(task, profile, coefficients)).motion
 
 
@@ -210,29 +207,7 @@ class Resimulation(WithPeaks):
 @one_at_a_time
 @keep_interrupts()
 def resimulated(task: PointToPoint, joint: PiecewiseMotion, errors: Errors = ()) -> Resimulation:
-    """Simulate a joint motion with CVODES.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    joint : PiecewiseMotion
-        How the joint moves.
-    errors : tuple of (str, float)
-        What is wrong of the plant. Plants with errors of the same names share what is compiled.
-
-    Returns
-    -------
-    Resimulation
-        Figures, state on arrival and samples.
-
-    Raises
-    ------
-    ValueError
-        When the residual window is too long.
-    SolverFailedError
-        When CVODES cannot follow the motion.
-    """
+    """Simulate a joint motion with CVODES."""
     residual_samples(task)  # refuses a window that is too long
     least = _SMOOTH_STEPS if joint.smooth else _STEPS
     blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / least)

@@ -15,7 +15,6 @@ from quietarm.ocp.base.checks import whole
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.profiles.kinds import refuse_other_kinds
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
@@ -120,43 +119,13 @@ def symbolic_rollout(
 
 
 def node_times(steps: int, candidates: int = 1) -> tuple[list[ca.DM], ca.DM]:
-    """Times of each Gauss node and lengths of the steps, as fractions of the duration.
-
-    Parameters
-    ----------
-    steps : int
-        Number of steps.
-    candidates : int
-        Number of rows.
-
-    Returns
-    -------
-    times : list of DM, each of shape (candidates, steps)
-        One entry a node.
-    length : DM, shape (candidates, steps)
-        The steps.
-    """
+    """Times of each Gauss node and lengths of the steps, as fractions of the duration."""
     begin, length = mesh(ca.repmat(ca.DM(np.arange(steps)).T, candidates, 1), steps)
     return [begin + node * length for node in GAUSS_NODES], length
 
 
 def rollout_along(plant: Plant, joints: list[JointMotion], h: Expression) -> SymbolicRollout:
-    """Simulate the modes from rest along joint motions that are known at the nodes.
-
-    Parameters
-    ----------
-    plant : Plant
-        What moves; its parameters may be expressions of the same shape as well.
-    joints : list of JointMotion
-        The joint at each Gauss node of every step, entries of shape (candidates, steps).
-    h : Expression, shape (candidates, steps)
-        Length of every step [s].
-
-    Returns
-    -------
-    SymbolicRollout
-        Every joint, mode and torque at the Gauss nodes, and the state at arrival.
-    """
+    """Simulate the modes from rest along joint motions that are known at the nodes."""
     steps_at_once = step(plant, joints, h)
     W, dW, arrival = march(*steps_at_once.transition(), h.shape)
     ddW = steps_at_once.accelerations(W, dW)
@@ -189,20 +158,6 @@ def march(
     """States before every step (rows, steps), by mode, and the state at arrival.
 
     Only this recursion is sequential: everything else is computed for all steps at once.
-
-    Parameters
-    ----------
-    constant, columns : sequence of Expression
-        The steps, as by `Step.transition`.
-    shape : tuple of int
-        Rows and steps.
-
-    Returns
-    -------
-    W, dW : list of Expression, shape (rows, steps)
-        Before every step, by mode.
-    arrival : Expression, shape (rows, 2 * modes)
-        W and then W'.
     """
     rows, steps = shape
     size = len(constant)
@@ -376,7 +331,6 @@ def rollout(
     ValueError
         When the coefficients or the duration do not fit the profile.
     """
-    refuse_other_kinds(task, profile)
     steps = default_steps(task) if steps is None else whole("steps", steps, 1)
     function = _compiled(task.plant, profile, steps)
     values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.move))

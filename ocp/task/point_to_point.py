@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 from quietarm.models import Plant
 from quietarm.models.contract import check_along
@@ -62,12 +63,8 @@ class PointToPoint:
 
     @one_at_a_time
     def __post_init__(self) -> None:
-        if not isinstance(self.plant, Plant):
-            raise ValueError(
-                f"plant is {self.plant!r}; give a Plant, such as SingleLinkManipulator()"
-            )
-        with keep_interrupts():  # casadi loses a Ctrl-C
-            self.plant.validate()
+        for part in self.plant.parts:
+            _validate(part)
         for name in ("start", "target"):
             angle = finite(name, getattr(self, name), "rad")
             if abs(angle) > MOST_ANGLE:
@@ -75,9 +72,8 @@ class PointToPoint:
                     f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
                 )
             self._keep(name, angle)
-        with keep_interrupts():
-            for part in self.plant.parts:
-                check_along(part, self.start, self.target)
+        for part in self.plant.parts:
+            _check_on_the_way(part, self.start, self.target)
         for name in ("duration", "residual_window"):
             self._keep(name, positive(name.replace("_", " "), getattr(self, name), "s"))
         for name, unit in LIMITS.items():
@@ -114,3 +110,16 @@ class PointToPoint:
         """The limits that are set, by name of the quantity: torque, speed, ..."""
         every = {name: getattr(self, quantity.limit) for name, quantity in QUANTITIES.items()}
         return {name: value for name, value in every.items() if value is not None}
+
+
+@lru_cache(maxsize=256)
+@keep_interrupts()  # casadi loses a Ctrl-C
+def _validate(plant: Plant) -> None:
+    """Check a plant's contract, once for all the tasks that have it."""
+    plant.validate()
+
+
+@lru_cache(maxsize=256)
+@keep_interrupts()
+def _check_on_the_way(plant: Plant, start: float, target: float) -> None:
+    check_along(plant, start, target)

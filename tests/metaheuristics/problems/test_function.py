@@ -89,8 +89,6 @@ def test_candidates_that_are_no_real_numbers_are_refused(candidates):
         MoveFunction(SIXTH, bound=0.2, steps=10)(candidates)
 
 
-def test_another_profile_and_peaks_in_one_word_are_refused():
-    with pytest.raises(ValueError, match=r"profile is 4; give a JointProfile"):
-        MoveFunction(SIXTH, 4, bound=0.2)
+def test_peaks_in_one_word_are_refused():
     with pytest.raises(ValueError, match=r"peaks is 'torque'; give a list of .*, as \['torque'\]"):
         MoveFunction(SIXTH, bound=0.2, peaks="torque")

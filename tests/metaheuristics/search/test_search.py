@@ -275,18 +275,6 @@ def test_what_is_no_algorithm_is_named(algorithm):
     one_line(caught)
 
 
-@pytest.mark.parametrize(
-    ("task", "profile", "words"),
-    [
-        (None, None, "task is None; give a PointToPoint"),
-        (HALF, 6, r"profile is 6; give a JointProfile, such as CycloidPolynomial\(6\)"),
-    ],
-)
-def test_what_is_no_task_or_profile_is_named(task, profile, words):
-    with pytest.raises(ValueError, match=words):
-        search(task, "nsga2", profile=profile, bound=0.5)
-
-
 def test_an_algorithm_of_your_own_needs_generations_and_has_its_population():
     with pytest.raises(ValueError, match="number of generations for NSGA2"):
         search(HALF, NSGA2(pop_size=10), bound=0.5)

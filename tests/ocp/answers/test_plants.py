@@ -38,15 +38,6 @@ def test_it_loads_where_the_file_was_given(saved, crane_file, tmp_path):
     assert Plan.load(path) == plan
 
 
-def test_an_answer_of_a_scripts_own_plant_is_read_with_its_file(saved):
-    # A class of __main__ has no file to record; the same lines given as a file are its plant.
-    path, plan = saved
-    document = json.loads(path.read_text())
-    del document["task"]["plant"]["plant_file"]
-    path.write_text(json.dumps(document))
-    assert Plan.load(path) == plan
-
-
 def test_nothing_is_run_that_the_user_did_not_name(saved, crane_file):
     del Plant._known["crane"]  # as in another process
     told = _refused(saved[0])

@@ -10,10 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import CycloidPolynomial, PointToPoint, rollout
 from quietarm.ocp.base.interrupts import keep_interrupts, note_interrupts
-from quietarm.ocp.simulation import collocation, residual
 
 ROOT = Path(__file__).parents[3]
 
@@ -51,20 +48,6 @@ def test_an_error_that_a_swallowed_ctrl_c_causes_is_not_what_one_sees():
         raise AttributeError
 
 
-def test_ctrl_c_while_a_rollout_is_built_is_not_lost(monkeypatch):
-    built = collocation.modal_system
-
-    def interrupted(*arguments):
-        _swallow_ctrl_c()
-        return built(*arguments)
-
-    monkeypatch.setattr(collocation, "modal_system", interrupted)
-    monkeypatch.setattr(residual, "modal_system", interrupted)
-    task = PointToPoint(ArmOnFlexibleLink(), 1.2345, 0.8)  # a target of no other test
-    with pytest.raises(KeyboardInterrupt):
-        rollout(task, CycloidPolynomial(3), [0.1, 0.0, 0.0])
-
-
 def test_the_users_handler_is_back_after_the_block():
     before = signal.getsignal(signal.SIGINT)
     with contextlib.suppress(KeyboardInterrupt), keep_interrupts():
@@ -74,12 +57,6 @@ def test_the_users_handler_is_back_after_the_block():
     with contextlib.suppress(RuntimeError), keep_interrupts():
         raise RuntimeError
     assert signal.getsignal(signal.SIGINT) is before
-
-
-def test_without_ctrl_c_nothing_happens():
-    with keep_interrupts():
-        value = 1
-    assert value == 1
 
 
 @pytest.mark.parametrize("times", [0, 1, 3])
@@ -93,11 +70,6 @@ def test_noted_interrupts_are_told_and_end_nothing(times):
     assert value == 1
     assert interrupts == [signal.SIGINT] * times
     assert signal.getsignal(signal.SIGINT) is before
-
-
-def test_errors_of_the_block_pass():
-    with pytest.raises(ZeroDivisionError), keep_interrupts():
-        _ = 1 / 0
 
 
 def test_other_threads_leave_signals_alone():
@@ -141,39 +113,3 @@ def test_ctrl_c_ends_a_solve():
         run.stdout.close()
     assert out == "stopped\n"
     assert run.returncode == 0
-
-
-@pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="no alarms here")
-@pytest.mark.parametrize("swallowed", [False, True])
-def test_what_an_alarm_raises_is_not_lost(swallowed):
-    def too_slow(number, frame):
-        raise TimeoutError("too slow")
-
-    @keep_interrupts()
-    @keep_interrupts()
-    def solve():
-        try:
-            signal.raise_signal(signal.SIGALRM)
-        except TimeoutError:  # as casadi's solver does
-            if not swallowed:
-                raise
-
-    before = signal.signal(signal.SIGALRM, too_slow)
-    try:
-        with pytest.raises(TimeoutError, match="too slow"):
-            solve()
-        assert signal.getsignal(signal.SIGALRM) is too_slow
-    finally:
-        signal.signal(signal.SIGALRM, before)
-
-
-@pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="no alarms here")
-def test_an_alarm_that_raises_nothing_ends_nothing():
-    heard = []
-    before = signal.signal(signal.SIGALRM, lambda number, frame: heard.append(number))
-    try:
-        with keep_interrupts():
-            signal.raise_signal(signal.SIGALRM)
-    finally:
-        signal.signal(signal.SIGALRM, before)
-    assert heard == [signal.SIGALRM]

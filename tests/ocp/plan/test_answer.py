@@ -125,8 +125,6 @@ def test_coefficients_that_are_not_as_many_finite_numbers_as_may_be_are_refused(
     [
         ({"f": math.nan}, "setting f is nan; give a finite number"),
         ({"f": -math.inf}, "setting f is -inf; give a finite number"),
-        ([1, 2], r"settings is \[1, 2\]; give a table of values by name, as {'bound': 0.2}"),
-        ("bound", "settings is 'bound'; give a table of values by name"),
     ],
 )
 def test_settings_that_no_file_can_hold_are_refused(tasks, settings, words):

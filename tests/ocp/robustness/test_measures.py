@@ -167,16 +167,6 @@ def test_the_shortest_shaped_moves_leave_what_cvodes_says(plant, target, duratio
     assert found.energy == pytest.approx([m.energy for m in motions], rel=2e-4)
 
 
-def test_what_leaves_more_without_an_error_has_no_insensitivity_range():
-    # EI leaves 5 % of what its own cycloid would, which is shorter and leaves more than the plain.
-    task = PointToPoint(LINEAR, 1.0, 1.1)
-    profile = shaped_cycloid(task, "ei")
-    assert left("ei", 1.0, task, profile) > 0.05 * of_cycloid(1.0, task, 1.1)
-    [sweep] = evaluate_robustness(task, profile, [], {"frequency": 0.2}, samples=1).sweeps
-    assert sweep.insensitivity is None
-    assert sweep.width == 0
-
-
 def test_a_range_that_is_not_left_is_open():
     task = PointToPoint(DualLinkManipulator(), 1.0, 0.9)
     profile = shaped_cycloid(task, "zv")
@@ -204,29 +194,6 @@ def test_samples_come_from_the_seed_and_fill_the_ranges(plans):
     assert one.seed == 1
     assert one.percentile("residual", 100) == one.samples.residual.max()
     assert one.percentile("energy", 50) == pytest.approx(np.median(one.samples.energy))
-
-
-def test_answers_cannot_be_changed(plans):
-    found = of_plan(plans["arm"], {"frequency": 0.1}, samples=3)
-    for array in (found.errors, found.samples.energy, found.sweeps[0].errors):
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = 1.0
-    with pytest.raises(TypeError, match="cannot be changed"):
-        found.ranges["frequency"] = 1.0
-
-
-def test_progress_is_told(plans):
-    told = []
-    of_plan(plans["arm"], {"frequency": 0.1}, samples=250, report=lambda *done: told.append(done))
-    assert told[-1] == (201 + 250, 201 + 250)
-    assert [done for done, _ in told] == sorted({done for done, _ in told})
-
-
-def test_errors_of_another_shape_are_refused(plans):
-    plan = plans["arm"]
-    population = ErrorPopulation(plan.task, plan.profile, plan.coefficients, {"frequency": 0.1})
-    with pytest.raises(ValueError, match=r"shape \(3,\); give \(plants, 1\)"):
-        population([0.0, 0.1, 0.2])
 
 
 def test_a_window_of_too_many_periods_is_refused(plans):

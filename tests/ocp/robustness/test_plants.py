@@ -16,7 +16,7 @@ from quietarm.models import (
     SingleLinkManipulator,
     parameter,
 )
-from quietarm.ocp import evaluate_robustness, with_errors
+from quietarm.ocp import with_errors
 from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.ocp.simulation.residual import vibrations
 
@@ -99,16 +99,6 @@ def test_the_damping_of_coupled_modes_is_scaled_to_first_order():
         assert now == pytest.approx((omega, 1.5 * zeta), rel=0.05**2 * 4)
 
 
-def test_errors_may_be_combined_and_nothing_is_changed_without_one():
-    plant = ArmOnFlexibleLink()
-    assert with_errors(plant, {}) == plant
-    assert with_errors(plant, {"alpha3": 0.1}) == ArmOnFlexibleLink(alpha3=5.256e-2 * 1.1)
-    both = with_errors(plant, {"alpha3": 0.1, "frequency": 0.2})
-    one = ArmOnFlexibleLink(alpha3=5.256e-2 * 1.1, omega=7.320 * 1.2)
-    numbers = [0.4, 1.0, -3.0, 0.01, 0.02, 0.3]
-    assert outputs(both, numbers) == pytest.approx(outputs(one, numbers), rel=1e-12)
-
-
 # -- what is refused --
 
 
@@ -145,10 +135,6 @@ def test_an_error_that_leaves_no_frequency_is_refused(error):
         with_errors(SingleLinkManipulator(), {"frequency": error})
 
 
-def test_no_damping_at_all_is_a_plant():
-    assert checked_ranges(ArmOnFlexibleLink(), {"damping": 1.0}) == {"damping": 1.0}
-
-
 def test_a_parameter_that_is_zero_has_no_share():
     with pytest.raises(ValueError, match="parameter zeta of single-link is 0"):
         checked_ranges(SingleLinkManipulator(zeta=0.0), {"zeta": 0.1})
@@ -177,28 +163,3 @@ def test_what_is_computed_from_a_parameter_beforehand_is_told(tasks):
     with pytest.raises(ValueError, match="computes with omega outside its equations"):
         checked_ranges(Prepared(), {"omega": 0.1})
     checked_ranges(Prepared(), {"frequency": 0.1})  # scaled by the equations, whatever is in them
-
-
-@pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
-def test_equations_that_take_no_symbols_for_a_parameter_are_told():
-    @dataclass(frozen=True)
-    class Rooted(SingleLinkManipulator):
-        name: ClassVar[str] = "rooted"
-
-        def modal_accelerations(self, joint, W, dW):
-            return [-(math.sqrt(self.omega) ** 4) * W[0] - self.beta1 * joint.acceleration]
-
-    with pytest.raises(ValueError, match=r"rooted.*by Python's math; .*casadi.sqrt"):
-        checked_ranges(Rooted(), {"omega": 0.1})
-
-
-def test_what_is_asked_is_checked_before_anything_is_computed(tasks, solved):
-    task = tasks["arm"]
-    plan = solved(task, bound=0.5)
-    for wrong, message in (
-        ({"samples": 0}, "samples is 0"),
-        ({"samples": 10**9}, "give at most 1000000"),
-        ({"seed": -1}, "seed is -1"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            evaluate_robustness(task, plan.profile, plan.coefficients, {"frequency": 0.1}, **wrong)

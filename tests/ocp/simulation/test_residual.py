@@ -94,12 +94,6 @@ def test_a_longer_window_never_shows_less():
     assert peaks[0] < peaks[-1] / 2  # a quarter period is 0.21 s: the first windows end before it
 
 
-def test_what_is_no_task_is_refused():
-    with pytest.raises(ValueError, match=r"task is .*; give a PointToPoint") as refused:
-        residual_matrix(SingleLinkManipulator())
-    assert "\n" not in str(refused.value)
-
-
 def test_more_samples_than_memory_are_refused():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
     with pytest.raises(ValueError, match="samples is 1000000000; give at most 200000: a matrix of"):

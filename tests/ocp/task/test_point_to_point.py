@@ -1,21 +1,14 @@
 """What is asked: valid tasks, and what is refused when a task is made."""
 
 import math
-import signal
-from contextlib import suppress
-from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task.point_to_point import LIMITS
-from quietarm.ocp.task.quantities import QUANTITIES
 
 PLANT = SingleLinkManipulator()
-NOT_POSITIVE = [0, 0.0, -0.0, -0.8, math.nan, math.inf, -math.inf]
-NOT_FINITE = [math.nan, math.inf, -math.inf]
-NOT_NUMBERS = ["soon", None, [0.8], 1j]
 
 
 def _task(**changes):
@@ -28,7 +21,7 @@ def _refused(name, value, **changes):
         _task(**changes)
     message = str(error.value)
     assert "\n" not in message
-    assert (f"{value:g}" if isinstance(value, int | float) else str(value)) in message
+    assert (f"{value:g}" if type(value) in (int, float) else str(value)) in message
     return message
 
 
@@ -49,11 +42,6 @@ def test_a_limit_that_is_set_is_listed_by_its_quantity(name):
     assert _task(**{name: 0.3}).limits == {name.removesuffix("_limit"): 0.3}
 
 
-def test_all_limits_together():
-    limits = dict.fromkeys(LIMITS, 2)
-    assert _task(**limits).limits == dict.fromkeys(QUANTITIES, 2.0)
-
-
 @pytest.mark.parametrize("kind", [int, np.float64, np.float32, np.int64])
 def test_every_kind_of_number_becomes_a_float(kind):
     task = _task(start=kind(1), target=kind(2), duration=kind(3), torque_limit=kind(4))
@@ -69,44 +57,18 @@ def test_tasks_are_equal_by_value():
     assert hash(_task(duration=1)) == hash(_task(duration=1.0))
 
 
-def test_a_task_cannot_be_changed():
-    with pytest.raises(FrozenInstanceError):
-        _task().duration = 2.0
-
-
-@pytest.mark.parametrize("value", [*NOT_POSITIVE, *NOT_NUMBERS])
-def test_a_duration_that_is_not_positive_and_finite_is_named(value):
-    _refused("duration is", value, duration=value)
-
-
-@pytest.mark.parametrize("value", [*NOT_POSITIVE, *NOT_NUMBERS])
-def test_a_residual_window_that_is_not_positive_and_finite_is_named(value):
-    _refused("residual.window is", value, residual_window=value)
-
-
-@pytest.mark.parametrize("value", [*NOT_POSITIVE, "much", [0.8], 1j])
-@pytest.mark.parametrize("name", LIMITS)
-def test_a_limit_that_is_not_positive_and_finite_is_named(name, value):
-    _refused(name.replace("_", ".") + " is", value, **{name: value})
-
-
-@pytest.mark.parametrize("value", [*NOT_FINITE, *NOT_NUMBERS])
-@pytest.mark.parametrize("name", ["start", "target"])
-def test_an_angle_that_is_not_finite_is_named(name, value):
-    _refused(f"{name} is", value, **{name: value})
-
-
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("duration", 1e-7), ("duration", 1e-300), ("duration", 1e7), ("target", 1e7), ("start", -1e9)],
+    [
+        *((name, value) for name in ("duration", "residual_window") for value in (0, -0.8, None)),
+        *((name, value) for name in LIMITS for value in (0.0, math.nan, "much", True)),
+        *((name, math.inf) for name in ("start", "target", "duration", "torque_limit")),
+        *(("duration", 1e-7), ("duration", 1e7), ("target", 1e7), ("start", -1e9)),
+        ("target", "soon"),
+    ],
 )
-def test_a_number_beyond_all_scale_is_named(name, value):
-    _refused(f"{name} is", value, **{name: value})
-
-
-@pytest.mark.parametrize("angle", [0.0, math.pi / 6, -1])
-def test_a_target_equal_to_the_start_is_named(angle):
-    _refused("target equals start", float(angle), start=angle, target=float(angle))
+def test_a_number_out_of_range_is_named_with_its_value(name, value):
+    _refused(name.replace("_", ".") + " is", value, **{name: value})
 
 
 @pytest.mark.parametrize("span", [1e-300, -9e-7])
@@ -114,20 +76,9 @@ def test_a_move_too_short_to_be_integrated_is_named(span):
     _refused("target - start is", span, target=span)
 
 
-@pytest.mark.parametrize("value", [True, "0.8"])
-def test_what_only_looks_like_a_number_is_refused(value):
-    _refused("duration is", repr(value), duration=value)
-
-
-def test_a_number_too_large_for_a_float_is_refused():
-    with pytest.raises(ValueError, match="duration"):
-        _task(duration=10**400)
-
-
-@pytest.mark.parametrize("plant", ["single-link", SingleLinkManipulator, None])
-def test_a_plant_that_is_not_a_plant_is_refused(plant):
-    with pytest.raises(ValueError, match=r"plant is .*give a Plant"):
-        _task(plant=plant)
+@pytest.mark.parametrize("angle", [0.0, math.pi / 6, -1])
+def test_a_target_equal_to_the_start_is_named(angle):
+    _refused("target equals start", float(angle), start=angle, target=float(angle))
 
 
 @pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
@@ -135,18 +86,6 @@ def test_a_plant_that_breaks_its_contract_is_refused():
     cubic = {"name": "cubic", "modal_accelerations": lambda plant, joint, W, dW: [-(W[0] ** 3)]}
     with pytest.raises(ValueError, match=r"'cubic'.*not affine"):
         _task(plant=type("Cubic", (SingleLinkManipulator,), cubic)())
-
-
-def test_ctrl_c_in_the_check_of_the_plant_is_not_lost(monkeypatch):
-    # casadi swallows the interrupt where it takes an array, and gives None for what it computed.
-    def lost(plant):
-        with suppress(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGINT)
-        raise AttributeError("'NoneType' object has no attribute 'T'")
-
-    monkeypatch.setattr(SingleLinkManipulator, "validate", lost)
-    with pytest.raises(KeyboardInterrupt):
-        PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
 
 
 def test_a_move_through_angles_without_values_is_refused():

@@ -15,13 +15,6 @@ def test_every_quantity_has_a_limit_in_a_task_and_a_peak_in_a_motion():
     assert sorted(peaks) == sorted(quantity.peak for quantity in QUANTITIES.values())
 
 
-def test_each_follows_from_the_joint_the_tips_or_the_torque():
-    joint = JointMotion("angle", "speed", "acceleration", "jerk")
-    values = {name: q.of(joint, ["tip 1", "tip 2"], "torque") for name, q in QUANTITIES.items()}
-    assert values.pop("deflection") == ["tip 1", "tip 2"]
-    assert values == {name: [name] for name in ("torque", "speed", "acceleration", "jerk")}
-
-
 def test_derivatives_of_the_joint_say_which_they_are():
     orders = {name: quantity.derivative for name, quantity in QUANTITIES.items()}
     assert orders == {
