@@ -8,7 +8,6 @@ from collections.abc import Sequence
 
 from quietarm.ocp import Front
 from quietarm.ocp.answers.encoding import plain
-from quietarm.ocp.base.checks import listed, of_kind
 from quietarm.ocp.front.robust import EXCESS
 from quietarm.studies.paper.tasks import task_difference
 from quietarm.studies.registry.methods import method_of
@@ -16,9 +15,7 @@ from quietarm.studies.registry.methods import method_of
 
 def checked_names(names: Sequence[str], fronts: int) -> list[str]:
     """What to call each of so many fronts."""
-    given = listed("names", names, "a list with a name for each front")
-    for i, name in enumerate(given, start=1):
-        of_kind(f"name {i}", name, str, "text")
+    given = list(names)
     if given and len(given) != fronts:
         raise ValueError(f"names are {reprlib.repr(given)}; give one for each of {fronts} fronts")
     return given or [f"front {i}" for i in range(1, fronts + 1)]
@@ -31,7 +28,6 @@ def check_fronts(
     if len(fronts) < least:
         raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given: give more")
     for front, name in zip(fronts, names, strict=True):
-        of_kind(name, front, Front, "a Front, as of epsilon_front, search or Front.load")
         if not front.points:
             raise ValueError(f"{name} has no finite point; leave it out, or search longer")
         difference = task_difference(front.task, fronts[0].task)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from numbers import Real
 
 import moocore
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp import Front, PointToPoint
-from quietarm.ocp.base.checks import listed, not_negative, of_kind, positive, whole
+from quietarm.ocp.base.checks import not_negative, positive, whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.robust import on_same_samples
 from quietarm.ocp.robustness.uncertain import on_assumed
@@ -156,47 +155,13 @@ def compare_fronts(
 
     The indicators are moocore's. IGD+ and epsilon are measured against the points that none of any
     front dominates, thinned to even distances, so that the front of most points does not decide.
-
-    Parameters
-    ----------
-    fronts : sequence of Front
-        Two or more, of one task, by any methods; of an uncertain plant the residuals are compared
-        at the samples of all of them.
-    names : sequence of str, optional
-        What to call them in messages and tables; numbered by default.
-    reference : Front, optional
-        Measure IGD+ and epsilon against this front.
-    reference_name : str
-        What to call it.
-    floor : float, optional
-        Least energy [J] of any joint motion at rest on arrival.
-    levels : sequence of float
-        Residuals [m] at which energies are compared, one or more.
-    fill : int
-        About how many points a filled front has; 0 leaves fronts as they were found.
-    least : int
-        How few fronts make a comparison.
-
-    Returns
-    -------
-    Comparison
-        The figures of every front, grouped by method.
-
-    Raises
-    ------
-    ValueError
-        When there are fewer fronts than that, one is empty or given twice, their tasks differ, two
-        have one name, or another argument is out of range.
     """
-    fronts = listed("fronts", fronts, "a list of fronts")
     names = checked_names(names, len(fronts))
     fill, least = whole("fill", fill, 0, MOST_FILL, "each is a motion"), whole("least", least, 1)
-    levels = listed("levels", levels, "a list of residuals in m, as [1e-3]")
     levels = [positive("level", level, "m") for level in levels]
     if not levels:
         raise ValueError("no levels are given; give one residual in m or more, as [1e-3]")
     if floor is not None:
-        of_kind("floor", floor, Real, "a number in J: of a Floor its energy, as floor.energy")
         floor = not_negative("floor", floor, "J")
     given = on_same_samples([*fronts, reference] if reference else fronts)
     fronts, reference = given[: len(fronts)], given[-1] if reference else None

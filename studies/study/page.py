@@ -1,8 +1,14 @@
-"""The study as one page of HTML: findings first, then a section for each task."""
+"""What a study writes: its fronts, and its page of findings and a section for each task."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
 from quietarm.metaheuristics import PRESETS
+from quietarm.ocp import Front
+from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.comparison.tables import how_to_read, tables, units
 from quietarm.studies.display.html_page import (
@@ -14,6 +20,7 @@ from quietarm.studies.display.html_page import (
     picture,
     table_element,
 )
+from quietarm.studies.display.saving import File, inside
 from quietarm.studies.display.words import counted, millimetres, title_of
 from quietarm.studies.figures.comparison import BANDS, PANELS, panel_figure
 from quietarm.studies.registry.methods import PAPERS, Method
@@ -95,11 +102,10 @@ def _section(found: CaseStudy, name: str) -> Markup:
 def _reading(study: Study) -> Markup:
     settings = study.settings
     fronts = [run.front for found in study.cases for run in found.comparison.runs]
-    versions = {name: version for front in fronts for name, version in front.versions.items()}
     asked = (
         f"Fronts of {settings.points} points by gradient, {settings.runs} seeds from "
         f"{settings.seed}, polynomials of {settings.terms} terms; {study.seconds:.0f} s in all. "
-        f"Computed with {', '.join(f'{name} {version}' for name, version in versions.items())}."
+        f"Computed with {_versions(fronts)}."
     )
     return element(
         "section",
@@ -108,6 +114,15 @@ def _reading(study: Study) -> Markup:
         bullets(how_to_read(study.cases[0].comparison)),
         element("p", asked, class_="soft"),
     )
+
+
+def _versions(fronts: Sequence[Front]) -> str:
+    """What the fronts were computed with: every version, as a front from a file may have others."""
+    versions: dict[str, dict[str, None]] = {}
+    for front in fronts:
+        for name, version in front.versions.items():
+            versions.setdefault(name, {})[version] = None
+    return ", ".join(f"{name} {' and '.join(several)}" for name, several in versions.items())
 
 
 def method_lines(settings: StudySettings) -> list[str]:
@@ -145,3 +160,24 @@ def _search_line(method: Method, settings: StudySettings, of_seeds: str) -> str:
         else "where the paper has {} and {}".format(*papers)
     )
     return f"{method.label}: the paper's search, {of_seeds}, {asked}, {beside}."
+
+
+def page_file(study: Study, output: Path) -> File:
+    """The page of a study, and what writes it."""
+    return output, lambda path: write_whole(path, study_page(study))
+
+
+def front_files(study: Study, folder: Path) -> list[File]:
+    """Every front of a study, which `quietarm compare` reads, in a folder, and what writes it."""
+    writes: dict[str, Callable[[Path], object]] = {}
+    for found in study.cases:
+        for run in found.comparison.runs:
+            seed = "" if run.front.seed is None else f"-seed{run.front.seed}"
+            name = f"{title_of(found.case.task)}-{run.front.method}{seed}"
+            writes[f"{_file_name(name)}.json"] = run.front.save
+    return inside(folder, writes)
+
+
+def _file_name(words: str) -> str:
+    signed = re.sub(r"(?<!\w)-", "minus-", words)
+    return re.sub(r"[^A-Za-z0-9.]+", "-", signed)

@@ -5,12 +5,12 @@ import re
 import shutil
 import subprocess
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 
 import pytest
 from matplotlib.figure import Figure
-from quietarm.studies.study.files import page_file
 from quietarm.studies.study.overview import draw_study_gaps
-from quietarm.studies.study.page import study_page
+from quietarm.studies.study.page import page_file, study_page
 from quietarm.studies.study.work import Study
 from small_study import CASES, QUICK
 
@@ -46,6 +46,18 @@ def test_the_page_loads_and_runs_nothing(text, root):
             assert value.startswith(("#", "data:image/svg+xml;base64,")), value[:60]
     assert "http:" not in text
     assert "https:" not in text
+
+
+def test_every_version_that_computed_a_front_is_named(small, no_pictures):
+    found = small.cases[0]
+    group = found.comparison.groups[0]
+    other = replace(group.runs[0].front, versions={"casadi": "0.1"})
+    groups = (
+        replace(group, runs=(replace(group.runs[0], front=other), *group.runs[1:])),
+        *found.comparison.groups[1:],
+    )
+    case = replace(found, comparison=replace(found.comparison, groups=groups))
+    assert "casadi 0.1 and " in study_page(replace(small, cases=(case,)))
 
 
 def test_every_picture_has_words_and_every_link_its_place(root):
@@ -124,7 +136,7 @@ def test_a_page_that_cannot_be_drawn_is_not_half_written(small, tmp_path, monkey
     def fail(*given):
         raise RuntimeError("drawing failed")
 
-    monkeypatch.setattr("quietarm.studies.study.files.study_page", fail)
+    monkeypatch.setattr("quietarm.studies.study.page.study_page", fail)
     path, write = page_file(small, tmp_path / "study.html")
     with pytest.raises(RuntimeError, match="drawing failed"):
         write(path)

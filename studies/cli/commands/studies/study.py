@@ -93,8 +93,8 @@ def study(
     from quietarm.studies.paper.printed import CONDITIONS
     from quietarm.studies.runs.files import refuse_same_file, warn_of_workers
     from quietarm.studies.runs.loading import load_front
-    from quietarm.studies.study.files import front_files, page_file
     from quietarm.studies.study.findings import case_findings, findings
+    from quietarm.studies.study.page import front_files, page_file
     from quietarm.studies.study.pieces import StudySettings
     from quietarm.studies.study.work import amount_of_work, run_study
 
