@@ -273,8 +273,8 @@ class _Equations:
     def check_one_by_one(self) -> None:
         """Many motions side by side give what each gives alone."""
         count = len(self._points)
-        outputs = [
-            ca.repmat(ca.DM(entry), count) if isinstance(entry, Real | ca.DM) else entry
+        outputs: list[Expression] = [
+            entry if isinstance(entry, ca.SX | ca.MX) else ca.repmat(ca.DM(entry), count)
             for entry in self._of_many.all
         ]
         for method, entry in zip(self._methods, outputs, strict=True):
@@ -382,7 +382,7 @@ class _Equations:
     def _defined(self) -> NDArray[np.bool_]:
         """Which angles the equations hold for: where they are finite for some motion."""
         finite = np.isfinite(self._values).all(axis=1)
-        return finite.reshape(_ANGLES, _KINDS).any(axis=1)
+        return np.any(finite.reshape(_ANGLES, _KINDS), axis=1, keepdims=True)[:, 0]
 
     @property
     def _resting_angles(self) -> Array:

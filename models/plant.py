@@ -11,9 +11,9 @@ import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import Field, field, fields
-from numbers import Real
 from typing import Any, ClassVar
 
+import numpy as np
 from quietarm.models.contract import check_contract
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.joint_motion import Expression, JointMotion
@@ -91,8 +91,8 @@ class Plant(ABC):
                     f"{self.name}: {entry.name} is not a parameter; write it as "
                     f"{entry.name}: ClassVar[{_OF_CLASS[entry.name]}]"
                 )
-            value = getattr(self, entry.name)
-            number = isinstance(value, Real) and not isinstance(value, bool)
+            value: Any = getattr(self, entry.name)
+            number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
             if not (number and abs(value) <= _MOST_PARAMETER):
                 raise ValueError(
                     f"{self.name}: parameter {entry.name} is {reprlib.repr(value)}; give a finite "
