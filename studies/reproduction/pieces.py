@@ -10,12 +10,15 @@ from itertools import product
 from quietarm.metaheuristics.ensemble import number_of_runs, one_seed
 from quietarm.metaheuristics.sharing.pieces import Done, Piece, Say, to_the_end
 from quietarm.ocp import (
+    CrossCheck,
     CycloidPolynomial,
     Floor,
     Plan,
     SolverFailedError,
     UncertainPlant,
+    cross_check,
     energy_floor,
+    epsilon_front,
     plan_move,
 )
 from quietarm.ocp.robustness.measures import tolerated_residual
@@ -58,10 +61,10 @@ SEARCHED = tuple(
     dict.fromkeys([*((r.condition, r.terms) for r in ROWS), (DUAL_LINK_HALF, COMPARED_TERMS)])
 )
 """What is searched: move and terms."""
-STARTS = {"network": 16, "Gaussians": 16, "spline": 2}
+STARTS = {"network": 4, "Gaussians": 4, "spline": 2}
 """Starts of the solver for profiles other than the polynomial; docs/physics.md, 'Other inputs of
 the cycloid', says how many of them end at the best."""
-SYSTEMS = "side by side"
+SYSTEMS, CHECKED = "side by side", "by both solvers"
 
 
 def pieces_of_paper(seeds: int) -> list[Piece]:
@@ -86,6 +89,10 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
     for profile, case in product(OTHERS, reversed(CASES)):
         name = f"gradient: {case.name}, {profile}"
         work.append(Piece((case, profile), name, partial(_solved_with, case, profile)))
+    work += [
+        Piece((case, CHECKED), f"front, {CHECKED}: {case.name}", partial(_checked, case))
+        for case in CONDITIONS
+    ]
     for case in CASES:
         name, needed = f"{SYSTEMS}: {case.name}", _needed(case, seeds)
         work.append(Piece((case, SYSTEMS), name, partial(_systems, case, seeds), tuple(needed)))
@@ -123,6 +130,12 @@ def _solved_robustly(case: Case, earlier: Done, say: Say) -> Plan | str:
         return to_the_end(plan_move(task, profile, residual_limit=limit))
     except SolverFailedError as none:
         return str(none)
+
+
+def _checked(case: Case, earlier: Done, say: Say) -> CrossCheck:
+    """Points of the exact front in the paper's box, by both solvers of the gradient."""
+    profile = CycloidPolynomial(COMPARED_TERMS)
+    return cross_check(to_the_end(epsilon_front(case.task, profile, bound=case.bound)))
 
 
 def _floor(case: Case, earlier: Done, say: Say) -> Floor:

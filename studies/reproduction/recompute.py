@@ -9,7 +9,7 @@ from quietarm.metaheuristics.ensemble import Spread, energies_at
 from quietarm.metaheuristics.sharing.pieces import Done, InterruptedPiece, Listener
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import HERE, Workers
-from quietarm.ocp import Floor, Front, Plan, evaluate_coefficients
+from quietarm.ocp import CrossCheck, Floor, Front, Plan, evaluate_coefficients
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.studies.paper.case import Case
 from quietarm.studies.paper.points import residual_level
@@ -25,6 +25,7 @@ from quietarm.studies.paper.printed import (
 from quietarm.studies.registry.methods import Method
 from quietarm.studies.reproduction.pieces import (
     CASES,
+    CHECKED,
     PAPER_SOLVES,
     SEARCHES,
     STUDIED,
@@ -77,6 +78,7 @@ class Reproduction:
     more_terms: dict[tuple[Case, int, bool], Plan]
     floors: dict[Case, Floor]
     systems: dict[Case, tuple[System, ...]]
+    checks: dict[Case, CrossCheck]
 
     def result(self, condition: Case, terms: int) -> RowResult:
         """The result of the first row for a condition and number of terms; KeyError if none."""
@@ -100,6 +102,7 @@ def recompute_paper(
             more_terms={solve: done.answers[solve] for solve in PAPER_SOLVES},
             floors={c: done.answers[c] for c in CONDITIONS},
             systems={c: done.answers[c, SYSTEMS] for c in CASES},
+            checks={c: done.answers[c, CHECKED] for c in CONDITIONS},
         )
 
 
