@@ -7,8 +7,8 @@ from math import isfinite
 
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.studies.comparison.measures import Comparison, Group
-from quietarm.studies.display.tables import Cell, Column, Table
 from quietarm.studies.display.words import millimetres
+from quietarm.studies.report.table import Cell, Column, Table
 
 _ENERGY, _SHARE, _PERCENT = "{:.5g}".format, "{:.4f}".format, "{:.2f}".format
 _MISS = "{:.2g}".format

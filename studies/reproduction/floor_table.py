@@ -8,9 +8,9 @@ from math import isfinite
 
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp import Floor
-from quietarm.studies.display.tables import Cell, Column, Table
 from quietarm.studies.paper.case import Case
 from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.report.table import Cell, Column, Table
 from quietarm.studies.reproduction.pieces import SEARCHES, TERMS
 from quietarm.studies.reproduction.recompute import Reproduction
 

@@ -12,12 +12,14 @@ from matplotlib.figure import Figure
 from quietarm.ocp import Plan
 from quietarm.ocp.base.files import write_whole
 from quietarm.studies.display.saving import File, drawing, inside
-from quietarm.studies.display.tables import Cell, Column, Table, print_table
 from quietarm.studies.display.words import title_of
 from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
 from quietarm.studies.figures.looks import ORANGE
 from quietarm.studies.paper.case import Case
 from quietarm.studies.paper.printed import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH
+from quietarm.studies.report.markdown import table_in_markdown
+from quietarm.studies.report.table import Cell, Column, Table
+from quietarm.studies.report.terminal import show_table
 from quietarm.studies.reproduction.claims import Claim
 from quietarm.studies.reproduction.floor_dots import floor_dots
 from quietarm.studies.reproduction.floor_table import LEGEND as FLOOR_LEGEND
@@ -178,14 +180,14 @@ def against_earlier(result: Reproduction, condition: Case, title: str) -> Figure
 def print_reproduction(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> None:
     """Print the tables and the claims."""
     for table in tables(result):
-        print_table(console, table)
+        show_table(console, table)
     console.print(LEGEND, highlight=False, style="dim")
     print_systems(console, result.systems)
     for table in floor_tables(result):
-        print_table(console, table)
+        show_table(console, table)
     console.print(FLOOR_LEGEND, highlight=False, style="dim")
     console.print(f"\n{finding(result)}", highlight=False)
-    print_table(console, checks_table(result))
+    show_table(console, checks_table(result))
     console.print(CHECKS, highlight=False, style="dim")
     console.print("\nWhat the paper claims", style="bold")
     for claim in verdicts:
@@ -225,13 +227,13 @@ def _markdown(
     result: Reproduction, paper_tables: Sequence[Table], verdicts: Sequence[Claim]
 ) -> str:
     parts = ["# The paper, recomputed\n", LEGEND + "\n"]
-    parts += [table.markdown() for table in paper_tables]
+    parts += [table_in_markdown(table) + "\n" for table in paper_tables]
     parts += ["## Side by side\n", "![Side by side](systems.png)\n"]
     parts += systems_in_markdown(result.systems)
     parts += ["## How far from the floor\n", finding(result) + "\n", FLOOR_LEGEND + "\n"]
-    parts += [table.markdown() for table in floor_tables(result)]
+    parts += [table_in_markdown(table) + "\n" for table in floor_tables(result)]
     parts.append("![Multiples of the floor](floor.png)\n")
-    parts += [checks_table(result).markdown(), CHECKS + "\n"]
+    parts += [table_in_markdown(checks_table(result)) + "\n", CHECKS + "\n"]
     parts.append("## What the paper claims\n")
     for claim in verdicts:
         evidence = "\n".join(f"- {line}" for line in claim.evidence)

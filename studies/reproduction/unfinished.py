@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
 from quietarm.metaheuristics.sharing.pieces import Done, Piece
 from quietarm.ocp import Floor, Front, Plan
-from quietarm.studies.display.tables import Cell, Column, Table
+from quietarm.studies.report.table import Cell, Column, Table
 from quietarm.studies.reproduction.side_by_side.results import System
 
 FILE = "unfinished.csv"

@@ -12,8 +12,8 @@ from quietarm.ocp import Front, Gain, polish_front
 from quietarm.ocp.base.checks import whole
 from quietarm.studies.display.progress import count, working
 from quietarm.studies.display.saving import drawing, finish, interruption
-from quietarm.studies.display.tables import Column, Table
 from quietarm.studies.display.words import counted, millimetres, print_lines
+from quietarm.studies.report.table import Column, Table
 from quietarm.studies.runs.files import FrontFiles
 from quietarm.studies.runs.loading import load_front
 from quietarm.studies.runs.reports.sweep import failure_lines

@@ -12,8 +12,10 @@ from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.studies.display.progress import count
 from quietarm.studies.display.saving import finish, interruption
+from quietarm.studies.report.files import document_files
+from quietarm.studies.report.terminal import show
 from quietarm.studies.runs.loading import load_plans
-from quietarm.studies.runs.reports.robustness import Figured, print_robustness, robustness_files
+from quietarm.studies.runs.reports.robustness import Figured, robustness_document
 from rich.console import Console
 
 DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
@@ -39,8 +41,9 @@ def run_robustness(
     figured, trouble = _evaluated(plans, ranges, samples, seed, quiet), None
     if len(figured) < len(plans):
         trouble = interruption(f"{len(figured)} of {len(plans)} plans")
-    files = [] if output is None else robustness_files(output, figured)
-    finish(files, partial(print_robustness, plans=figured), trouble=trouble, quiet=quiet)
+    document = robustness_document(figured)
+    files = [] if output is None else document_files(output, document)
+    finish(files, partial(show, document=document), trouble=trouble, quiet=quiet)
 
 
 @contextmanager

@@ -7,11 +7,11 @@ from math import isfinite, nan
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
-from quietarm.studies.display.tables import Cell, Column, Table
 from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.axes import axes_or_new, new_figure
 from quietarm.studies.figures.comparison import looks
 from quietarm.studies.registry.methods import Method
+from quietarm.studies.report.table import Cell, Column, Table
 from quietarm.studies.study.findings import STILL_LEVEL, at_rest, gap
 from quietarm.studies.study.work import Study
 

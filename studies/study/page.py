@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from quietarm.metaheuristics import PRESETS
@@ -11,19 +12,21 @@ from quietarm.ocp import Front
 from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.comparison.tables import how_to_read, tables, units
-from quietarm.studies.display.html_page import (
-    Markup,
-    bullets,
-    element,
-    joined,
-    page,
-    picture,
-    table_element,
-)
 from quietarm.studies.display.saving import File, inside
 from quietarm.studies.display.words import counted, millimetres, title_of
 from quietarm.studies.figures.comparison import BANDS, PANELS, panel_figure
 from quietarm.studies.registry.methods import PAPERS, Method
+from quietarm.studies.report.document import (
+    Block,
+    Bullets,
+    Contents,
+    Document,
+    Grid,
+    Picture,
+    Section,
+    Text,
+)
+from quietarm.studies.report.page import page
 from quietarm.studies.study.findings import STILL_LEVEL, case_findings, findings
 from quietarm.studies.study.overview import gap_figure, overview_table
 from quietarm.studies.study.work import CaseStudy, Study, StudySettings
@@ -41,65 +44,56 @@ _CAPTIONS = {
 }
 
 
-def study_page(study: Study) -> str:
-    """The study as a page that stands alone."""
-    title = "Residual vibration against energy: every method on one task"
-    if len(study.cases) > 1:
-        title = f"Residual vibration against energy: every method on {len(study.cases)} tasks"
-    parts = [element("h1", title)]
-    if len(study.cases) > 1:
-        parts += [_findings(findings(study)), _overview(study), _contents(study)]
-    parts += [_section(found, f"task-{i}") for i, found in enumerate(study.cases, start=1)]
-    return page(title, *parts, _reading(study))
+def study_document(study: Study) -> Document:
+    """The study: over all tasks, for each task, and how to read it."""
+    if len(study.cases) == 1:
+        title = "Residual vibration against energy: every method on one task"
+        return Document(title, [_section(study.cases[0]), _reading(study)])
+    title = f"Residual vibration against energy: every method on {len(study.cases)} tasks"
+    blocks = [
+        Bullets(findings(study), card=True),
+        *_overview(study),
+        Contents([title_of(found.case.task) for found in study.cases]),
+        *map(_section, study.cases),
+        _reading(study),
+    ]
+    return Document(title, blocks)
 
 
-def _findings(lines: list[str]) -> Markup:
-    return element("div", bullets(lines), class_="findings")
-
-
-def _overview(study: Study) -> Markup:
+def _overview(study: Study) -> list[Block]:
     level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
     words = (
         f"Energy above the best of all fronts at {level}, motions between points counted: one row "
         "for each task, one mark for each method. Bars: quartiles over the seeds."
     )
-    overview = picture(gap_figure(study), words, words)
-    return joined(
-        [element("div", overview, class_="overview"), table_element(overview_table(study))]
-    )
+    overview = Picture("overview.png", partial(gap_figure, study), words, narrow=True)
+    return [overview, overview_table(study)]
 
 
-def _contents(study: Study) -> Markup:
-    links = [
-        element("li", element("a", title_of(found.case.task), href=f"#task-{i}"))
-        for i, found in enumerate(study.cases, start=1)
-    ]
-    return element("nav", element("ul", *links), **{"aria-label": "tasks"})
-
-
-def _section(found: CaseStudy, name: str) -> Markup:
+def _section(found: CaseStudy) -> Section:
     title = title_of(found.case.task)
     pictures = [
-        picture(
-            panel_figure(found.comparison, panel, found.paper),
-            _ALTERNATIVES[panel].format(title),
+        Picture(
+            f"{panel}.png",
+            partial(panel_figure, found.comparison, panel, found.paper),
             _CAPTIONS[panel],
+            _ALTERNATIVES[panel].format(title),
         )
         for panel in PANELS
     ]
     shown = tables(found.comparison)
-    return element(
-        "section",
-        element("h2", title),
-        _findings(case_findings(found)),
-        element("div", *pictures, class_="pictures"),
-        *(table_element(shown[table]) for table in ("energies", "fronts", "coverage")),
-        element("p", " ".join(units(found.comparison)), class_="soft"),
-        id=name,
+    return Section(
+        title,
+        [
+            Bullets(case_findings(found), card=True),
+            Grid(pictures),
+            *(shown[table] for table in ("energies", "fronts", "coverage")),
+            Text(" ".join(units(found.comparison)), soft=True),
+        ],
     )
 
 
-def _reading(study: Study) -> Markup:
+def _reading(study: Study) -> Section:
     settings = study.settings
     fronts = [run.front for found in study.cases for run in found.comparison.runs]
     asked = (
@@ -107,12 +101,13 @@ def _reading(study: Study) -> Markup:
         f"{settings.seed}, polynomials of {settings.terms} terms; {study.seconds:.0f} s in all. "
         f"Computed with {_versions(fronts)}."
     )
-    return element(
-        "section",
-        element("h2", "Methods, and how to read it"),
-        bullets(method_lines(settings)),
-        bullets(how_to_read(study.cases[0].comparison)),
-        element("p", asked, class_="soft"),
+    return Section(
+        "Methods, and how to read it",
+        [
+            Bullets(method_lines(settings)),
+            Bullets(how_to_read(study.cases[0].comparison)),
+            Text(asked, soft=True),
+        ],
     )
 
 
@@ -164,7 +159,7 @@ def _search_line(method: Method, settings: StudySettings, of_seeds: str) -> str:
 
 def page_file(study: Study, output: Path) -> File:
     """The page of a study, and what writes it."""
-    return output, lambda path: write_whole(path, study_page(study))
+    return output, lambda path: write_whole(path, page(study_document(study)))
 
 
 def front_files(study: Study, folder: Path) -> list[File]:

@@ -16,7 +16,7 @@ from quietarm.studies.contest.report.figures import (
     looks_of,
     ranks_figure,
 )
-from quietarm.studies.contest.report.page import contest_page
+from quietarm.studies.contest.report.page import contest_document
 from quietarm.studies.contest.report.tables import (
     anytime_table,
     pairs_table,
@@ -31,6 +31,7 @@ from quietarm.studies.contest.statistics import (
     why_none,
 )
 from quietarm.studies.display.saving import File, drawing, inside
+from quietarm.studies.report.page import page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,11 +50,14 @@ def check_places(folder: Path) -> None:
 
 def report_files(arenas: Sequence[Arena], folder: Path, notes: Sequence[str] = ()) -> list[File]:
     """Every table as CSV, every picture as PNG and PDF, and the page; and what writes each."""
-    page: File = folder / PAGE, lambda path: write_whole(path, contest_page(arenas, notes))
+    whole: File = (
+        folder / PAGE,
+        lambda path: write_whole(path, page(contest_document(arenas, notes))),
+    )
     tests = not why_none(arenas)
     references = bibtex(methods_in(arenas), statistics=tests)
     return [
-        page,
+        whole,
         (folder / _REFERENCES, lambda path: write_whole(path, references)),
         *inside(folder / _TABLES, _tables(arenas, tests)),
         *inside(folder / _FIGURES, _pictures(arenas, tests)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, methods_in
@@ -29,15 +30,16 @@ from quietarm.studies.contest.statistics import (
     ranking_over,
     why_none,
 )
-from quietarm.studies.display.html_page import (
-    Markup,
-    bullets,
-    element,
-    page,
-    picture,
-    table_element,
-)
 from quietarm.studies.display.words import counted, millimetres, title_of
+from quietarm.studies.report.document import (
+    Block,
+    Bullets,
+    Document,
+    Lines,
+    Picture,
+    Section,
+    Text,
+)
 
 _ANYTIME = (
     "Share of the exact front's hypervolume that is missing, over evaluations and over time: "
@@ -50,15 +52,15 @@ _ATTAINMENT = (
 _RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell apart."
 
 
-def contest_page(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> str:
-    """The contest as a page."""
+def contest_document(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> Document:
+    """The contest: what was found, a section for each problem, how it was held."""
     methods = methods_in(arenas)
     title = f"{counted(len(methods), 'method')} against the exact front"
     sections = [_section(arena, methods) for arena in arenas]
-    return page(title, element("h1", title), _findings(arenas, notes), *sections, _methods(arenas))
+    return Document(title, [*_findings(arenas, notes), *sections, _methods(arenas)])
 
 
-def _findings(arenas: Sequence[Arena], notes: Sequence[str]) -> Markup:
+def _findings(arenas: Sequence[Arena], notes: Sequence[str]) -> list[Block]:
     none, lines = why_none(arenas), list[str]()
     for arena in arenas:
         best = min(arena.alike, key=lambda one: one.middle)
@@ -69,12 +71,12 @@ def _findings(arenas: Sequence[Arena], notes: Sequence[str]) -> Markup:
     lines += [f"{none}."] if none else []
     over = None if none else ranking_over(arenas)
     stated = [*unequal(arenas), *not_alike(arenas), *notes]
-    parts = [bullets([*lines, *(line if line.endswith(".") else f"{line}." for line in stated)])]
-    found = element("div", *parts, class_="findings")
+    lines += [line if line.endswith(".") else f"{line}." for line in stated]
+    found = Bullets(lines, card=True)
     if over is None:
-        return found
+        return [found]
     words = f"{_RANKS} Over {over.blocks} problems, by medians. {_verdict(over)}"
-    return element("div", found, picture(ranks_figure(over, "all problems"), words, words))
+    return [found, Picture("ranks.png", partial(ranks_figure, over, "all problems"), words)]
 
 
 def _verdict(found: Ranking) -> str:
@@ -85,19 +87,27 @@ def _verdict(found: Ranking) -> str:
     )
 
 
-def _section(arena: Arena, methods: Sequence[str]) -> Markup:
+def _section(arena: Arena, methods: Sequence[str]) -> Section:
     title, looks = title_of(arena.yardstick.front.task), looks_of(methods)
-    parts = [
-        element("h2", arena.problem),
-        element("p", title, class_="soft"),
-        picture(anytime_figure(arena, looks), f"{_ANYTIME} On {title}.", _anytime_words(arena)),
-        table_element(summary_table(arena)),
-        picture(attainment_figure(arena, looks), f"{_ATTAINMENT} On {title}.", _ATTAINMENT),
+    anytime, attainment = (
+        Picture(
+            f"{draw.__name__}.png", partial(draw, arena, looks), caption, f"{words} On {title}."
+        )
+        for draw, caption, words in (
+            (anytime_figure, _anytime_words(arena), _ANYTIME),
+            (attainment_figure, _ATTAINMENT, _ATTAINMENT),
+        )
+    )
+    blocks = [
+        Text(title, soft=True),
+        anytime,
+        summary_table(arena),
+        attainment,
         *_statistics(arena),
-        table_element(visits_table(arena)),
-        *([bullets(explanation(arena.landscape))] if arena.landscape else []),
+        visits_table(arena),
+        *([Bullets(explanation(arena.landscape))] if arena.landscape else []),
     ]
-    return element("section", *parts, id=arena.problem)
+    return Section(arena.problem, blocks)
 
 
 def _anytime_words(arena: Arena) -> str:
@@ -138,24 +148,22 @@ def _minima_words(number: int) -> str:
     return f"{number} of the minima differ by more than 0.1 % in energy"
 
 
-def _statistics(arena: Arena) -> list[Markup]:
+def _statistics(arena: Arena) -> list[Block]:
     none = why_none([arena])
     if none:
-        return [element("p", f"{none[0].upper()}{none[1:]}.")]
-    parts, found = list[Markup](), ranking_on(arena)
+        return [Text(f"{none[0].upper()}{none[1:]}.")]
+    parts, found = list[Block](), ranking_on(arena)
     if found is not None:
         words = f"{_RANKS} Over {found.blocks} seeds. {_verdict(found)}"
-        parts.append(picture(ranks_figure(found, arena.problem), words, words))
-    return [*parts, table_element(effects_table(arena, pairs_on(arena)))]
+        parts.append(Picture("ranks.png", partial(ranks_figure, found, arena.problem), words))
+    return [*parts, effects_table(arena, pairs_on(arena))]
 
 
-def _methods(arenas: Sequence[Arena]) -> Markup:
+def _methods(arenas: Sequence[Arena]) -> Section:
     references = bibtex(methods_in(arenas), statistics=not why_none(arenas))
-    return element(
-        "section",
-        element("h2", "Methods"),
-        element("p", methods_paragraph(arenas)),
-        bullets(settings_lines(arenas)),
-        element("h3", "References"),
-        element("pre", references, class_="soft"),
-    )
+    blocks = [
+        Text(methods_paragraph(arenas)),
+        Bullets(settings_lines(arenas)),
+        Section("References", [Lines(references.splitlines())]),
+    ]
+    return Section("Methods", blocks)

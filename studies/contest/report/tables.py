@@ -10,8 +10,8 @@ from quietarm.studies.contest.imported import Imported
 from quietarm.studies.contest.measures import TARGETS, Arena, Field, Outcome, quartiles, spread
 from quietarm.studies.contest.names import label_of
 from quietarm.studies.contest.statistics import ALPHA, Pair, Ranking
-from quietarm.studies.display.tables import Cell, Column, Table
 from quietarm.studies.display.words import millimetres
+from quietarm.studies.report.table import Cell, Column, Table
 
 _PERCENT = "{:.3g} %".format
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from quietarm.studies.display.tables import Cell, Column, Table, print_table
 from quietarm.studies.paper.case import Case
+from quietarm.studies.report.markdown import table_in_markdown
+from quietarm.studies.report.table import Cell, Column, Table
+from quietarm.studies.report.terminal import show_table
 from quietarm.studies.reproduction.side_by_side.results import FREQUENCY_ERROR, System
 from rich.console import Console
 
@@ -116,7 +118,7 @@ def all_systems(systems: Systems) -> Table:
 def print_systems(console: Console, systems: Systems) -> None:
     """Print a table for each move, what is missing below it, and how to read them."""
     for case, every in systems.items():
-        print_table(console, systems_table(case, every))
+        show_table(console, systems_table(case, every))
         for line in why_not(every):
             console.print(line, highlight=False, markup=False, style="dim")
     console.print(LEGEND, highlight=False, markup=False, style="dim")
@@ -126,7 +128,7 @@ def systems_in_markdown(systems: Systems) -> list[str]:
     """The same in Markdown."""
     parts = [f"{LEGEND}\n"]
     for case, every in systems.items():
-        parts.append(systems_table(case, every).markdown())
+        parts.append(table_in_markdown(systems_table(case, every)) + "\n")
         parts += [f"- {line}" for line in why_not(every)]
         parts.append("")
     return parts

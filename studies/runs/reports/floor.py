@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from quietarm.ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
-from quietarm.studies.display.tables import print_rows
+from quietarm.studies.report.document import Facts
+from quietarm.studies.report.terminal import show_block
 from quietarm.studies.runs.reports.plan import figure_rows, move_rows, stopped_words
 from rich.console import Console
 
@@ -51,7 +52,7 @@ def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
         ),
         ("time", f"{floor.provenance.seconds:.2f} s"),
     ]
-    print_rows(console, rows)
+    show_block(console, Facts(rows))
 
 
 def _unsolved(floor: Floor) -> str:

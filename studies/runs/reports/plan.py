@@ -9,8 +9,9 @@ from quietarm.ocp.answers.provenance import AGREEMENT
 from quietarm.ocp.plan.robust import EXCESS
 from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.task.quantities import QUANTITIES
-from quietarm.studies.display.tables import print_rows
 from quietarm.studies.display.words import millimetres, move_of, plant_words
+from quietarm.studies.report.document import Facts
+from quietarm.studies.report.terminal import show_block
 from quietarm.studies.runs.reports.worst import worst_in_words
 from rich.console import Console
 
@@ -32,7 +33,7 @@ def print_plan(console: Console, plan: Plan) -> None:
         _verified_row(plan),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
-    print_rows(console, rows)
+    show_block(console, Facts(rows))
 
 
 def _worst_rows(plan: Plan) -> list[Row]:

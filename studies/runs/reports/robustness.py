@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import Plan, Robustness, Sweep
-from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.robustness.measures import TOLERATED
-from quietarm.studies.display.saving import File, drawing, inside
-from quietarm.studies.display.tables import Cell, Column, Table, print_table
 from quietarm.studies.display.words import move_of, plant_words
-from rich.console import Console
+from quietarm.studies.report.document import Bullets, Document, Picture, Section
+from quietarm.studies.report.table import Cell, Column, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-REPORT, PICTURE = "report.md", "robustness.png"
 _SHARES = {50: "median of the samples", 95: "95 % of them within", 100: "largest of them"}
 _DIGITS, _LENGTH = "{:.5g}".format, "{:.3g}".format
 _TOLERATED = f"within {100 * TOLERATED:g} %"
@@ -36,7 +32,7 @@ def robustness_table(plans: Figured) -> Table:
         task = plan.task
         row: list[Cell] = [label, plant_words(task.plant), move_of(task), plan.profile.label]
         rows.append([*row, *(cell(found) for _, cell in lines)])
-    return Table("Robustness", [*columns, *(column for column, _ in lines)], rows)
+    return Table("", [*columns, *(column for column, _ in lines)], rows)
 
 
 _Line = tuple[Column, Callable[[Robustness], float | None]]
@@ -115,34 +111,24 @@ def how_to_read(plans: Figured) -> list[str]:
     ]
 
 
-def print_robustness(console: Console, plans: Figured) -> None:
-    """Print the table and how to read it."""
-    print_table(console, robustness_table(plans))
-    for line in how_to_read(plans):
-        console.print(f"- {line}", highlight=False, style="dim")
-
-
-def robustness_files(folder: Path, plans: Figured) -> list[File]:
-    """What writes each file to a folder."""
+def robustness_document(plans: Figured) -> Document:
+    """The table, how to read it, the picture; and every curve and sample."""
 
     def picture() -> Figure:
         from quietarm.studies.figures.robustness import robustness_figure
 
         return robustness_figure({label: figures for label, (_, figures) in plans.items()})
 
-    def report(path: Path) -> None:
-        parts = ["# Robustness\n", robustness_table(plans).markdown(), "**How to read it**\n"]
-        parts += [f"- {line}" for line in how_to_read(plans)]
-        write_whole(path, "\n".join([*parts, f"\n![Residual over errors]({PICTURE})\n"]))
-
-    writes = {
-        REPORT: report,
-        "robustness.csv": robustness_table(plans).save_csv,
-        "sweeps.csv": _sweeps(plans).save_csv,
-        "samples.csv": _samples(plans).save_csv,
-        PICTURE: drawing(picture),
-    }
-    return inside(folder, writes)
+    table = robustness_table(plans)
+    return Document(
+        "Robustness",
+        [
+            table,
+            Section("How to read it", [Bullets(how_to_read(plans), soft=True)]),
+            Picture("robustness.png", picture, "Residual over errors"),
+        ],
+        {"robustness": table, "sweeps": _sweeps(plans), "samples": _samples(plans)},
+    )
 
 
 _FIGURES = tuple(Column(name) for name in ("residual_m", "energy_J", "peak_torque_Nm"))

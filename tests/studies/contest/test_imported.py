@@ -4,6 +4,7 @@ import json
 import math
 import shutil
 from dataclasses import replace
+from html import unescape
 
 import numpy as np
 import pytest
@@ -89,7 +90,7 @@ def test_runs_of_other_evaluations_are_marked(call, copy, results, given, words)
     assert (code, err) == (0, "")
     assert f"{NAME}: results ends with" in out
     assert words in out
-    assert words in (copy / "contest.html").read_text()
+    assert words in unescape((copy / "contest.html").read_text())
 
 
 def arena_of(copy, evaluations, seeds=5):
@@ -145,7 +146,7 @@ def test_what_a_file_states_otherwise_is_said(call, copy, folder):
     assert code == 0
     words = f"mine.csv of mine on {NAME}: the file's energy is wrong for 1 of {len(energies)} mot"
     assert words in out
-    assert words in (copy / "contest.html").read_text()
+    assert words in unescape((copy / "contest.html").read_text())
 
 
 REFUSED = [

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from quietarm.ocp import evaluate_coefficients, plan_move
 from quietarm.studies.contest import landscape
 from quietarm.studies.contest.landscape import LEVEL, _correlation, _different, landscape_of
@@ -53,8 +54,7 @@ def test_explain_adds_the_landscape_once(call, copy, monkeypatch):
     monkeypatch.setattr(landscape, "BOXES", (2.0,))
     monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
     for name in ("anytime_figure", "attainment_figure"):
-        monkeypatch.setattr(page, name, lambda *given: None)
-    monkeypatch.setattr(page, "picture", lambda *given: "")
+        monkeypatch.setattr(page, name, lambda *given: Figure())
     assert call(f"{LINE} --explain --output {copy}")[0] == 0
     written = (copy / f"landscape/{NAME}.json").read_bytes()
     assert "Of 3 random starts in the box" in (copy / "contest.html").read_text()

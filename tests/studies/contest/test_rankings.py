@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from html import unescape
 
 import pytest
 from quietarm.studies.contest.folder import Contents
@@ -10,9 +11,10 @@ from quietarm.studies.contest.measures import Arena, Field, arenas_of
 from quietarm.studies.contest.report import page
 from quietarm.studies.contest.report.figures import draw_ranks, ranks_figure
 from quietarm.studies.contest.report.files import report_files
-from quietarm.studies.contest.report.page import contest_page
+from quietarm.studies.contest.report.page import contest_document
 from quietarm.studies.contest.statistics import ranking_over
-from quietarm.studies.display.html_page import element
+from quietarm.studies.report.document import Section
+from quietarm.studies.report.page import page as page_of
 from small_contest import NAME, rows_of
 
 MISSING = {
@@ -120,7 +122,7 @@ def test_the_picture_joins_what_is_not_told_apart(arenas):
 
 
 def test_the_page_says_it_for_a_problem(arena, quick_pictures):
-    text = contest_page([arena])
+    text = unescape(page_of(contest_document([arena])))
     assert "Over 5 seeds. Friedman's test" in text
     assert f"chi2 = 10, p = {P_VALUE:.2g}, the methods differ at 5 %" in text
     assert f"critical difference is {CRITICAL:.2f}" in text
@@ -134,7 +136,7 @@ def test_the_page_says_it_for_a_problem(arena, quick_pictures):
 
 
 def test_the_page_says_it_for_all_problems(arenas, monkeypatch, quick_pictures):
-    monkeypatch.setattr(page, "_section", lambda arena, methods: element("h2", arena.problem))
-    text = contest_page(arenas)
+    monkeypatch.setattr(page, "_section", lambda arena, methods: Section(arena.problem, []))
+    text = unescape(page_of(contest_document(arenas)))
     assert "Over 5 problems, by medians. Friedman" in text
     assert text.count("<img") == text.count('src="data:image') == 1

@@ -25,6 +25,7 @@ from quietarm.studies.figures.comparison import (
 from quietarm.studies.paper.points import paper_points
 from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
 from quietarm.studies.paper.tasks import condition_of
+from quietarm.studies.report.markdown import table_in_markdown
 
 compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)
 
@@ -45,7 +46,7 @@ def comparison(good, poor, seeds):
 
 def cells(table):
     """A table as a dict: row heading to its cells."""
-    lines = [line.strip("| ").split(" | ") for line in table.markdown().splitlines()[2:]]
+    lines = [line.strip("| ").split(" | ") for line in table_in_markdown(table).splitlines()[2:]]
     return {name.strip(): rest for name, *rest in lines if "---" not in name}
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from quietarm.studies.display.words import move_of
 from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
+from quietarm.studies.report.markdown import table_in_markdown
 from quietarm.studies.reproduction.claims import claims
 from quietarm.studies.reproduction.floor_dots import floor_dots
 from quietarm.studies.reproduction.floor_table import (
@@ -125,7 +126,7 @@ def test_a_search_that_met_no_residual_is_left_out(reproduction):
     without = dataclasses.replace(reproduction, rows=rows)
     series = {m.series for m in multiples(without, ARM_HALF)}
     assert series == {PAPER, IN_BOX, FREE}
-    assert "VEPSO" not in floor_table(without).markdown()
+    assert "VEPSO" not in table_in_markdown(floor_table(without))
 
 
 def test_the_dots_stand_where_the_multiples_are(reproduction):

@@ -2,7 +2,7 @@
 
 import pytest
 import quietarm.studies.study.pieces as study_pieces
-from quietarm.studies.display.html_page import element
+from matplotlib.figure import Figure
 from quietarm.studies.study import page
 from quietarm.studies.study.work import run_study
 from small_study import CASES, FLOOR, QUICK
@@ -16,8 +16,8 @@ def _floor_at_once(monkeypatch):
 @pytest.fixture
 def no_pictures(monkeypatch):
     """Those of the page that `test_page.py` reads are enough: they take long to draw."""
-    nothing = element("figure", "")
-    monkeypatch.setattr(page, "picture", lambda figure, alternative, caption: nothing)
+    monkeypatch.setattr(page, "panel_figure", lambda *given: Figure())
+    monkeypatch.setattr(page, "gap_figure", lambda *given: Figure())
 
 
 @pytest.fixture(scope="session")

@@ -19,14 +19,19 @@ from quietarm.ocp import (
 from quietarm.studies.comparison.measures import compare_fronts
 from quietarm.studies.paper.case import Case
 from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.report.page import page as page_of
 from quietarm.studies.study.findings import case_findings
-from quietarm.studies.study.page import study_page
+from quietarm.studies.study.page import study_document
 from quietarm.studies.study.pieces import FLOOR, Key, StudySettings
 from quietarm.studies.study.work import Study, amount_of_work, run_study
 from small_study import CASES, METHODS, QUICK
 from small_study import FLOOR as FLOOR_FOUND
 
 # What is run
+
+
+def study_page(study):
+    return page_of(study_document(study))
 
 
 def test_every_method_runs_on_every_task(small, announced):

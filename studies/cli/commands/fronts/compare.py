@@ -47,12 +47,10 @@ def compare(
     from quietarm.ocp import QuietarmError
     from quietarm.studies.comparison.measures import FILL, compare_fronts
     from quietarm.studies.display.saving import finish
+    from quietarm.studies.report.files import document_files
+    from quietarm.studies.report.terminal import show
     from quietarm.studies.runs.loading import load_front
-    from quietarm.studies.runs.reports.comparison import (
-        comparison_files,
-        print_comparison,
-        with_floor,
-    )
+    from quietarm.studies.runs.reports.comparison import comparison_document, with_floor
 
     errors, trouble = Console(stderr=True), None
     with working("comparing", errors, quiet=quiet):
@@ -69,5 +67,6 @@ def compare(
                 comparison = with_floor(comparison, errors)
         except KeyboardInterrupt:
             trouble = QuietarmError("interrupted; the comparison is kept, without the floor")
-    files = [] if output is None else comparison_files(output, comparison)
-    finish(files, partial(print_comparison, comparison=comparison), trouble=trouble, quiet=quiet)
+    document = comparison_document(comparison)
+    files = [] if output is None else document_files(output, document)
+    finish(files, partial(show, document=document), trouble=trouble, quiet=quiet)

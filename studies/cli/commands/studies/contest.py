@@ -100,8 +100,8 @@ def contest(
     from quietarm.studies.contest.work import pieces_of, run_contest, set_up
     from quietarm.studies.display.progress import progress, working
     from quietarm.studies.display.saving import Together, finish
-    from quietarm.studies.display.tables import print_table
     from quietarm.studies.display.words import print_lines
+    from quietarm.studies.report.terminal import show_table
     from quietarm.studies.runs.files import warn_of_workers
 
     names = tuple(name.strip() for name in methods.split(","))
@@ -130,7 +130,7 @@ def contest(
     def show(console: Console) -> None:
         for arena in arenas:
             print_lines(console, arena.problem)
-            print_table(console, summary_table(arena))
+            show_table(console, summary_table(arena))
         notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *asked.left_out]
         print_lines(console, *filter(None, notes))
 

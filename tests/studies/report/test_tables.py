@@ -7,7 +7,9 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from quietarm.studies.display.tables import Column, Table, print_table
+from quietarm.studies.report.markdown import table_in_markdown
+from quietarm.studies.report.table import Column, Table
+from quietarm.studies.report.terminal import show_table
 from rich.console import Console
 
 TABLE = Table(
@@ -19,19 +21,19 @@ TABLE = Table(
 
 def on_screen(table, width=80):
     console = Console(file=io.StringIO(), width=width)
-    console.print(table.for_screen())
+    show_table(console, table)
     return console.file.getvalue()
 
 
 def test_markdown_stands_upright_with_the_moves_beside_each_other():
-    assert TABLE.markdown() == (
+    assert table_in_markdown(TABLE) == (
         "**Two moves**\n"
         "\n"
         "| move | 0 to pi/6, 0.8 s | a/b |\n"  # a bar would end the cell
         "| --- | ---: | ---: |\n"
         "| terms N | 2 | 6 |\n"
         "| F2 [J] | 0.06297 | - |\n"
-        "| time [s] | 0.50 | 1.00 |\n"
+        "| time [s] | 0.50 | 1.00 |"
     )
 
 
@@ -58,7 +60,7 @@ def test_a_narrow_terminal_keeps_a_number_and_its_unit_on_one_line():
     columns = [Column("method"), Column("hypervolume missing", percent),
                Column("runs with at most 1 % missing"), Column("energy", percent)]  # fmt: skip
     console = Console(width=50, file=io.StringIO())
-    print_table(console, Table("What they ended with", columns, rows))
+    show_table(console, Table("What they ended with", columns, rows))
     lines = console.file.getvalue().splitlines()
     assert max(map(len, lines)) <= 50
     assert sum(line.count("9.21 %") for line in lines) == 3
@@ -98,14 +100,14 @@ def test_a_column_may_write_its_numbers_its_own_way_and_leaves_counts_alone():
 def test_csv_may_have_shorter_names():
     table = Table("t", [Column("move", key="move"), Column("F2 [J]", key="energy_J")], [["a", 1.0]])
     assert table.csv() == "move,energy_J\na,1.0\n"
-    assert "| F2 [J] | 1 |" in table.markdown()
+    assert "| F2 [J] | 1 |" in table_in_markdown(table)
 
 
 def test_a_quantity_that_no_row_has_is_left_out_for_people_and_kept_in_csv():
     table = Table("t", [Column("move"), Column("F2 [J]"), Column("x")], [["a", None, 1], ["b"] * 3])
-    assert "F2 [J]" in table.markdown()
+    assert "F2 [J]" in table_in_markdown(table)
     table = Table("t", table.columns, [["a", None, 1], ["b", None, 2]])
-    assert "F2 [J]" not in table.markdown()
+    assert "F2 [J]" not in table_in_markdown(table)
     assert "F2 [J]" not in on_screen(table)
     assert table.csv() == "move,F2 [J],x\na,,1\nb,,2\n"
 
@@ -126,7 +128,7 @@ def test_a_table_too_wide_for_the_screen_stands_in_pieces(width):
     rows = [[f"method {i}", 0.123456 + i, f"{i}.00001"] for i in range(8)]
     table = Table("Wide", [Column("method"), Column("energy within 1 mm [J]"), Column("c")], rows)
     console = Console(file=io.StringIO(), width=width)
-    print_table(console, table)
+    show_table(console, table)
     text = console.file.getvalue()
     assert "\u2026" not in text
     assert [text.count(f"{i}.00001") for i in range(8)] == [1] * 8

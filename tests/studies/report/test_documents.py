@@ -1,0 +1,122 @@
+"""A document says the same on a terminal, in Markdown and on a page that stands alone."""
+
+import base64
+import io
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+from matplotlib.figure import Figure
+from quietarm.studies.report.document import (
+    Bullets,
+    Contents,
+    Document,
+    Facts,
+    Grid,
+    Lines,
+    Picture,
+    Section,
+    Text,
+    Verdict,
+)
+from quietarm.studies.report.files import document_files
+from quietarm.studies.report.markdown import markdown
+from quietarm.studies.report.page import page
+from quietarm.studies.report.table import Column, Table
+from quietarm.studies.report.terminal import show
+from rich.console import Console
+
+NASTY = '<script>alert("1 & 2")</script>'
+
+
+def line():
+    figure = Figure(figsize=(2, 1))
+    figure.subplots().plot([0, 1], [0, 1])
+    return figure
+
+
+TABLE = Table(
+    "Energies",
+    [Column("method"), Column("energy [J]", "{:.2f}".format), Column("  quartiles")],
+    [["NSGA-II", 0.123, "1 to 2"], ["VEPSO", None, None]],
+)
+DOCUMENT = Document(
+    NASTY,
+    [
+        Contents(["What was found"]),
+        Section(
+            "What was found",
+            [
+                Text("A paragraph & more."),
+                Bullets(["one [bold]", "two"], card=True),
+                Facts([("energy F2", "0.1 J")]),
+                TABLE,
+                Verdict("It is quieter.", "holds", True, ["0.1 against 0.2 mm"]),
+            ],
+        ),
+        Picture("line.png", line, "A line & no more", "A line."),
+        Grid([Picture("other.svg", line, "Another")]),
+        Lines(["@article{key}"]),
+    ],
+    {"energies": TABLE},
+)
+WORDS = ["A paragraph & more.", "one [bold]", "energy F2", "0.1 J", "0.12", "quartiles",
+         "It is quieter.", "0.1 against 0.2 mm", "What was found"]  # fmt: skip
+
+
+def on_a_terminal(width):
+    console = Console(file=io.StringIO(), width=width)
+    show(console, DOCUMENT)
+    return console.file.getvalue()
+
+
+def of_the_page():
+    text = page(DOCUMENT)
+    assert text.startswith("<!DOCTYPE html>\n")
+    return ElementTree.fromstring(text)
+
+
+@pytest.mark.parametrize("form", ["terminal", "narrow", "markdown", "page"])
+def test_every_form_holds_every_word_and_number(form):
+    text = {
+        "terminal": lambda: on_a_terminal(80),
+        "narrow": lambda: on_a_terminal(34),
+        "markdown": lambda: markdown(DOCUMENT),
+        "page": lambda: "".join(of_the_page().itertext()),
+    }[form]()
+    assert [word for word in (*WORDS, NASTY) if word not in text] == []
+
+
+def test_a_page_is_well_formed_and_says_how_wide_it_is():
+    root = of_the_page()
+    assert root.get("lang") == "en"
+    assert root.find("head/title").text == NASTY
+    metas = {meta.get("name"): meta.get("content") for meta in root.findall("head/meta")}
+    assert metas["viewport"] == "width=device-width, initial-scale=1"
+    link = root.find("body/nav/ul/li/a").get("href")
+    assert link == f"#{root.find('body/section').get('id')}"
+
+
+def test_a_table_scrolls_within_itself_and_names_rows_and_columns():
+    scroll = of_the_page().find(".//div[@class='scroll']")
+    assert (scroll.get("tabindex"), scroll.get("aria-label")) == ("0", "Energies")
+    heads = [cell.text for cell in scroll.findall("table/thead/tr/th")]
+    assert heads == ["method", "NSGA-II", "VEPSO"]
+    first, second = scroll.findall("table/tbody/tr")
+    assert [cell.text for cell in first] == ["energy [J]", "0.12", "-"]
+    assert (second[0].text, second[0].get("class")) == ("quartiles", "part")
+
+
+def test_a_picture_is_inside_the_page_with_words_for_those_who_do_not_see_it():
+    image = of_the_page().find(".//img")
+    assert image.get("alt") == "A line."
+    head, data = image.get("src").split(",")
+    assert head == "data:image/svg+xml;base64"
+    assert ElementTree.fromstring(base64.b64decode(data)).tag == "{http://www.w3.org/2000/svg}svg"
+
+
+def test_a_folder_holds_the_report_its_data_and_its_pictures(tmp_path):
+    for path, write in document_files(tmp_path / "new", DOCUMENT):
+        write(path)
+    names = sorted(path.name for path in (tmp_path / "new").iterdir())
+    assert names == ["energies.csv", "line.png", "other.svg", "report.md"]
+    assert "![A line.](line.png)" in (tmp_path / "new" / "report.md").read_text()
