@@ -1,42 +1,52 @@
-"""The nonlinear program over all joint motions, with one task's numbers in it."""
+"""The nonlinear program over all joint motions of a task, by direct collocation.
+
+There is no profile. Unknowns of every interval are the joint and the modes before it, the joint's
+acceleration (or jerk) on it, and W'' and the power at its Gauss nodes, so that all derivatives are
+sparse and casadi's own. The power is the difference of two numbers that are not negative; their
+sum is its size where the energy is least. It counts at the nodes, where it is smooth: sampled only
+at the grid, the solver would hide energy between the samples.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any, NamedTuple
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import Plant
+from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.status import SolveStatus
 from quietarm.ocp.floor.grid import first_grid
-from quietarm.ocp.floor.step_model import by_group
-from quietarm.ocp.floor.transcription import FreePoint, FreeProgram
-from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.program.ipopt import OPTIONS
+from quietarm.ocp.program.ipopt import OPTIONS, Point, compiled, run_ipopt
 from quietarm.ocp.program.solution import ENERGY
-from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES
+from quietarm.ocp.simulation.collocation import (
+    GAUSS_NODES,
+    GAUSS_WEIGHTS,
+    NODES,
+    NodeState,
+    Step,
+    step,
+)
+from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.task.point_to_point import PointToPoint
-from quietarm.ocp.task.quantities import ask_for_jerk
+from quietarm.ocp.task.quantities import QUANTITIES, ask_for_jerk
 
+Array = NDArray[np.float64]
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}
 """The systems are sparse and have no dense columns: minimum degree makes them a quarter faster."""
 _WARM = {**_COLD, "mu_strategy": "monotone", "mu_init": 1e-6, "max_iter": 150}
 """From a coarser grid's solution; with a larger barrier the solver would move away from it."""
 _SCALE_STEPS = 40
-_SLACK_ROOM = 1e-2
-"""How far the slacks of |power| start inside their constraints, as a share of the peak power."""
-
-
-@lru_cache(maxsize=16)
-def _compiled(
-    plant: Plant, smooth: bool, steps: int, quantities: tuple[str, ...], warm: bool
-) -> FreeProgram:
-    return FreeProgram(plant, smooth, steps, quantities, _WARM if warm else _COLD)
+_ROOM = 1e-2
+"""How far the two parts of the power start inside their bounds, as a share of its peak."""
+POWER = "power"
 
 
 @dataclass(frozen=True)
@@ -50,8 +60,15 @@ class FreeSolution:
     iterations: int
 
 
+class _Simulated(NamedTuple):
+    """A motion's unknowns but for the power, and what they give at the nodes."""
+
+    unknowns: Array  # (rows, intervals): state before, last derivative of the joint, W'' at nodes
+    values: dict[str, Array]  # (values at the nodes, intervals) of the power and each quantity
+
+
 class FloorProgram:
-    """A task on a grid."""
+    """A task, to be solved on any grid."""
 
     @keep_interrupts()  # building, too, loses a Ctrl-C
     def __init__(self, task: PointToPoint, smooth: bool) -> None:
@@ -60,10 +77,19 @@ class FloorProgram:
                 f"jerk limit is {task.jerk_limit:g} rad/s^3 and the acceleration of this floor "
                 "jumps; ask for a smooth floor (smooth=True, or --smooth)"
             )
-        self.task, self.smooth = task, smooth
-        self._scale = self._measures()
+        self.task, self.smooth, self.plant = task, smooth, task.plant
+        self._states = 2 + smooth + 2 * task.plant.modes
+        path = CycloidPolynomial(0).path([], *task.move)
+        unknowns, values = self._simulated(self.along(path, first_grid(_SCALE_STEPS)))
+        # what the plain cycloid reaches, so that the solver sees numbers of order one
+        self._scale = np.abs(unknowns).max(axis=1)
+        self._scale[0] = abs(task.span)
+        self._scale[self._scale == 0] = 1.0
+        self._peaks = {name: float(np.abs(of).max()) or 1.0 for name, of in values.items()}
+        for name, row in _of_joint(task.limits, smooth, self._states).items():
+            self._peaks[name] = float(self._scale[row])
 
-    def along(self, path: JointPath, fractions: NDArray[np.float64]) -> FreeMotion:
+    def along(self, path: JointPath, fractions: Array) -> FreeMotion:
         """A motion of this kind on a grid whose speed at the grid is that of a path."""
         times = self.task.duration * fractions
         h = np.diff(times)
@@ -73,7 +99,7 @@ class FloorProgram:
             return FreeMotion(times, acceleration[:-1], np.diff(acceleration) / h)
         return FreeMotion(times, np.diff(path(times, 1)) / h, np.zeros(len(h)))
 
-    @keep_interrupts()  # building, too, loses a Ctrl-C
+    @keep_interrupts()
     def solve(
         self,
         free: FreeMotion,
@@ -82,95 +108,168 @@ class FloorProgram:
         warm: bool = False,
     ) -> FreeSolution:
         """Run the solver from one motion, on its grid."""
-        program = self._program(free.steps, warm)
-        weights = [float(name == minimise) for name in (ENERGY, *program.peaks)]
-        parameters = np.concatenate([free.lengths, self._scale, weights])
-        point, stop = program.solve(
-            self._start(program, free), *self._bounds(program, limits), parameters
+        names, lengths, scale = tuple(self.task.limits), free.lengths, self._scale
+        solver = _solver(self.plant, self.smooth, free.steps, names, warm)
+        at = self._simulated(free)
+        power = at.values[POWER] / self._peaks[POWER]
+        parts = np.maximum(np.vstack([power, -power]), 0.0) + _ROOM
+        peaks = [np.abs(self._of(name, at)).max() / self._peaks[name] for name in names]
+        start = _flat(peaks, np.vstack([at.unknowns / scale[:, None], parts]))
+        upper = np.full((len(scale) + len(parts), free.steps), np.inf)
+        lower = -upper
+        lower[len(scale) :] = 0.0
+        lower[: self._states, 0] = upper[: self._states, 0] = self._at_rest(self.task.start)
+        most = [limits.get(name, np.inf) / self._peaks[name] for name in names]
+        weights = [float(name == minimise) for name in (ENERGY, *names)]
+        measures = [self._peaks[name] for name in (POWER, *names)]
+        arrived = self._at_rest(self.task.target)
+        count = (self._states + NODES * self.plant.modes + NODES) * free.steps
+        of_constraints = np.zeros(solver.size1_in("lbg")), np.full(solver.size1_in("lbg"), np.inf)
+        of_constraints[1][:count] = 0.0
+        stop = run_ipopt(
+            solver,
+            Point(start),
+            (_flat(np.zeros(len(names)), lower), _flat(most, upper)),
+            of_constraints,
+            np.concatenate([lengths, scale, measures, arrived, weights]),
         )
-        reference = self._reference(program)
-        nodes = np.outer(free.lengths, GAUSS_WEIGHTS).ravel()
-        rows = point.intervals * self._scale[: program.model.unknowns, None]
-        derivative = rows[program.model.joint - 1, :-1]
+        found = stop.point.unknowns[len(names) :].reshape(free.steps, -1).T
+        rows = found[: len(scale)] * scale[:, None]
+        last = rows[self._states]
+        energy = lengths @ (GAUSS_WEIGHTS * 2 @ found[len(scale) :]) * self._peaks[POWER]
+        reached = zip(names, stop.point.unknowns, strict=False)
         return FreeSolution(
             free=FreeMotion(
                 free.times,
-                rows[2, :-1] if self.smooth else derivative,
-                derivative if self.smooth else np.zeros(free.steps),
+                rows[2] if self.smooth else last,
+                last if self.smooth else np.zeros(free.steps),
             ),
-            energy=float(nodes @ point.slack * reference["power"]),
-            peaks={
-                name: float(peak * reference[name])
-                for name, peak in zip(program.peaks, point.peaks, strict=True)
-            },
+            energy=float(energy),
+            peaks={name: float(peak * self._peaks[name]) for name, peak in reached},
             status=SolveStatus.from_ipopt(stop.return_status),
             iterations=stop.iterations,
         )
 
-    def _program(self, steps: int, warm: bool) -> FreeProgram:
-        task = self.task
-        return _compiled(task.plant, self.smooth, steps, tuple(task.limits), warm)
+    def _at_rest(self, angle: float) -> Array:
+        """The state, scaled."""
+        return np.append(angle / self._scale[0], np.zeros(self._states - 1))
 
-    def _measures(self) -> NDArray[np.float64]:
-        """What the plain cycloid reaches, so that the solver sees numbers of order one."""
-        path = CycloidPolynomial(0).path([], *self.task.move)
-        free = self.along(path, first_grid(_SCALE_STEPS))
-        program = self._program(free.steps, warm=False)
-        model = program.model
-        unknowns, outputs = self._simulate(program, free, np.ones(model.scales))
-        peaks = [np.abs(rows).max() for rows in by_group(model.groups, outputs).values()]
-        measures = np.array([*np.abs(unknowns).max(axis=1), *peaks])
-        measures[0] = abs(self.task.span)
-        measures[measures == 0] = 1.0
-        return measures
+    def _of(self, name: str, at: _Simulated) -> Array:
+        row = _of_joint([name], self.smooth, self._states).get(name)
+        return at.values[name] if row is None else at.unknowns[row]
 
-    def _reference(self, program: FreeProgram) -> dict[str, float]:
-        """Scale of each output and of each limited derivative of the joint, by name."""
-        of_joint = {name: self._scale[row] for name, row in program.of_joint.items()}
-        outputs = self._scale[program.model.unknowns :]
-        return of_joint | dict(zip(program.model.outputs, outputs, strict=True))
+    def _simulated(self, free: FreeMotion) -> _Simulated:
+        """The modes along a motion, and what it takes."""
+        before = [*free.boundaries(self.task.start)[:, :-1], free.acceleration]
+        joint = [ca.DM(row).T for row in (*before, *([free.jerk] if self.smooth else []))]
+        h = ca.DM(free.lengths).T
+        joints = [joint_after(joint, share * h) for share in GAUSS_NODES]
+        one = step(self.plant, joints, h)
+        W, dW, _ = march(*one.transition(), h.shape)
+        ddW = one.accelerations(W, dW)
+        values = _at_nodes(self.plant, joints, one.nodes(W, dW, ddW), tuple(QUANTITIES))
+        rows = [*joint[:-1], *W, *dW, joint[-1], *(x for at_node in ddW for x in at_node)]
+        numbers = {name: _rows(of, free.steps) for name, of in values.items() if of}
+        return _Simulated(_rows(rows, free.steps), numbers)
 
-    def _simulate(
-        self, program: FreeProgram, free: FreeMotion, scale: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        model = program.model
-        inputs = free.jerk if self.smooth else free.acceleration
-        initial = self._at_rest(program, self.task.start) / scale[: model.unknowns]
-        return program.simulate(
-            initial[model.after], inputs / scale[model.joint - 1], free.lengths, scale
+
+def _rows(entries: Sequence[Any], steps: int) -> Array:
+    return np.array([np.broadcast_to(ca.DM(x).full().ravel(), steps) for x in entries])
+
+
+def _flat(peaks: Sequence[float] | Array, columns: Array) -> Array:
+    """Unknowns as the solver takes them: the peaks, then interval after interval."""
+    return np.concatenate([peaks, columns.T.ravel()])
+
+
+def _of_joint(
+    names: Sequence[str] | Mapping[str, float], smooth: bool, states: int
+) -> dict[str, int]:
+    """Quantities that are derivatives of the joint: their rows among the unknowns."""
+    orders = {name: QUANTITIES[name].derivative for name in names}
+    return {
+        name: order if order < 2 + smooth else states
+        for name, order in orders.items()
+        if order is not None
+    }
+
+
+def _at_nodes(
+    plant: Plant,
+    joints: Sequence[JointMotion],
+    nodes: Sequence[NodeState],
+    names: Sequence[str],
+) -> dict[str, list[Expression]]:
+    """Power and quantities that follow from the modes, at the nodes of an interval."""
+    values: dict[str, list[Expression]] = {POWER: []}
+    for joint, node in zip(joints, nodes, strict=True):
+        torque, tips = (
+            plant.torque(joint, node.W, node.dW, node.ddW),
+            plant.tip_displacements(node.W),
         )
+        values[POWER].append(torque * joint.speed)
+        for name in names:
+            if QUANTITIES[name].derivative is None:
+                values.setdefault(name, []).extend(QUANTITIES[name].of(joint, tips, torque))
+    return values
 
-    @staticmethod
-    def _at_rest(program: FreeProgram, angle: float) -> NDArray[np.float64]:
-        return np.append(angle, np.zeros(program.model.unknowns - 1))
 
-    def _start(self, program: FreeProgram, free: FreeMotion) -> FreePoint:
-        """Unknowns that agree with the motion: its own modes, slacks and peaks."""
-        unknowns, outputs = self._simulate(program, free, self._scale)
-        values = by_group(program.model.groups, outputs)
-        values |= {name: unknowns[row] for name, row in program.of_joint.items()}
-        return FreePoint(
-            peaks=np.array([np.abs(values[name]).max() for name in program.peaks]),
-            intervals=unknowns,
-            slack=np.abs(values["power"].ravel(order="F")) + _SLACK_ROOM,
+def _interval(plant: Plant, smooth: bool, names: tuple[str, ...]) -> ca.Function:
+    """(unknowns, length) -> state after, collocation equations, values at the nodes."""
+    modes, joint = plant.modes, 2 + smooth
+    states = joint + 2 * modes
+    x, h = ca.SX.sym("x", states + 1 + NODES * modes), ca.SX.sym("h")
+    W, dW = (ca.vertsplit(part) for part in ca.vertsplit(x[joint:states], modes))
+    ddW = [ca.vertsplit(part) for part in ca.vertsplit(x[states + 1 :], modes)]
+    derivatives = [*ca.vertsplit(x[:joint]), x[states]]
+    joints = [joint_after(derivatives, share * h) for share in GAUSS_NODES]
+    one = Step(h, [], modes)
+    nodes = one.nodes(W, dW, ddW)
+    equations = [
+        given - by_plant
+        for at, node in zip(joints, nodes, strict=True)
+        for given, by_plant in zip(
+            node.ddW, plant.modal_accelerations(at, node.W, node.dW), strict=True
         )
+    ]
+    W_after, dW_after = one.end(W, dW, ddW)
+    after = [*joint_after(derivatives, h)[:joint], *W_after, *dW_after]
+    values = _at_nodes(plant, joints, nodes, names).values()
+    outputs = [ca.vertcat(*rows) for rows in (after, equations, *values)]
+    return ca.Function("interval", [x, h], outputs, {"cse": True})
 
-    def _bounds(
-        self, program: FreeProgram, limits: Mapping[str, float]
-    ) -> tuple[FreePoint, FreePoint]:
-        model, reference = program.model, self._reference(program)
-        free, slack = (
-            np.full((model.unknowns, program.steps + 1), np.inf),
-            np.full(NODES * program.steps, np.inf),
-        )
-        peaks = np.array([limits.get(name, np.inf) / reference[name] for name in program.peaks])
-        lower, upper = -free, free
-        scale = self._scale[: model.unknowns]
-        arrived = self._at_rest(program, self.task.target) / scale
-        initial = self._at_rest(program, self.task.start) / scale
-        lower[model.after, 0] = upper[model.after, 0] = initial[model.after]
-        lower[:, -1] = upper[:, -1] = arrived
-        return (
-            FreePoint(np.zeros(len(peaks)), lower, -slack),
-            FreePoint(peaks, upper, slack),
-        )
+
+@lru_cache(maxsize=16)
+def _solver(
+    plant: Plant, smooth: bool, steps: int, names: tuple[str, ...], warm: bool
+) -> ca.Function:
+    """IPOPT over peaks and intervals; of lengths, scales, state at the end and weights."""
+    interval = _interval(plant, smooth, names)
+    rows, states = interval.size1_in(0), interval.size1_out(0)
+    sizes = [steps, rows, 1 + len(names), states, 1 + len(names)]
+    p = ca.MX.sym("p", sum(sizes))
+    lengths, scale, measures, arrived, weights = ca.vertsplit(p, [0, *np.cumsum(sizes).tolist()])
+    peaks, columns = ca.MX.sym("peaks", len(names)), ca.MX.sym("x", rows + 2 * NODES, steps)
+    unknowns, forward, backward = ca.vertsplit(columns, [0, rows, rows + NODES, rows + 2 * NODES])
+    wide = ca.repmat(scale, 1, steps)
+    after, equations, power, *values = interval.map(steps)(unknowns * wide, lengths.T)
+    following = ca.horzcat(unknowns[:states, 1:], arrived)
+    of_joint = _of_joint(names, smooth, states)
+    at_nodes = dict(zip((n for n in names if n not in of_joint), values, strict=True))
+    constraints = [
+        after / wide[:states, :] - following,
+        equations / wide[states + 1 :, :],
+        forward - backward - power / measures[0],
+    ]
+    for i, name in enumerate(names):
+        row = of_joint.get(name)
+        value = at_nodes[name] / measures[1 + i] if row is None else unknowns[row, :]
+        constraints += [peaks[i] - value, peaks[i] + value]
+    energy = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ (forward + backward)).T) / ca.sum1(lengths)
+    problem = {
+        "x": ca.vertcat(peaks, ca.vec(columns)),
+        "p": p,
+        "f": ca.dot(weights, ca.vertcat(energy, peaks)),
+        "g": ca.vertcat(*map(ca.vec, constraints)),
+    }
+    return compiled(problem, _WARM if warm else _COLD)

@@ -63,56 +63,6 @@ class Stop(NamedTuple):
     passed: float
 
 
-class LagrangianHessian(NamedTuple):
-    """Second derivatives of the Lagrangian by the unknowns, with the symbols of its multipliers."""
-
-    of_objective: ca.MX
-    of_constraints: ca.MX
-    hessian: ca.MX
-
-
-def ipopt(
-    problem: Mapping[str, ca.MX],
-    jacobian: ca.MX,
-    hessian: LagrangianHessian,
-    options: Options,
-    gradient: ca.MX | None = None,
-) -> ca.Function:
-    """Compile a nonlinear program with derivatives of its own for IPOPT.
-
-    Parameters
-    ----------
-    problem : mapping of str to MX
-        ``x`` (unknowns), ``p`` (parameters), ``f`` (objective) and ``g`` (constraints).
-    jacobian : MX
-        Of the constraints by the unknowns.
-    hessian : LagrangianHessian
-        Of the Lagrangian.
-    options : mapping
-        IPOPT's.
-    gradient : MX, optional
-        Of the objective; casadi's own by default.
-
-    Returns
-    -------
-    Function
-        The solver.
-    """
-    x, p, f, g = (problem[name] for name in "xpfg")
-    of_objective, multipliers, second = hessian
-    functions = {
-        "jac_g": ca.Function("nlp_jac_g", [x, p], [g, jacobian], ["x", "p"], ["g", "jac_g_x"]),
-        "hess_lag": ca.Function(
-            "nlp_hess_l", [x, p, of_objective, multipliers], [ca.triu(second)],
-            ["x", "p", "lam_f", "lam_g"], ["triu_hess_gamma_x_x"],
-        ),
-    }  # fmt: skip
-    if gradient is not None:
-        names = ["x", "p"], ["f", "grad_f_x"]
-        functions["grad_f"] = ca.Function("nlp_grad_f", [x, p], [f, gradient], *names)
-    return _compiled(problem, functions, options)
-
-
 def ipopt_of_functions(
     unknowns: int,
     f: ca.Function,
@@ -144,14 +94,15 @@ def ipopt_of_functions(
     """
     x, p = ca.MX.sym("x", unknowns), ca.MX.sym("p")
     functions = {"grad_f": gradient, "jac_g": jacobian, "hess_lag": hessian}
-    return _compiled({"x": x, "p": p, "f": f(x, p), "g": g(x, p)}, functions, options)
+    return compiled({"x": x, "p": p, "f": f(x, p), "g": g(x, p)}, options, functions)
 
 
-def _compiled(
-    problem: Mapping[str, ca.MX], functions: Mapping[str, ca.Function], options: Options
+def compiled(
+    problem: Mapping[str, ca.MX], options: Options, derivatives: Mapping[str, ca.Function] = {}
 ) -> ca.Function:
+    """IPOPT for a nonlinear program; derivatives that are not given are casadi's own."""
     chosen = {"calc_lam_p": False, "no_nlp_grad": True, "print_time": False}
-    everything = {**functions, **chosen, "ipopt": dict(options)}
+    everything = {**derivatives, **chosen, "ipopt": dict(options)}
     with _on_one_thread():
         return ca.nlpsol("program", "ipopt", dict(problem), everything)
 

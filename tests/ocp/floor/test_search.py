@@ -75,7 +75,7 @@ def test_its_jolts_cost_the_kinetic_energy_of_the_inertia_felt_at_once(coarse_of
 
 
 def test_a_smooth_motion_comes_to_the_same_floor(coarse_of):
-    free, smooth = coarse_of(ARM, **SHORT), coarse_of(ARM, smooth=True, **SHORT)
+    free, smooth = coarse_of(ARM, **SHORT), coarse_of(ARM, smooth=True, starts=2)
     # Jolts take up to 4e-5 of the move at any level, which no level shows.
     room = free.left + smooth.left + 1e-4 * free.energy
     assert smooth.energy == pytest.approx(free.energy, abs=room)
