@@ -70,7 +70,8 @@ def reproduction(begun):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensemble, "search", short)
-        patch.setattr(pieces, "energy_floor", lambda task: floor(task, starts=2, tolerance=0.02))
+        patch.setattr(pieces, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.02))
+        patch.setattr(floor_search, "FIRST_INTERVALS", 48)
         patch.setattr(pieces, "STARTS", dict.fromkeys(pieces.STARTS, 1))
         patch.setattr(pieces, "plan_move", from_one_start)
         return recompute.recompute_paper(begun.append)
