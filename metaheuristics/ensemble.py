@@ -23,7 +23,7 @@ from quietarm.metaheuristics.sharing.pieces import (
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import Front, PointToPoint, QuietarmError
-from quietarm.ocp.base.checks import report_given, whole
+from quietarm.ocp.base.checks import whole
 
 SEARCH_RESIDUAL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""
@@ -171,7 +171,6 @@ def search_many(
         When it was interrupted before anything was found.
     """
     seeds, where = seeds_of(seed, runs), Workers(workers, scheduler)
-    report_given(report)
     if not isinstance(method, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ValueError(
             f"method is {type(method).__name__}; give one of {', '.join(PRESETS)}, or call "

@@ -12,7 +12,6 @@ from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, prese
 from quietarm.metaheuristics.runs.progress import Report
 from quietarm.metaheuristics.runs.settings import SearchSettings, SearchSpec
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
-from quietarm.ocp.base.checks import report_given
 from quietarm.ocp.base.files import check_writable
 from quietarm.ocp.base.interrupts import note_interrupts
 
@@ -100,7 +99,6 @@ def search(
     from quietarm.metaheuristics.runs.loop import Loop
 
     profile = CycloidPolynomial() if profile is None else profile
-    report_given(report)
     bound = profile.default_bound if bound is None else bound
     method, chosen, asked = _chosen(algorithm, task, bound, population, generations, settings)
     loop = Loop(

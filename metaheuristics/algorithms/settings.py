@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from quietarm.ocp.base.checks import finite, of_kind, positive, whole
+from quietarm.ocp.base.checks import finite, positive, whole
 from quietarm.ocp.base.names import has_no, nearest
 
 Value = float | int | bool | str | None
@@ -84,8 +84,7 @@ def with_defaults(
 ) -> dict[str, Value]:
     """All settings of a method: those that are given, each checked, and the defaults."""
     entries = {setting.name: setting for setting in known}
-    remedy = "a table of values by name, as {'crossover': 0.7}"
-    given = {} if given is None else of_kind("settings", given, Mapping, remedy)
+    given = {} if given is None else given
     for name in given:
         if name not in entries:
             raise ValueError(has_no(method, "setting", str(name), entries))

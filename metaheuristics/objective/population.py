@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import JointProfile, PointToPoint
-from quietarm.ocp.base.checks import real_array, whole
+from quietarm.ocp.base.checks import whole
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.program.batch import Batch, batch
@@ -101,9 +101,9 @@ class PopulationObjective:
         Raises
         ------
         ValueError
-            When they are no real numbers, or their shape does not fit the profile.
+            When their shape does not fit the profile.
         """
-        population = real_array("coefficients", coefficients, "rows of numbers")
+        population = np.asarray(coefficients, dtype=float)
         if population.ndim != 2 or population.shape[1] != self.profile.size:
             raise ValueError(
                 f"the population has shape {population.shape}; give (candidates, "

@@ -12,8 +12,7 @@ from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkp
 from quietarm.metaheuristics.runs.loop import Loop
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.runs.settings import SearchSpec, search_versions
-from quietarm.ocp.answers.documents import reading
-from quietarm.ocp.answers.encoding import plain, typed
+from quietarm.ocp.answers.documents import plain, reading, typed
 
 CHECKPOINT_SECONDS = 2.0
 

@@ -24,7 +24,7 @@ from quietarm.metaheuristics.sharing.pieces import (
 from quietarm.metaheuristics.sharing.worker import do_piece
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import Front, QuietarmError
-from quietarm.ocp.answers.encoding import typed
+from quietarm.ocp.answers.documents import typed
 from quietarm.ocp.base.interrupts import note_interrupts
 
 _INSISTENT = 3

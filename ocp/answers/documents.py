@@ -1,26 +1,77 @@
-"""JSON documents with a format name and a version; never pickle, never anything that runs."""
+"""Answers as JSON with a format name and a version, and back; nothing in a file is ever run.
+
+`plain` gives a value in JSON's types, `typed` is its opposite: names are those of the attributes,
+and msgspec checks every entry against its type.
+"""
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
-import reprlib
 from codecs import BOM_UTF8
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
-from quietarm.ocp.answers.encoding import typed
+import numpy as np
+from quietarm.models import Plant, file_of_plant, known_plants
 from quietarm.ocp.base.errors import FileFormatError
 from quietarm.ocp.base.files import read_bytes, write_whole
+from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
+from quietarm.ocp.robustness.uncertain import UncertainPlant
 
-Document = dict[str, Any]
 T = TypeVar("T")
+PLANT_FILE, UNCERTAIN = "plant_file", "uncertain"
+"""Entries of a plant: the file it was loaded from; how far it may be wrong."""
+_SHOWN = 12
+"""Digits of a digest that a message shows."""
 
 
-def write_document(path: str | Path, name: str, version: int, content: Document) -> None:
+def plain(value: Any) -> Any:
+    """A value in JSON's types, SI units and radians."""
+    match value:
+        case UncertainPlant():
+            uncertain = {"ranges": plain(value.ranges), "samples": plain(value.samples)}
+            return {**plain(value.assumed), UNCERTAIN: uncertain}
+        case Plant():
+            file = file_of_plant(type(value))
+            origin = (
+                {} if file is None else {PLANT_FILE: {"path": file.path, "sha256": file.digest}}
+            )
+            return {"name": _name_of(value, known_plants()), **origin, **_entries(value)}
+        case JointProfile():
+            return {"name": _name_of(value, known_profiles()), **_entries(value)}
+        case Enum():
+            return value.value
+        case Mapping():
+            return {name: plain(entry) for name, entry in value.items()}
+        case np.ndarray() | np.generic():
+            return value.tolist()
+        case list() | tuple():
+            return [plain(entry) for entry in value]
+        case _ if dataclasses.is_dataclass(value):
+            return _entries(value)
+    return value
+
+
+def typed(document: Any, kind: type[T]) -> T:
+    """The value of a document; ValueError where an entry is missing, unknown or not of its kind."""
+    try:
+        value = msgspec.convert(document, kind, dec_hook=_known_here)
+    except msgspec.ValidationError as error:
+        raise ValueError(str(error)) from None
+    wanted = plain(value)
+    if isinstance(document, dict) and document.keys() != wanted.keys():
+        odd = ", ".join(sorted(document.keys() ^ wanted.keys()))
+        raise ValueError(f"entries that are missing, or not known here: {odd}")
+    return value
+
+
+def write_document(path: str | Path, name: str, version: int, content: dict[str, Any]) -> None:
     """Write a document whole or not at all; ValueError when it cannot be written."""
     document = {"format": f"quietarm-{name}", "version": version, **content}
     write_whole(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
@@ -32,65 +83,104 @@ def read_document(path: str | Path, name: str, version: int, kind: type[T]) -> T
         document = msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise FileFormatError(
-            f"{path} is not a {name}: it is not whole, valid JSON in UTF-8{_where(error)}; "
-            f"write the {name} again, or save it so"
+            f"{path} is not a {name}: it is not whole, valid JSON in UTF-8 ({error}); write the "
+            f"{name} again, or save it so"
         ) from None
     content = content_of(path, document, name, version)
     with reading(path, name):
         return typed(content, kind)
 
 
-def _where(error: Exception) -> str:
-    """What a text that is no JSON stumbles over, where its decoder knows it."""
-    if "truncated" in str(error):
-        return ", for it ends too early"
-    if "out of range" in str(error):
-        return ", for one of its numbers is out of range"
-    at = re.search(r"\(byte (\d+)\)", str(error))
-    return f" at byte {at[1]}" if at else ""
-
-
-def content_of(path: str | Path, document: Any, name: str, version: int) -> Document:
+def content_of(path: str | Path, document: Any, name: str, version: int) -> dict[str, Any]:
     """What a document holds beside its format and version, which are checked."""
     content = dict(document) if isinstance(document, dict) else {}
-    found_name, found = content.pop("format", None), content.pop("version", None)
-    if found_name != f"quietarm-{name}":
-        its = f"its format is {reprlib.repr(found_name)}"
-        says = its if found_name else "it has no quietarm format name"
-        raise FileFormatError(f"{path} is not a {name}: {says}; give a {name} file")
-    if not isinstance(found, int) or isinstance(found, bool) or found < 1:
+    its_name, its_version = content.pop("format", None), content.pop("version", None)
+    if its_name != f"quietarm-{name}":
         raise FileFormatError(
-            f"{path} is not a {name}: its version is {reprlib.repr(found)}; give a {name} file"
+            f"{path} is not a {name}: its format is {its_name!r}; give a {name} file"
         )
-    if found > version:
+    if its_version != version:
         raise FileFormatError(
-            f"{path} has version {reprlib.repr(found)} of the {name} format and this quietarm "
-            f"reads up to {version}; install a newer quietarm"
-        )
-    if found < version:
-        raise FileFormatError(
-            f"{path} has version {found} of the {name} format and this quietarm reads {version}; "
-            f"find the {name} again"
+            f"{path} has version {its_version!r} of the {name} format and this quietarm reads "
+            f"{version}; find the {name} again, or install the quietarm that wrote it"
         )
     return content
 
 
 @contextmanager
 def reading(path: str | Path, name: str) -> Iterator[None]:
-    """Turn a missing or wrong entry met while reading a document into one clear error."""
+    """Say of a wrong entry met in the block which file it is in."""
     try:
         yield
-    except KeyError as error:
-        raise FileFormatError(
-            f"{path} is not a whole {name}: {error} is missing; write the {name} again"
-        ) from None
-    except ValueError as error:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         # what is wrong and what to do about it are parted by a semicolon
         remedy = "" if ";" in str(error) else f"; write the {name} again"
         raise FileFormatError(f"{path} is not a valid {name}: {error}{remedy}") from None
-    except (TypeError, AttributeError, IndexError, OverflowError, RecursionError):
-        # in Python's own words, which help nobody
-        raise FileFormatError(
-            f"{path} is not a valid {name}: an entry is not of the kind it should be; write the "
-            f"{name} again"
-        ) from None
+
+
+def _entries(value: Any) -> dict[str, Any]:
+    fields = dataclasses.fields(value)
+    return {entry.name: plain(getattr(value, entry.name)) for entry in fields if entry.init}
+
+
+def _name_of(value: Any, known: Mapping[str, type[Any]]) -> str:
+    own = type(value)
+    if known.get(value.name) is not own:
+        raise ValueError(
+            f"{own.__name__} has no name of its own, and {value.name!r} would load as another "
+            "class; set `name` in the class"
+        )
+    return value.name
+
+
+def _known_here(kind: Any, entry: Any) -> Any:
+    """What msgspec does not know: plants and profiles by their name, arrays."""
+    if kind is Plant:
+        return _plant(dict(entry))
+    if kind is JointProfile:
+        return _named("profile", dict(entry), known_profiles())
+    return np.array(msgspec.convert(entry, list[float]))
+
+
+def _plant(entry: dict[str, Any]) -> Plant:
+    """The plant of an entry, whose file is checked: nothing is run but what the user named."""
+    file, uncertain = entry.pop(PLANT_FILE, None), entry.pop(UNCERTAIN, None)
+    if file is not None:
+        _check_file(entry["name"], file["path"], file["sha256"])
+    plant = _named("plant", entry, known_plants())
+    if uncertain is None:
+        return plant
+    samples = msgspec.convert(uncertain["samples"], tuple[tuple[float, ...], ...])
+    return UncertainPlant(plant, uncertain["ranges"], samples)
+
+
+def _check_file(name: str, path: str, sha256: str) -> None:
+    """ValueError when the plant of that name here is of another file, or the file has changed."""
+    plant = known_plants().get(name)
+    mine = None if plant is None else file_of_plant(plant)
+    if mine is None:
+        raise ValueError(
+            f"its plant {name!r} is not the one of a file here; give its file {path!r} again, by "
+            "--plant-file or load_plant_file"
+        )
+    if mine.digest != sha256:
+        raise ValueError(
+            f"its plant {name!r} was in {path!r} with SHA-256 {sha256[:_SHOWN]!r}, and "
+            f"{mine.path!r} has {mine.digest[:_SHOWN]!r}: the equations may have changed; give the "
+            "file as it was, or compute anew"
+        )
+
+
+def _named(what: str, entry: dict[str, Any], known: Mapping[str, type[Any]]) -> Any:
+    name = entry.pop("name")
+    if name not in known:
+        by_file = ", or name it by --plant-file" if what == "plant" else ""
+        raise ValueError(
+            f"its {what} {name!r} is not known here (known: {', '.join(sorted(known))}); import "
+            f"the file that defines it first{by_file}"
+        )
+    try:
+        return known[name](**entry)
+    except TypeError as error:  # an entry too many or too few, in Python's words
+        said = re.sub(r"^.*__init__\(\) ", "", str(error))
+        raise ValueError(f"its {what} {name!r}: {said}") from None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from numbers import Real
 from pathlib import Path
 from typing import ClassVar, Self
 
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.answers.provenance import Setting, settings_given, versions
 from quietarm.ocp.answers.saved import Saved
-from quietarm.ocp.base.checks import not_negative, of_kind
+from quietarm.ocp.base.checks import not_negative
 from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.base.ranges import Count, NotNegative, Positive
 from quietarm.ocp.base.threads import one_at_a_time
@@ -99,15 +98,12 @@ class Front(Saved):
     seconds: NotNegative = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
-        self._check_entries("task", "profile", "points")
         if not self.method.strip():
             raise ValueError(f"method is {self.method!r}; give the name of what found the points")
         object.__setattr__(self, "settings", settings_given(self.settings))
         object.__setattr__(self, "versions", dict(self.versions))
         object.__setattr__(self, "points", tuple(self.points))
         for i, point in enumerate(self.points, start=1):
-            if not isinstance(point, FrontPoint):
-                raise ValueError(f"point {i} is {point!r}; give a FrontPoint")
             self.profile.checked(point.coefficients)
             not_negative(f"residual of point {i}", point.residual, "m")
             not_negative(f"energy of point {i}", point.energy, "J")
@@ -246,7 +242,6 @@ class Front(Saved):
         points = self._nonempty()
         if residual_limit is None:
             return points[-1]
-        of_kind("residual limit", residual_limit, Real, "a number in m")
         if not residual_limit >= 0:  # nor NaN; all of them are below infinity
             raise ValueError(f"residual limit is {residual_limit:g} m; give 0 or more")
         still = [point for point in points if point.residual <= residual_limit]
@@ -298,12 +293,6 @@ def reference_corner(task: PointToPoint) -> tuple[float, float]:
     -------
     tuple of float
         Residual [m] of the plain cycloid, 1 mm at least, and twice its energy [J].
-
-    Raises
-    ------
-    ValueError
-        When it is no task.
     """
-    of_kind("task", task, PointToPoint, "a PointToPoint")
     cycloid = rollout(task, CycloidPolynomial(0), []).motion
     return max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
-from quietarm.ocp.base.checks import listed, positive, report_given
+from quietarm.ocp.base.checks import positive
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.front.answer import Front
@@ -102,8 +102,8 @@ def epsilon_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points, report = number_of_points(points), report_given(report)
-    at = [positive("residual", one, "m") for one in listed("at", at, "a list, as [1e-3]")]
+    points = number_of_points(points)
+    at = [positive("residual", one, "m") for one in at]
     sweep = Sweep(
         task,
         profile,

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import reprlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from numbers import Real
 
 import numpy as np
-from quietarm.ocp.base.checks import listed, of_kind
 from quietarm.ocp.base.ranges import Count, NotNegative, Share
 
 LEVELS = (1e-4, 1e-3, 5e-3)
@@ -21,11 +18,6 @@ class FrontPoint:
     """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J].
 
     Any numbers will do, NumPy's as well. `Front` checks which points it may have.
-
-    Raises
-    ------
-    ValueError
-        When an entry is no number.
     """
 
     coefficients: tuple[float, ...]
@@ -33,18 +25,9 @@ class FrontPoint:
     energy: NotNegative
 
     def __post_init__(self) -> None:
-        try:
-            coefficients = tuple(float(value) for value in self.coefficients)
-        except (TypeError, ValueError, OverflowError):
-            raise ValueError(
-                f"coefficients are {reprlib.repr(self.coefficients)}; give numbers"
-            ) from None
-        object.__setattr__(self, "coefficients", coefficients)
-        for name in ("residual", "energy"):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, Real):
-                raise ValueError(f"{name} is {reprlib.repr(value)}; give a number")
-            object.__setattr__(self, name, float(value))
+        object.__setattr__(self, "coefficients", tuple(map(float, self.coefficients)))
+        object.__setattr__(self, "residual", float(self.residual))
+        object.__setattr__(self, "energy", float(self.energy))
 
 
 @dataclass(frozen=True)
@@ -94,16 +77,8 @@ def non_dominated(points: Iterable[FrontPoint]) -> tuple[FrontPoint, ...]:
     -------
     tuple of FrontPoint
         Sorted by residual; energies fall.
-
-    Raises
-    ------
-    ValueError
-        When one is no point.
     """
-    given = listed("points", points, "a list of FrontPoint")
-    for i, point in enumerate(given, start=1):
-        of_kind(f"point {i}", point, FrontPoint, "a FrontPoint")
-    finite = [p for p in given if np.isfinite(p.residual) and np.isfinite(p.energy)]
+    finite = [p for p in points if np.isfinite(p.residual) and np.isfinite(p.energy)]
     kept: list[FrontPoint] = []
     for point in sorted(finite, key=lambda p: (p.residual, p.energy)):
         if not kept or point.energy < kept[-1].energy:

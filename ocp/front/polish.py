@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.ocp.base.checks import finite, of_kind, report_given
+from quietarm.ocp.base.checks import finite
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.assembly import front_of
@@ -89,11 +89,9 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     Raises
     ------
     ValueError
-        When it is no front, or has no point.
+        When the front has no point.
     """
-    of_kind("front", front, Front, "a Front, as of epsilon_front, search or Front.load")
     front.stillest()  # refuses an empty front
-    report_given(report)
     bound = front.settings.get("bound")
     settings = SolveSettings(
         bound=None if bound is None else finite("bound", bound),

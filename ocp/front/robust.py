@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.answers.provenance import REST
-from quietarm.ocp.base.checks import of_kind
 from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
@@ -184,8 +183,6 @@ def _with_sample(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> Fr
 
 def on_same_samples(fronts: Sequence[Front]) -> list[Front]:
     """Fronts of one uncertain plant with their residuals at the samples of all of them."""
-    for i, front in enumerate(fronts, start=1):
-        of_kind(f"front {i}", front, Front, "a Front")
     samples: dict[UncertainPlant, dict[tuple[float, ...], None]] = {}
     for front in fronts:
         if isinstance(front.task.plant, UncertainPlant):

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import reprlib
 from collections.abc import Sequence
 
 import numpy as np
 from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
-from quietarm.ocp.base.checks import finite, listed, report_given
+from quietarm.ocp.base.checks import not_negative
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.assembly import front_of
@@ -87,7 +86,7 @@ def weighted_front(
         When an end of the front could not be found for another reason.
     """
     profile = CycloidPolynomial() if profile is None else profile
-    points, report = number_of_points(points), report_given(report)
+    points = number_of_points(points)
     chosen = None if weights is None else _pairs(weights)
     sweep = Sweep(
         task,
@@ -110,22 +109,15 @@ def weighted_front(
 
 def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     """The weights that were given, each pair checked."""
-    remedy = "pairs, as [(1, 2)]"
-    pairs = [listed("pair of weights", pair, remedy) for pair in listed("weights", weights, remedy)]
+    pairs = [
+        (not_negative("weight", of_residual), not_negative("weight", of_energy))
+        for of_residual, of_energy in weights
+    ]
     if not pairs:
         raise ValueError("no weights are given; give a pair of residual and energy, or none at all")
-    return [_checked(pair) for pair in pairs]
-
-
-def _checked(pair: Sequence[float]) -> tuple[float, float]:
-    if len(pair) != 2:
-        raise ValueError(f"weights are {reprlib.repr(pair)}; give pairs, as [(1, 2)]")
-    of_residual, of_energy = (finite("weight", weight) for weight in pair)
-    if min(of_residual, of_energy) < 0:
-        raise ValueError(f"weights are {of_residual:g} and {of_energy:g}; give none below 0")
-    if of_residual == of_energy == 0:
+    if (0.0, 0.0) in pairs:
         raise ValueError("both weights are 0, which asks for nothing; give one above 0")
-    return of_residual, of_energy
+    return pairs
 
 
 class _Sums:

@@ -71,7 +71,6 @@ class Plan(MotionAnswer):
     worst: Worst | None = None
 
     def __post_init__(self) -> None:
-        self._check_entries("task", "profile", "coefficients")
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
 
     @property

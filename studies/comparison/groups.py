@@ -7,7 +7,7 @@ import reprlib
 from collections.abc import Sequence
 
 from quietarm.ocp import Front
-from quietarm.ocp.answers.encoding import plain
+from quietarm.ocp.answers.documents import plain
 from quietarm.ocp.front.robust import EXCESS
 from quietarm.studies.paper.tasks import task_difference
 from quietarm.studies.registry.methods import method_of

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
-from quietarm.ocp.base.checks import of_kind
 
 STAIRS = "steps-post"
 """Line style of a front: between two points the stiller one is the best known motion."""
@@ -31,7 +30,6 @@ def axes_or_new(ax: Axes | None) -> Axes:
     """The axes that were given, or new ones in a figure of their own; with a light grid."""
     if ax is None:
         ax = new_figure(6.4, 4.4).subplots()
-    of_kind("ax", ax, Axes, "one Axes, as pyplot.subplots()[1]")
     ax.grid(alpha=0.25)
     return ax
 

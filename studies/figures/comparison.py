@@ -23,7 +23,6 @@ from quietarm.studies.figures.axes import (
     logarithmic_residuals,
     new_figure,
 )
-from quietarm.studies.figures.given import comparison_given
 from quietarm.studies.figures.looks import Look, look
 from quietarm.studies.paper.points import PaperPoint
 from quietarm.studies.registry.methods import EPSILON, NSGA2, VEPSO, WEIGHTED
@@ -155,7 +154,6 @@ def draw_whole(
     ValueError
         When it is no comparison, or `ax` no axes.
     """
-    comparison_given(comparison)
     ax, right = axes_or_new(ax), 1.04 * _right(comparison)
     _draw_fronts(ax, comparison, paper, right)
     ax.set_xlim(0, right * 1e3)
@@ -172,7 +170,6 @@ def draw_still(
     Parameters, and what is returned, are those of `draw_whole`. The end reaches to the largest of
     the comparison's levels, or further where no front reaches these.
     """
-    comparison_given(comparison)
     ax, stillest = axes_or_new(ax), float(comparison.best_front[0, 0])
     right = min(max(*comparison.levels, _NEARLY_STILL * stillest), _right(comparison))
     _draw_fronts(ax, comparison, paper, right)
@@ -190,7 +187,6 @@ def draw_gaps(
     points. Parameters, and what is returned, are those of `draw_whole`; the paper's points are not
     drawn.
     """
-    comparison_given(comparison)
     ax, shown = axes_or_new(ax), looks(comparison)
     for place, group in enumerate(comparison.groups):
         own = shown[group.label]

@@ -18,7 +18,6 @@ from quietarm.studies.figures.axes import (
     scale_residuals,
     side_by_side,
 )
-from quietarm.studies.figures.given import fronts_given, seeds_given
 from quietarm.studies.figures.looks import BLUE, look
 from quietarm.studies.registry.methods import method_of
 
@@ -48,7 +47,6 @@ def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ValueError
         When there is no front, or one is something else.
     """
-    fronts = fronts_given(fronts)
     ax = axes_or_new(ax)
     names = _names(fronts)
     for i, front in enumerate(fronts):
@@ -98,7 +96,7 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ValueError
         When there is no front, one is something else, or they are of several tasks.
     """
-    fronts = seeds_given(fronts)
+    _refuse_several_tasks(fronts)
     ax = axes_or_new(ax)
     histories = [front.history for front in fronts if front.history]
     residual, energy = fronts[0].reference
@@ -141,7 +139,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes; a seed that never reaches that residual is a cross.
     """
-    fronts = seeds_given(fronts)
+    _refuse_several_tasks(fronts)
     ax = axes_or_new(ax)
     spread = energies_at(fronts)
     for place, front in enumerate(fronts):
@@ -192,7 +190,6 @@ def front_figure(fronts: Sequence[Front], title: str | None = None) -> Figure:
         Energy against residual; median hypervolume with its quartiles against candidates; for
         several seeds also the least energy of each at `SEARCH_RESIDUAL`, over its quartiles.
     """
-    fronts = fronts_given(fronts)
     complete = [front for front in fronts if front.complete]
     several = len(complete) > 1
     if title is None:
@@ -203,3 +200,9 @@ def front_figure(fronts: Sequence[Front], title: str | None = None) -> Figure:
     if several:
         draw_seed_energies(complete, axes[2])
     return figure
+
+
+def _refuse_several_tasks(fronts: Sequence[Front]) -> None:
+    for i, front in enumerate(fronts, 1):
+        if front.task != fronts[0].task:
+            raise ValueError(f"front {i} is of another task than front 1; give fronts of one move")

@@ -11,8 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.ocp import Floor, Plan, Trajectory, evaluate_coefficients
-from quietarm.ocp.answers.motion_answer import MotionAnswer
-from quietarm.ocp.base.checks import of_kind
 from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.task.quantities import QUANTITIES
 from quietarm.studies.display.words import error_words, title_of
@@ -49,20 +47,12 @@ class Line:
         Any of matplotlib's; by default one of `COLOURS`, with dashes to match.
     style : str or tuple
         Its dashes, where there is a colour.
-
-    Raises
-    ------
-    ValueError
-        When there is no plan or floor.
     """
 
     plan: Plan | Floor
     label: str
     colour: str = ""
     style: Dash = "-"
-
-    def __post_init__(self) -> None:
-        of_kind("plan", self.plan, MotionAnswer, "a Plan or a Floor")
 
 
 Motions = Sequence[Line] | Plan | Floor
@@ -187,10 +177,8 @@ def lines_of(motions: Motions) -> list[Line]:
         motions = [Line(cycloid, "plain cycloid", GREY), Line(motions, "this plan", BLUE)]
     elif isinstance(motions, Floor):
         motions = [Line(motions, f"floor, {motions.energy:.4g} J", BLUE)]
-    if not of_kind("motions", motions, Sequence, "a Plan, a Floor or a list of Line"):
+    if not motions:
         raise ValueError(_GIVE_MOTIONS)
-    for i, line in enumerate(motions, 1):
-        of_kind(f"motion {i}", line, Line, "a Line, as Line(plan, 'what the legend calls it')")
     looks = [look(i) for i in range(len(motions))]
     return [
         line if line.colour else replace(line, colour=own.colour, style=own.dash)

@@ -10,7 +10,6 @@ from quietarm.ocp import Robustness, Sweep
 from quietarm.ocp.base.names import has_no
 from quietarm.ocp.robustness.measures import TOLERATED
 from quietarm.studies.figures.axes import axes_or_new, legend_of, side_by_side
-from quietarm.studies.figures.given import robustness_given
 from quietarm.studies.figures.looks import look
 
 
@@ -37,7 +36,6 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     ValueError
         When there is no plan, one is something else, or has no sweep of that name.
     """
-    plans = robustness_given(plans)
     ax = axes_or_new(ax)
     limit = 100 * TOLERATED
     for number, (label, plan) in enumerate(plans.items()):
@@ -62,7 +60,7 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
 
 def robustness_figure(plans: Mapping[str, Robustness], title: str = "") -> Figure:
     """The picture of `quietarm robustness`: `draw_robustness`, one panel for each parameter."""
-    names = next(iter(robustness_given(plans).values())).ranges
+    names = next(iter(plans.values())).ranges
     figure, axes = side_by_side(len(names), title, width=max(4.8, 7.2 / len(names)))
     for name, ax in zip(names, axes, strict=True):
         draw_robustness(plans, name, ax)

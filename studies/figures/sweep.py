@@ -16,7 +16,6 @@ from quietarm.studies.figures.axes import (
     scale_residuals,
     side_by_side,
 )
-from quietarm.studies.figures.given import front_given, polished_given
 from quietarm.studies.figures.looks import BLUE, ORANGE, RED
 from quietarm.studies.registry.methods import method_of
 
@@ -36,7 +35,6 @@ def draw_sweep(front: Front, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, energy against residual, with a legend.
     """
-    front = front_given(front)
     ax = axes_or_new(ax)
     label = method_of(front.method).label
     _draw_gaps(ax, front)
@@ -74,7 +72,6 @@ def draw_polish(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, energy against residual, with a legend.
     """
-    before, polish = polished_given(before, polish)
     ax = axes_or_new(ax)
     for label, front, colour, mark in (
         ("before", before, ORANGE, "^"), ("after", polish.front, BLUE, "o"),
@@ -103,7 +100,6 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         The axes, energy saved [%] against residual, on the same scale as `draw_polish`.
     """
-    before, polish = polished_given(before, polish)
     ax = axes_or_new(ax)
     gains = [(1e3 * gain.residual, 100 * gain.share) for gain in polish.gains if gain.tried]
     ax.plot(*np.reshape(gains, (-1, 2)).T, "o", color=BLUE, markersize=3)
@@ -116,14 +112,13 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
 
 def sweep_figure(front: Front) -> Figure:
     """The picture of `quietarm front` by the gradient: `draw_sweep` under the task."""
-    figure, (ax,) = side_by_side(1, title_of(front_given(front).task), width=6.4)
+    figure, (ax,) = side_by_side(1, title_of(front.task), width=6.4)
     draw_sweep(front, ax)
     return figure
 
 
 def polish_figure(before: Front, polish: Polish) -> Figure:
     """The picture of `quietarm polish`: `draw_polish` and `draw_savings` side by side."""
-    before, polish = polished_given(before, polish)
     name = method_of(polish.front.method).label
     figure, axes = side_by_side(2, f"{name}: {title_of(before.task)}", width=5.6)
     draw_polish(before, polish, axes[0])

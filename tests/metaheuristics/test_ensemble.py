@@ -95,13 +95,6 @@ def test_the_hypervolume_is_that_of_the_last_generation():
 # -- the searches --
 
 
-@pytest.mark.parametrize("name", ["runs", "workers"])
-@pytest.mark.parametrize("value", [0, -1, 1.5])
-def test_no_runs_or_workers_are_refused(name, value):
-    with pytest.raises(ValueError, match=f"{name} is {value}; give a whole number from 1 up"):
-        search_many(TASK, "vepso", **{"runs": 1, "workers": 1, name: value}, **SMALL)
-
-
 def test_the_fronts_are_those_of_single_searches_whatever_the_workers():
     alone = [search(TASK, "vepso", seed=seed, **SMALL) for seed in (4, 5, 6)]
     for workers in (1, 2):

@@ -102,9 +102,7 @@ BAD = [
     ("nsga2", {"crossing": 1}, ["nsga2 has no setting 'crossing'", "did you mean 'crossover'"]),
     ("gde3", {"alpha": 1}, ["gde3 has no setting 'alpha'", "variant, crossover, scale"]),
     ("nsga2", {"crossover": 1.5}, ["crossover is 1.5", "0 to 1"]),
-    ("nsga2", {"crossover": "often"}, ["crossover is 'often'", "number"]),
     ("nsga2", {"crossover": float("nan")}, ["crossover is nan", "finite"]),
-    ("nsga2", {"crossover": True}, ["crossover is True", "number"]),
     ("nsga2", {"crossover_gene": 0}, ["crossover_gene", "positive"]),
     ("nsga2", {"crossover_eta": 1}, ["crossover_eta is 1", "between 1 and 100"]),
     ("spea2", {"normalise": "maybe"}, ["normalise is 'maybe'", "true or false"]),
@@ -172,9 +170,3 @@ def _written(default):
     return (
         f"{default:g}" if isinstance(default, float) else str(default).lower().replace("de/", "DE/")
     )
-
-
-@pytest.mark.parametrize("settings", [["crossover"], "crossover", 0.7], ids=repr)
-def test_settings_that_are_no_table_are_refused(settings):
-    with pytest.raises(ValueError, match=r"settings is .*; give a table .* {'crossover': 0.7}"):
-        PRESETS["nsga2"].build(10, settings)

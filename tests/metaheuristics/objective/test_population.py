@@ -244,12 +244,6 @@ def test_threads_below_one_are_refused(tasks, threads):
         PopulationObjective(tasks["arm"][0], PROFILE, threads=threads)
 
 
-@pytest.mark.parametrize("steps", [0, -1, 2.5])
-def test_odd_numbers_of_steps_are_refused(tasks, steps):
-    with pytest.raises(ValueError, match=f"steps is {steps}; give a whole number"):
-        PopulationObjective(tasks["arm"][0], PROFILE, steps=steps)
-
-
 @PLANTS
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e200])
 def test_a_candidate_that_is_not_finite_spoils_only_its_own_row(tasks, name, bad):

@@ -83,12 +83,6 @@ def test_candidates_of_another_shape_are_refused(candidates):
         MoveFunction(SIXTH, bound=0.2, steps=10)(candidates)
 
 
-@pytest.mark.parametrize("candidates", [np.full((2, 6), 1j), [["a"] * 6], [[0.1], [0.1, 0.2]]])
-def test_candidates_that_are_no_real_numbers_are_refused(candidates):
-    with pytest.raises(ValueError, match=r"coefficients are .*; give rows of numbers"):
-        MoveFunction(SIXTH, bound=0.2, steps=10)(candidates)
-
-
 def test_peaks_in_one_word_are_refused():
     with pytest.raises(ValueError, match=r"peaks is 'torque'; give a list of .*, as \['torque'\]"):
         MoveFunction(SIXTH, bound=0.2, peaks="torque")

@@ -171,18 +171,6 @@ FOREIGN = {
 }
 
 
-@pytest.mark.parametrize("content", FOREIGN.values(), ids=FOREIGN.keys())
-def test_a_foreign_file_is_refused(path, content):
-    path.write_bytes(content)
-    refused(path, "not a checkpoint")
-
-
-@pytest.mark.parametrize("version", [VERSION + 1, 99])
-def test_a_newer_version_says_so(path, version):
-    path.write_bytes(_with_header(_whole(version=version)))
-    refused(path, f"has version {version} .* reads up to {VERSION}; install a newer quietarm")
-
-
 def test_another_format_is_named(path):
     path.write_bytes(_with_header(_whole(format="somebody's-own")))
     refused(path, "somebody's-own")

@@ -240,7 +240,6 @@ def _cancel(progress):
         ("bound", -0.5),
         ("bound", math.nan),
         ("bound", math.inf),
-        ("bound", "0.5"),
         ("threads", 0),
         ("threads", -2),
         ("threads", 1.5),

@@ -12,7 +12,6 @@ from quietarm.ocp import (
     FrontPoint,
     Generation,
     non_dominated,
-    reference_corner,
 )
 from quietarm.ocp.answers.provenance import versions
 
@@ -142,44 +141,6 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("changes", "words"), WRONG.values(), ids=WRONG)
-def test_what_could_not_be_loaded_is_not_made(changes, words):
-    with pytest.raises(ValueError, match=words) as caught:
-        front(**changes)
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("entries", "words"),
-    [
-        ((3.0, 1e-4, 0.5), "coefficients are 3.0; give numbers"),
-        ((("a", "b"), 1e-4, 0.5), "coefficients are .*; give numbers"),
-        (((1.0,), None, 0.5), "residual is None; give a number"),
-        (((1.0,), 1e-4, "0.5"), "energy is '0.5'; give a number"),
-    ],
-)
-def test_a_point_is_of_numbers(entries, words):
-    with pytest.raises(ValueError, match=words):
-        FrontPoint(*entries)
-
-
-@pytest.mark.parametrize("limit", [math.nan, -1.0, "1 mm"])
-def test_a_residual_limit_that_is_none_is_refused(limit):
-    with pytest.raises(ValueError, match=r"residual limit is .*; give"):
-        front().cheapest(limit)
-
-
 def test_a_setting_that_no_file_can_hold_is_refused():
     with pytest.raises(ValueError, match=r"setting bound is nan; give a finite number"):
         dataclasses.replace(front(), settings={"bound": math.nan})
-
-
-def test_settings_that_are_no_table_are_refused():
-    with pytest.raises(ValueError, match=r"settings is \[1\]; give a table"):
-        dataclasses.replace(front(), settings=[1])
-
-
-@pytest.mark.parametrize("given", [5, None, "arm"], ids=repr)
-def test_the_corner_is_of_a_task(given):
-    with pytest.raises(ValueError, match=f"task is {given!r}; give a PointToPoint"):
-        reference_corner(given)

@@ -57,9 +57,3 @@ def test_a_point_that_the_other_solver_does_not_find_has_no_difference():
 def test_an_empty_front_is_refused():
     with pytest.raises(ValueError, match="the front has no point"):
         cross_check(made_by_hand(()))
-
-
-@pytest.mark.parametrize("points", [1, 2.5])
-def test_a_number_of_points_out_of_range_is_refused(points):
-    with pytest.raises(ValueError, match=f"points is {points}; give a whole number from 2 up"):
-        cross_check(made_by_hand(), points)

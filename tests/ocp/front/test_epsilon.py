@@ -243,9 +243,3 @@ def test_no_weighted_sum_beats_it_at_a_residual_that_is_asked_for():
 def test_a_residual_out_of_range_is_refused(residual):
     with pytest.raises(ValueError, match="residual is"):
         epsilon_front(CASES["arm"][0], at=[residual])
-
-
-@pytest.mark.parametrize("at", [1e-3, "1mm", None], ids=repr)
-def test_residuals_that_are_no_list_are_refused(at):
-    with pytest.raises(ValueError, match=r"at is .*; give a list, as \[1e-3\]"):
-        epsilon_front(CASES["arm"][0], points=2, at=at)

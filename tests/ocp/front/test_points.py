@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from made_fronts import points
@@ -76,12 +75,3 @@ def test_equal_in_one_is_not_better_in_both():
 def test_of_no_points_none_stay():
     assert non_dominated([]) == ()
     assert non_dominated(points((math.nan, 1.0), (1.0, math.inf), (-math.inf, 0.0))) == ()
-
-
-@pytest.mark.parametrize(
-    ("given_points", "words"),
-    [([1, 2], "point 1 is 1; give a FrontPoint"), (5, "points is 5; give a list of FrontPoint")],
-)
-def test_what_is_no_point_is_refused(given_points, words):
-    with pytest.raises(ValueError, match=words):
-        non_dominated(given_points)

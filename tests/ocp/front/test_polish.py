@@ -114,12 +114,6 @@ def test_ctrl_c_keeps_what_was_improved(rough):
     assert {gain.share for gain in polish.gains[2:]} == {0.0}
 
 
-@pytest.mark.parametrize("given", [5, None, "front.json", TASK], ids=lambda g: type(g).__name__)
-def test_what_is_no_front_is_refused(given):
-    with pytest.raises(ValueError, match=r"^front is .*; give a Front, as of epsilon_front"):
-        polish_front(given)
-
-
 def test_an_empty_front_is_refused(rough):
     with pytest.raises(ValueError, match="front has no point"):
         polish_front(replace(rough, points=()))

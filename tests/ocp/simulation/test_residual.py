@@ -100,13 +100,6 @@ def test_more_samples_than_memory_are_refused():
         residual_matrix(task, 10**9)
 
 
-@pytest.mark.parametrize("samples", [0, 1, -5, 2.5])
-def test_samples_that_span_no_window_are_refused(samples):
-    task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0)
-    with pytest.raises(ValueError, match=f"samples is {samples}; give a whole number from 2 up"):
-        residual_matrix(task, samples)
-
-
 def test_a_window_of_too_many_swings_is_named():
     task = PointToPoint(SingleLinkManipulator(), 1.0, 1.0, residual_window=1e6)
     with pytest.raises(ValueError, match=r"residual window 1e\+06 s .*give at most \S+ s"):

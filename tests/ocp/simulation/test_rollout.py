@@ -173,13 +173,6 @@ def test_a_rollout_cannot_be_changed():
         found.motion.energy = 0.0
 
 
-@pytest.mark.parametrize("steps", [0, -5, 2.5, math.nan])
-def test_steps_that_are_not_a_positive_whole_number_are_named(steps):
-    task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
-    with pytest.raises(ValueError, match=f"steps is {steps}"):
-        rollout(task, PLAIN, [], steps=steps)
-
-
 @pytest.mark.parametrize("a", [[], [0.1], [0.1, math.nan], [0.1, 0.2, 0.3]])
 def test_coefficients_that_do_not_fit_are_refused(a):
     with pytest.raises(ValueError, match="coefficient"):

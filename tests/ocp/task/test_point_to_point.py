@@ -60,11 +60,10 @@ def test_tasks_are_equal_by_value():
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        *((name, value) for name in ("duration", "residual_window") for value in (0, -0.8, None)),
-        *((name, value) for name in LIMITS for value in (0.0, math.nan, "much", True)),
+        *((name, value) for name in ("duration", "residual_window") for value in (0, -0.8)),
+        *((name, value) for name in LIMITS for value in (0.0, math.nan)),
         *((name, math.inf) for name in ("start", "target", "duration", "torque_limit")),
         *(("duration", 1e-7), ("duration", 1e7), ("target", 1e7), ("start", -1e9)),
-        ("target", "soon"),
     ],
 )
 def test_a_number_out_of_range_is_named_with_its_value(name, value):

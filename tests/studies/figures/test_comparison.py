@@ -207,12 +207,6 @@ def test_a_panel_is_drawn_on_the_axes_that_are_given_or_on_new_ones(comparison, 
     assert draw(comparison).figure is not given.figure
 
 
-@pytest.mark.parametrize("draw", [*PANELS.values(), comparison_figure])
-def test_what_is_no_comparison_is_refused(good, draw):
-    with pytest.raises(ValueError, match=r"comparison is .*; give what compare_fronts returns"):
-        draw(good)
-
-
 def test_a_single_point_is_drawn_as_well(front_of):
     fronts = [front_of([(0, 0.5)]), front_of([(0, 0.6)], "vepso")]
     figure = comparison_figure(compare(fronts))

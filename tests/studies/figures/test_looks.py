@@ -43,9 +43,3 @@ def test_no_colour_is_too_pale_for_paper():
 def test_no_two_of_many_lines_look_alike():
     assert len({look(i) for i in range(360)}) == 360
     assert len({look(i).dash for i in range(5)}) == 5  # in print without colours
-
-
-@pytest.mark.parametrize("number", ["a", -1, 1.5, None], ids=repr)
-def test_a_line_has_a_whole_number(number):
-    with pytest.raises(ValueError, match=r"number of the line is .*; give a whole number from 0"):
-        look(number)

@@ -349,8 +349,3 @@ def test_nothing_is_half_written_when_it_fails(picture, tmp_path, monkeypatch, t
 def test_no_quantity_is_no_picture(plan):
     with pytest.raises(ValueError, match="no quantity is given to draw; name some"):
         motion_figure(plan, quantities=[])
-
-
-def test_a_line_needs_a_motion():
-    with pytest.raises(ValueError, match="plan is None; give a Plan or a Floor"):
-        Line(None, "a")
