@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, preset_of
+from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, preset_of
 from quietarm.metaheuristics.runs.progress import Report
 from quietarm.metaheuristics.runs.settings import SearchSettings, SearchSpec
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
@@ -65,10 +65,10 @@ def search(
     threads : int
         Blocks of the population that are evaluated at the same time.
     checkpoint : path, optional
-        File to write the state to every few seconds; for ``"nsga2"`` and ``"vepso"``, the two that
-        can go on from one.
+        File to keep the search in, every few seconds.
     resume : path, optional
-        Checkpoint to go on from, of the same search and the same versions.
+        Checkpoint to go on from, of the same search and the same versions: what is in it is done
+        again without computing its figures.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
     found : callable, optional
@@ -93,31 +93,32 @@ def search(
     """
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
     from quietarm.metaheuristics.algorithms.provenance import settings_of
-    from quietarm.metaheuristics.algorithms.states import Resumable
+    from quietarm.metaheuristics.objective.population import PopulationObjective
+    from quietarm.metaheuristics.objective.problem import MoveProblem
+    from quietarm.metaheuristics.runs.checkpoint import Keeper, KeptProblem, load_checkpoint
     from quietarm.metaheuristics.runs.front import HandingOver, front_of
-    from quietarm.metaheuristics.runs.keeping import Keeper, resume_from
     from quietarm.metaheuristics.runs.loop import Loop
 
     profile = CycloidPolynomial() if profile is None else profile
     bound = profile.default_bound if bound is None else bound
     method, chosen, asked = _chosen(algorithm, task, bound, population, generations, settings)
-    loop = Loop(
-        SearchSpec(task, profile, method, asked, seed, settings_of(chosen)), chosen, threads
-    )
-    if (checkpoint or resume) and not isinstance(chosen, Resumable):
-        resumable = " and ".join(name for name, preset in PRESETS.items() if preset.resumable)
-        raise ValueError(f"checkpoints are for {resumable}, not for {method}")
-    keeper = None if checkpoint is None else Keeper(loop, check_writable(checkpoint))
-    if resume is not None:
-        resume_from(resume, loop)
+    spec = SearchSpec(task, profile, method, asked, seed, settings_of(chosen))
+    objective = PopulationObjective(task, profile, threads=threads)
+    problem, keeper, known = MoveProblem(objective, asked.bound), None, None
+    if checkpoint is not None or resume is not None:
+        known = None if resume is None else load_checkpoint(resume, spec)
+        problem = KeptProblem(objective, asked.bound, known)
+        if checkpoint is not None:
+            keeper = Keeper(spec, problem, check_writable(checkpoint))
+    loop = Loop(spec, chosen, problem, known.seconds if known else 0.0)
     # From here on Ctrl-C ends the search after the current generation and does nothing else: the
     # checkpoint holds whole generations, and the front is worked out to the end.
-    reports = [report, *([keeper.after_generation] if keeper else [])]
+    reports = [report] if keeper is None else [report, keeper.after_generation]
     if found is not None:  # before the report, so that what is heard of can be kept
         reports.insert(0, HandingOver(loop, found).after_generation)
     with note_interrupts() as interrupts:
         loop.run(interrupts, *reports)
-        trouble = keeper.write() if keeper and loop.history else ""
+        trouble = keeper.write(loop.seconds) if keeper and loop.history else ""
         front = front_of(loop)
     if trouble:
         warn(f"the end of the search is in no checkpoint: {trouble}")

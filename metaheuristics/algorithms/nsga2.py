@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import time
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -15,14 +12,6 @@ from pymoo.operators.mutation.pm import PM
 from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.selection.tournament import TournamentSelection
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
-from quietarm.metaheuristics.algorithms.states import (
-    POPULATION_ARRAYS,
-    array_of,
-    count_of,
-    part_of,
-    population_of,
-    restore_generator,
-)
 from quietarm.ocp.base.checks import whole
 
 CROSSOVER: dict[str, Any] = {"prob": 0.8, "prob_var": 0.5, "eta": 15}
@@ -91,7 +80,7 @@ class PaperNSGA2(NSGA2):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What a state is of: the population and the operators, in numbers and words."""
+        """The population and the operators, in numbers and words."""
         return {
             "population": self._size,
             "sampling": "uniform in the box",
@@ -101,66 +90,6 @@ class PaperNSGA2(NSGA2):
             "survival": "rank and crowding distance",
             "duplicates": "none with equal coefficients",
         }
-
-    def state(self) -> dict[str, Any]:
-        """All that the run needs to go on after a complete generation: a nested plain dict."""
-        individuals: Any = self.pop
-        random: Any = self.random_state
-        # an infeasible individual has no rank and no crowding: NaN stands for None
-        columns = (*POPULATION_ARRAYS, "rank", "crowding")
-        return {
-            "iteration": int(self.n_iter or 1) - 1,
-            "evaluations": self.evaluator.n_eval,
-            "population": {name: individuals.get(name).astype(float) for name in columns},
-            "random_state": random.bit_generator.state,
-        }
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Go on from a `state`, bit for bit; call it after `setup` with the settings of that run.
-
-        Parameters
-        ----------
-        state : mapping
-            What `state` returned.
-
-        Raises
-        ------
-        KeyError
-            When an entry is missing.
-        TypeError, ValueError
-            When an entry has the wrong kind, shape or range.
-        """
-        self._restore_population(part_of(state, "population"))
-        random: Any = self.random_state
-        restore_generator(random, state)
-        iteration = count_of(state, "iteration", 1)
-        self.start_time, self.is_initialized = time.time(), True
-        self.n_iter = iteration
-        self.evaluator.n_eval = count_of(state, "evaluations")
-        self._set_optimum()
-        termination: Any = self.termination
-        termination.update(self)
-        self.n_iter = iteration + 1
-
-    def _restore_population(self, columns: Mapping[str, Any]) -> None:
-        individuals = population_of(columns, self.problem)
-        count = len(individuals)
-        if not 1 <= count <= self._size:
-            raise ValueError(
-                f"the population has {count} individuals, where a state has 1 to {self._size}"
-            )
-        feasible = individuals.get("FEAS").ravel()
-        ranks = array_of(columns, "rank", (count,), math.nan)
-        crowding = array_of(columns, "crowding", (count,), math.nan)
-        ranked = ranks[feasible]
-        if ranked.size and not (ranked.min() == 0 and np.isfinite(ranked).all()):
-            raise ValueError("a feasible individual has no rank, or none has rank 0")
-        if np.isnan(crowding[feasible]).any():
-            raise ValueError("the crowding of a feasible individual is not a number")
-        for individual, rank, distance in zip(individuals, ranks, crowding, strict=True):
-            individual.set("rank", None if np.isnan(rank) else rank)
-            individual.set("crowding", None if np.isnan(distance) else distance)
-        self.pop = individuals
 
 
 def _stated(operator: Any) -> str:

@@ -55,8 +55,6 @@ class Preset:
         How many populations are evaluated in a generation: two for VEPSO, else one.
     by_directions : bool
         Whether it takes reference directions: as many as individuals, evenly spread.
-    resumable : bool
-        Whether a search can write checkpoints and go on from one.
     keeps_limits : bool
         Whether it can search a task that has limits.
     needs : str
@@ -74,7 +72,6 @@ class Preset:
     generations: int = GENERATIONS
     swarms: int = 1
     by_directions: bool = False
-    resumable: bool = False
     keeps_limits: bool = True
     needs: str = ""
     most: int = 10_000
@@ -205,12 +202,12 @@ _ALL = (
             Setting("archive_size", "archive_size", None,
                     "most points of the front; all are kept by default", count(2)),
         ),
-        population=100, generations=200, swarms=2, resumable=True, most=100_000,
+        population=100, generations=200, swarms=2, most=100_000,
     ),
     Preset(
         "nsga2", "NSGA-II", "Deb, Pratap, Agarwal and Meyarivan 2002",
         f"{_OURS}.nsga2:PaperNSGA2", (*_sbx(0.8, 15.0), *_pm(1.0, 0.01)),
-        population=200, generations=500, resumable=True, most=100_000,
+        population=200, generations=500, most=100_000,
     ),
     Preset("nsga3", "NSGA-III", "Deb and Jain 2014", f"{_OURS}.mended:NSGA3",
            _BY_DIRECTIONS, by_directions=True),

@@ -14,8 +14,6 @@ from __future__ import annotations
 
 import inspect
 import math
-import time
-from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -27,14 +25,6 @@ from pymoo.core.population import Population
 from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.util.display.multi import MultiObjectiveOutput
-from quietarm.metaheuristics.algorithms.states import (
-    POPULATION_ARRAYS,
-    array_of,
-    count_of,
-    part_of,
-    population_of,
-    restore_generator,
-)
 from quietarm.metaheuristics.algorithms.velocity import (
     BOUNDARIES,
     CONSTRICTION,
@@ -43,8 +33,6 @@ from quietarm.metaheuristics.algorithms.velocity import (
 )
 from quietarm.metaheuristics.objective.problem import UNUSABLE
 from quietarm.ocp.base.checks import positive, whole
-
-STATE_ARRAYS = ("velocities", "best_X", "best_merit", "swarm_best")
 
 
 def least_crowded(F: Array, size: int) -> Array:
@@ -148,10 +136,10 @@ class VEPSO(Algorithm):
         self.best_merit = np.full((swarms, self.particles, 1 + swarms), np.inf)
         self.swarm_best = np.zeros(swarms, dtype=int)
         self.external_archive, self.archive_F = Population.empty(), np.empty((0, swarms))
-        self.random_before = None  # the generator's state, until objectives are given
+        self.asked = False  # whether objectives of candidates are waited for
 
     def _initialize_infill(self) -> Population:
-        self.random_before = self.random_state.bit_generator.state
+        self.asked = True
         rows = (self.shape[0] * self.particles, self.shape[2])
         sampling = Initialization(self.sampling)
         X = sampling.do(self.problem, rows[0], random_state=self.random_state).get("X")
@@ -163,7 +151,7 @@ class VEPSO(Algorithm):
         return Population.new(X=X.astype(float))  # new, so that none counts as evaluated already
 
     def _infill(self) -> Population:
-        self.random_before = self.random_state.bit_generator.state
+        self.asked = True
         rule, x = self.rule, self.pop.get("X").reshape(self.shape)
         passed = min((self.iteration - 1) / max(self.horizon - 2, 1), 1.0)
         inertia = rule.inertia_start + (rule.inertia_end - rule.inertia_start) * passed
@@ -181,12 +169,12 @@ class VEPSO(Algorithm):
     def _advance(self, infills: Any = None, **kwargs: Any) -> None:
         swarms, particles, _ = self.shape
         X, F = infills.get("X", "F")
-        if self.random_before is None or F.shape != (swarms * particles, swarms):
+        if not self.asked or F.shape != (swarms * particles, swarms):
             raise ValueError(
                 f"the objectives have shape {F.shape}; evaluate all candidates that ask() gave, "
                 "and pass them to tell() once"
             )
-        self.pop, self.velocities, self.random_before = infills, self.moved, None
+        self.pop, self.velocities, self.asked = infills, self.moved, False
         violation = _violations(infills, F)
         merit = np.take_along_axis(F.reshape(swarms, particles, -1), self.ring[:, None], axis=2)
         merit = np.concatenate([violation.reshape(swarms, particles, 1), merit], axis=2)
@@ -215,56 +203,9 @@ class VEPSO(Algorithm):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What a state is of, in plain numbers and words."""
+        """In plain numbers and words."""
         names = ("particles", "boundary", "velocity_limit", "archive_size", "iterations")
         return {**{name: getattr(self, name) for name in names}, "rule": asdict(self.rule)}
-
-    def state(self) -> dict[str, Any]:
-        """All that the run needs to go on, as of its last complete iteration: a nested plain dict.
-
-        It holds numbers, arrays and NumPy's state of the generator; `restore` takes it. The best of
-        swarm s has row s, column `swarm_best[s]` of `best_X` and `best_merit`; the latter holds the
-        violation, then the objectives from s on round the ring. Settings are not part of it.
-        """
-        if self.iteration == 0:
-            raise RuntimeError("there is no state before the first iteration; run one first")
-        return {
-            "iteration": self.iteration,
-            "evaluations": self.evaluator.n_eval,
-            **{name: getattr(self, name).copy() for name in STATE_ARRAYS},
-            "particles": {key: self.pop.get(key) for key in POPULATION_ARRAYS},
-            "archive": {key: self.external_archive.get(key) for key in POPULATION_ARRAYS},
-            "random_state": self.random_before or self.random_state.bit_generator.state,
-        }
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Go on from a `state`, bit for bit; call it after `setup` with the settings of that run.
-
-        Terminations by generations and evaluations count on, others and pymoo's history begin anew.
-        KeyError where an entry is missing, TypeError or ValueError where it has the wrong kind,
-        shape or range.
-        """
-        swarms, particles, _ = self.shape
-        self.velocities = array_of(state, "velocities", self.shape)
-        self.best_X = array_of(state, "best_X", self.shape)
-        self.best_merit = array_of(state, "best_merit", self.best_merit.shape, least=-np.inf)
-        best = array_of(state, "swarm_best", (swarms,), 0, particles - 1)
-        self.swarm_best = best.astype(int)
-        if np.any(self.swarm_best != best):
-            raise ValueError("swarm_best has entries that are not whole")
-        if not ((self.lower <= self.best_X) & (self.best_X <= self.upper)).all():
-            raise ValueError("best_X has entries outside the box")
-        self.pop = population_of(part_of(state, "particles"), self.problem, swarms * particles)
-        self.external_archive = population_of(part_of(state, "archive"), self.problem)
-        _violations(self.pop, self.pop.get("F"))
-        self.archive_F = self.external_archive.get("F").reshape(-1, swarms)
-        restore_generator(self.random_state, state)
-        self.start_time, self.is_initialized, self.random_before = time.time(), True, None
-        self.iteration = self.n_iter = count_of(state, "iteration", 1)
-        self.evaluator.n_eval = count_of(state, "evaluations")
-        self._set_optimum()
-        self.termination.update(self)
-        self.n_iter += 1
 
 
 def _count_or_none(name: str, value: object, least: int) -> int | None:

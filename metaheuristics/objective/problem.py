@@ -45,12 +45,16 @@ class MoveProblem(Problem):
         )
         self.objective, self.failed, self.infeasible = objective, 0, 0
 
-    def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
+    def figures(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Residual [m], energy [J] and violations of candidates, a row each."""
         values = self.objective(x)
-        table = np.column_stack([values.residual, values.energy, values.violations])
+        return np.column_stack([values.residual, values.energy, values.violations])
+
+    def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
+        table = self.figures(x)
         failed = replace_failures(table)
         self.failed += int(failed.sum())
-        self.infeasible += int((values.violations[~failed] > 0).any(axis=1).sum())
+        self.infeasible += int((table[~failed, 2:] > 0).any(axis=1).sum())
         out["F"] = table[:, :2]
         if table.shape[1] > 2:
             out["G"] = table[:, 2:]

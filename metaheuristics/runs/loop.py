@@ -5,7 +5,6 @@ from __future__ import annotations
 import signal
 import time
 import warnings
-from collections.abc import Mapping
 from typing import Any
 
 import moocore
@@ -13,27 +12,23 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.termination.max_gen import MaximumGenerationTermination
-from quietarm.metaheuristics.algorithms.states import array_of, count_of, number_of, part_of
-from quietarm.metaheuristics.objective.claims import check_points
-from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.objective.problem import UNUSABLE, MoveProblem
 from quietarm.metaheuristics.runs.progress import Report, SearchProgress
 from quietarm.metaheuristics.runs.settings import SearchSpec
-from quietarm.ocp import FrontPoint, Generation, reference_corner
+from quietarm.ocp import Generation, reference_corner
 
 
 class Loop:
     """An algorithm at work on a move."""
 
-    def __init__(self, spec: SearchSpec, algorithm: Algorithm, threads: int) -> None:
-        self.spec = spec
-        self.problem = MoveProblem(
-            PopulationObjective(spec.task, spec.profile, threads=threads), spec.settings.bound
-        )
+    def __init__(
+        self, spec: SearchSpec, algorithm: Algorithm, problem: MoveProblem, earlier: float = 0.0
+    ) -> None:
+        self.spec, self.problem = spec, problem
         self.history: list[Generation] = []
         self.reference = reference_corner(spec.task)
         self._algorithm: Any = algorithm  # for the type checker: pymoo declares much as optional
-        self._earlier, self._began = 0.0, time.perf_counter()
+        self._earlier, self._began = earlier, time.perf_counter()
         termination = MaximumGenerationTermination(spec.settings.generations)
         try:
             algorithm.setup(self.problem, termination=termination, seed=spec.seed)
@@ -76,42 +71,6 @@ class Loop:
         X, F, CV = (self._algorithm.opt.get(name) for name in ("X", "F", "CV"))
         usable = (F < UNUSABLE).all(axis=1) & (CV.ravel() <= 0)
         return X[usable], F[usable]
-
-    def state(self) -> dict[str, Any]:
-        """All that is needed to go on: a nested dict of arrays, numbers and words."""
-        return {
-            "algorithm": self._algorithm.state(),
-            "evaluations": np.array([entry.evaluations for entry in self.history]),
-            "hypervolume": np.array([entry.hypervolume for entry in self.history]),
-            "failed": self.problem.failed,
-            "infeasible": self.problem.infeasible,
-            "seconds": self.seconds,
-        }
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Go on from a `state`; KeyError, TypeError, ValueError where it is not of this search."""
-        self._algorithm.restore(part_of(state, "algorithm"))
-        done = self._algorithm.n_iter - 1
-        evaluations = array_of(state, "evaluations", (done,), least=1)
-        shares = array_of(state, "hypervolume", (done,), 0.0, 1.0)
-        if np.any(np.diff(evaluations) < 0) or evaluations[-1] != self.evaluations:
-            raise ValueError("evaluations do not rise to those of the algorithm")
-        for known in (self._algorithm.pop, self._algorithm.opt):
-            X, F, G = known.get("X", "F", "G")
-            if not (np.isfinite(F).all() and np.isfinite(G).all()):
-                raise ValueError("F or G has entries that are not finite")
-            if np.any((self.problem.xl > X) | (self.problem.xu < X)):
-                raise ValueError("X has entries beyond the bound")
-            usable = (F < UNUSABLE).all(axis=1)
-            points = [FrontPoint(x, *f) for x, f in zip(X[usable], F[usable], strict=True)]
-            check_points(self.problem.objective, points)
-        self.history = [
-            Generation(int(count), float(share))
-            for count, share in zip(evaluations, shares, strict=True)
-        ]
-        self.problem.failed = count_of(state, "failed")
-        self.problem.infeasible = count_of(state, "infeasible")
-        self._earlier = number_of(state, "seconds")
 
     def _record(self) -> SearchProgress:
         _, F = self.found()

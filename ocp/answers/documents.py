@@ -135,10 +135,11 @@ def _name_of(value: Any, known: Mapping[str, type[Any]]) -> str:
 
 def _known_here(kind: Any, entry: Any) -> Any:
     """What msgspec does not know: plants and profiles by their name, arrays."""
-    if kind is Plant:
-        return _plant(dict(entry))
-    if kind is JointProfile:
-        return _named("profile", dict(entry), known_profiles())
+    if kind in (Plant, JointProfile):
+        if not isinstance(entry, dict) or "name" not in entry:
+            raise ValueError(f"{kind.__name__} is {entry!r}; give a table with its name")
+        table = dict(entry)
+        return _plant(table) if kind is Plant else _named("profile", table, known_profiles())
     return np.array(msgspec.convert(entry, list[float]))
 
 

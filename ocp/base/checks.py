@@ -9,9 +9,12 @@ from typing import Any
 
 def finite(name: str, value: Any, unit: str = "") -> float:
     """A finite number as a float."""
-    number = float(value)
+    wanted = f"number in {unit}" if unit else "number"
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is {value!r}; give a {wanted}") from None
     if not math.isfinite(number):
-        wanted = f"number in {unit}" if unit else "number"
         raise ValueError(f"{name} is {value}; give a finite {wanted}")
     return number
 

@@ -86,12 +86,6 @@ def test_settings_beside_an_algorithm_of_ones_own_are_refused():
         search(HALF, PRESETS["nsga3"].build(8), bound=0.5, generations=2, settings={"mutation": 1})
 
 
-@pytest.mark.parametrize("option", ["checkpoint", "resume"])
-def test_a_method_without_a_state_says_that_it_has_no_checkpoints(tmp_path, option):
-    with pytest.raises(ValueError, match="checkpoints are for vepso and nsga2, not for smsemoa"):
-        search(HALF, "smsemoa", **SMALL, **{option: tmp_path / "file"})
-
-
 def test_an_unknown_method_is_refused_with_the_nearest_one():
     with pytest.raises(ValueError, match="unknown method 'nsga'; did you mean 'nsga2'"):
         search(HALF, "nsga", **SMALL)

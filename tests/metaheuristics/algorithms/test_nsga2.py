@@ -1,8 +1,6 @@
 """NSGA-II as the paper sets it: its operators, and a run that goes on bit for bit."""
 
-import json
 import math
-from functools import cache
 
 import numpy as np
 import pytest
@@ -20,10 +18,8 @@ from pymoo.problems import get_problem
 from pymoo.termination.max_gen import MaximumGenerationTermination
 from quietarm.metaheuristics import MoveProblem, PaperNSGA2, PopulationObjective
 from quietarm.metaheuristics.algorithms.nsga2 import ExactDuplicates
-from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint
-from states import same
 
 BOX = Problem(n_var=6, n_obj=2, xl=-0.5, xu=0.5)
 
@@ -188,81 +184,3 @@ def _begin(problem, population=20, generations=25, seed=3):
     algorithm = PaperNSGA2(population)
     algorithm.setup(problem(), seed=seed, termination=_generations(generations))
     return algorithm
-
-
-def _to_the_end(algorithm):
-    while algorithm.has_next():
-        algorithm.next()
-    return algorithm
-
-
-@cache
-def _whole(problem):
-    """A run to its end, and its state after every generation."""
-    algorithm, states = _begin(problem), []
-    while algorithm.has_next():
-        algorithm.next()
-        states.append(algorithm.state())
-    return algorithm, states
-
-
-@PROBLEMS
-@pytest.mark.parametrize("stop", [1, 2, 13, 24])
-def test_a_run_that_is_restored_goes_on_bit_for_bit(tmp_path, problem, stop):
-    whole, states = _whole(problem)
-    save_checkpoint(tmp_path / "state", {}, states[stop - 1])
-    resumed = _begin(problem, seed=99)  # the state's generator counts, not the seed of this one
-    resumed.restore(load_checkpoint(tmp_path / "state")[1])
-    assert same(resumed.state(), states[stop - 1])
-    assert resumed.evaluator.n_eval == stop * 20
-    _to_the_end(resumed)
-    assert same(resumed.state(), whole.state())
-    for name in ("X", "F", "CV"):
-        assert same(resumed.opt.get(name), whole.opt.get(name))
-    assert resumed.evaluator.n_eval == whole.evaluator.n_eval == 25 * 20
-    assert (resumed.n_iter, resumed.n_gen) == (whole.n_iter, whole.n_gen)
-
-
-def test_a_state_stays_as_it_was_while_the_run_goes_on():
-    algorithm = _begin(_zdt1)
-    algorithm.next()
-    state = algorithm.state()
-    before = {name: value.copy() for name, value in state["population"].items()}
-    random = json.dumps(state["random_state"])
-    algorithm.next()
-    assert same(state["population"], before)
-    assert json.dumps(state["random_state"]) == random
-    assert not same(algorithm.state()["population"], before)
-
-
-def test_nothing_is_evaluated_again_when_a_run_is_restored():
-    class Counting(Problem):
-        evaluated = 0
-
-        def __init__(self):
-            super().__init__(n_var=4, n_obj=2, xl=0.0, xu=1.0)
-
-        def _evaluate(self, x, out, *args, **kwargs):
-            self.evaluated += len(x)
-            out["F"] = np.column_stack([x[:, 0], 1 - x[:, 0] + x[:, 1:].sum(axis=1)])
-
-    first = _begin(Counting)
-    first.next()
-    resumed = _begin(Counting)
-    resumed.restore(first.state())
-    assert resumed.problem.evaluated == 0
-    resumed.next()
-    assert resumed.problem.evaluated == 20
-
-
-def test_a_run_that_was_over_is_over_when_restored():
-    _, states = _whole(_zdt1)
-    resumed = _begin(_zdt1)
-    resumed.restore(states[-1])
-    assert not resumed.has_next()
-
-
-def test_the_seed_decides():
-    states = [_to_the_end(_begin(_zdt1, generations=5, seed=seed)).state() for seed in (1, 1, 2)]
-    assert same(states[0], states[1])
-    assert not same(states[0]["population"], states[2]["population"])

@@ -133,14 +133,6 @@ def test_an_algorithm_that_cannot_keep_limits_is_refused():
     one_line(caught)
 
 
-@pytest.mark.parametrize("name", ["SMSEMOA", "MOEAD", "MOPSO_CD", "NSGA2"])
-@pytest.mark.parametrize("option", ["checkpoint", "resume"])
-def test_checkpoints_are_for_the_two_that_have_a_state(tmp_path, name, option):
-    with pytest.raises(ValueError, match=f"checkpoints are for vepso and nsga2, not for {name}"):
-        search(HALF, OTHERS[name](), bound=0.5, generations=2, **{option: tmp_path / "file"})
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_failed_candidates_never_enter_the_front_of_any_algorithm(monkeypatch):
     counts = failing(monkeypatch, math.nan)
     for make in OTHERS.values():

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
-from quietarm.metaheuristics.runs import keeping
 from quietarm.ocp import CycloidPolynomial, Front, resimulate, rollout
 from small_searches import (
     IMPOSSIBLE,
@@ -16,7 +15,6 @@ from small_searches import (
     SWARMS,
     TASKS,
     assert_is_a_front,
-    exactly,
     failing,
     found,
     one_line,
@@ -135,19 +133,3 @@ def test_when_all_candidates_fail_the_front_is_empty(monkeypatch, method, energy
     assert [entry.hypervolume for entry in front.history] == [0.0] * 4
     with pytest.raises(ValueError, match=r"no point; .* all \d+ .* overflow; narrow the bound"):
         front.stillest()
-
-
-@METHODS
-def test_failed_candidates_count_on_after_a_resume(tmp_path, monkeypatch, method):
-    failing(monkeypatch, math.nan)
-    monkeypatch.setattr(keeping, "CHECKPOINT_SECONDS", 0.0)
-    path = tmp_path / "checkpoint"
-
-    def stop(progress):
-        if progress.generation == 5:
-            raise KeyboardInterrupt
-
-    whole = run(method)
-    part = run(method, checkpoint=path, report=stop)
-    assert 0 < part.failed <= whole.failed
-    assert exactly(run(method, resume=path)) == exactly(whole)

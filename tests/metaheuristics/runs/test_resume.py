@@ -1,298 +1,209 @@
 """Searches that are broken off, killed and resumed."""
 
+import json
 import os
-import random
-import shutil
 import signal
 import subprocess
 import sys
 import time
 
 import pytest
-from quietarm.metaheuristics import VEPSO, PaperNSGA2, PopulationObjective, search
-from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
-from quietarm.metaheuristics.runs import keeping
-from quietarm.metaheuristics.runs.checkpoint import load_checkpoint
-from small_searches import (
-    HALF,
-    IMPOSSIBLE,
-    LIMITED,
-    METHODS,
-    exactly,
-    found,
-    one_line,
-    run,
-    stop_after,
-)
-
-# -- checkpoints --
-
-
-@pytest.fixture
-def always(monkeypatch):
-    """A checkpoint after every generation."""
-    monkeypatch.setattr(keeping, "CHECKPOINT_SECONDS", 0.0)
-
-
-@pytest.fixture
-def clock(monkeypatch):
-    """A clock that stands still between the generations; `after` sets it forward after each."""
-    now = [100.0]
-    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
-
-    def after(seconds):
-        def report(progress):
-            now[0] += seconds
-
-        return report
-
-    return after
-
-
-def test_a_checkpoint_is_written_every_two_seconds_and_at_the_end(tmp_path, monkeypatch, clock):
-    written = []
-    monkeypatch.setattr(
-        keeping,
-        "save_checkpoint",
-        lambda path, header, state: written.append(len(state["hypervolume"])),
-    )
-    run("vepso", generations=8, checkpoint=tmp_path / "checkpoint", report=clock(0.75))
-    # 0.75 s a generation: 2.25 s after three, and again after six; 1.5 s later it is over
-    assert written == [3, 6, 8]
-
-
-@METHODS
-def test_a_checkpoint_changes_nothing(tmp_path, always, method):
-    front = run(method, checkpoint=tmp_path / "checkpoint")
-    assert exactly(front) == exactly(found(method))
-    assert [entry.name for entry in tmp_path.iterdir()] == ["checkpoint"]
+from quietarm.metaheuristics import PRESETS
+from quietarm.ocp import FileFormatError, Front
+from quietarm.ocp.answers.documents import plain
+from small_searches import HALF, IMPOSSIBLE, LIMITED, METHODS, SIXTH, exactly, found, run
 
 
 class CrashError(Exception):
     """What a test breaks a run off with, when it is not Ctrl-C."""
 
 
+def broken_off(after, error=KeyboardInterrupt):
+    def report(progress):
+        if progress.generation == after:
+            raise error
+
+    return report
+
+
+@pytest.fixture(scope="module")
+def checkpoints(tmp_path_factory):
+    """A checkpoint of five generations of each method."""
+    folder = tmp_path_factory.mktemp("checkpoints")
+    for method in ("nsga2", "vepso"):
+        run(method, checkpoint=folder / method, report=broken_off(5))
+    return folder
+
+
 @METHODS
 @pytest.mark.parametrize("limited", [False, True], ids=["free", "limits"])
-@pytest.mark.parametrize("stop", [2, 9, 15])
+@pytest.mark.parametrize("stop", [1, 9, 15])
 def test_a_run_resumed_after_any_generation_ends_with_the_same_front(
-    tmp_path, always, method, limited, stop
+    tmp_path, method, limited, stop
 ):
-    task = LIMITED[method] if limited else None
-    path = tmp_path / "checkpoint"
-    part = run(method, task, checkpoint=path, report=stop_after(stop))
+    task, kept = LIMITED[method] if limited else None, tmp_path / "checkpoint"
+    part = run(method, task, checkpoint=kept, report=broken_off(stop))
     assert not part.complete
-    seen = []
-    front = run(method, task, resume=path, report=seen.append)
-    assert front.complete
-    assert exactly(front) == exactly(found(method, task))
-    assert [progress.generation for progress in seen] == list(range(stop + 1, 16))
-    assert len(front.history) == 15
+    assert len(part.history) == stop
+    resumed = run(method, task, resume=kept)
+    assert exactly(resumed) == exactly(found(method, task))
+
+
+@pytest.mark.parametrize("method", [name for name, one in PRESETS.items() if not one.needs])
+def test_every_method_goes_on(tmp_path, method):
+    settings = {"bound": 0.2, "population": 12, "generations": 6}
+    kept = tmp_path / "checkpoint"
+    search = {"task": SIXTH, "method": method, **settings}
+    whole = found_by(**search)
+    found_by(**search, checkpoint=kept, report=broken_off(3))
+    assert exactly(found_by(**search, resume=kept)) == exactly(whole)
+
+
+def found_by(task, method, **settings):
+    from quietarm.metaheuristics import search
+
+    return search(task, method, **settings)
 
 
 @METHODS
-def test_ctrl_c_within_an_evaluation_leaves_a_checkpoint_to_go_on_from(
-    tmp_path, monkeypatch, always, method
-):
+def test_figures_are_not_computed_again(checkpoints, monkeypatch, method):
+    from quietarm.metaheuristics import PopulationObjective
+
     calls, evaluate = [], PopulationObjective.__call__
 
-    def interrupting(self, coefficients):
-        if self.steps == CANDIDATE_STEPS:
-            calls.append(1)
-            if len(calls) == 5:
-                signal.raise_signal(signal.SIGINT)
+    def counted(self, coefficients):
+        calls.append(len(coefficients))
         return evaluate(self, coefficients)
 
-    path = tmp_path / "checkpoint"
-    monkeypatch.setattr(PopulationObjective, "__call__", interrupting)
-    part = run(method, checkpoint=path)
-    assert not part.complete
-    assert len(part.history) == 5  # the generation that it came in is whole
-    assert part.evaluations == part.history[-1].evaluations
-    assert part.history == found(method).history[: len(part.history)]
-    assert exactly(run(method, resume=path)) == exactly(found(method))
+    monkeypatch.setattr(PopulationObjective, "__call__", counted)
+    run(method)
+    whole = len(calls)
+    run(method, resume=checkpoints / method)
+    assert len(calls) - whole == whole - 5
 
 
 @METHODS
-@pytest.mark.parametrize("where", ["evaluation", "report"])
-def test_an_error_leaves_a_checkpoint_to_go_on_from(tmp_path, monkeypatch, always, method, where):
-    calls, evaluate = [], PopulationObjective.__call__
-
-    def crash(*arguments):
-        calls.append(1)
-        if len(calls) == 5:
-            raise CrashError
-        return evaluate(*arguments) if where == "evaluation" else None
-
-    path, seen = tmp_path / "checkpoint", []
-    options = {"report": crash} if where == "report" else {}
-    with monkeypatch.context() as patch:
-        if where == "evaluation":
-            patch.setattr(PopulationObjective, "__call__", crash)
-        with pytest.raises(CrashError):
-            run(method, checkpoint=path, **options)
-    front = run(method, resume=path, report=seen.append)
-    assert seen[0].generation == 5
-    assert exactly(front) == exactly(found(method))
+def test_a_run_may_be_broken_off_and_resumed_in_the_same_file(tmp_path, method):
+    kept = tmp_path / "checkpoint"
+    run(method, checkpoint=kept, report=broken_off(3))
+    run(method, checkpoint=kept, resume=kept, report=broken_off(2))  # while it repeats
+    run(method, checkpoint=kept, resume=kept, report=broken_off(8))
+    assert exactly(run(method, resume=kept)) == exactly(found(method))
 
 
 @METHODS
-def test_limits_that_nothing_keeps_yet_can_be_saved_and_resumed(tmp_path, always, method):
-    task = IMPOSSIBLE[method]
-    path = tmp_path / "checkpoint"
-    run(method, task, generations=6, checkpoint=path, report=stop_after(4))
-    front = run(method, task, generations=6, resume=path)
-    assert exactly(front) == exactly(run(method, task, generations=6))
+def test_limits_that_nothing_keeps_yet_can_be_saved_and_resumed(tmp_path, method):
+    kept = tmp_path / "checkpoint"
+    run(method, IMPOSSIBLE[method], checkpoint=kept, report=broken_off(4))
+    resumed = run(method, IMPOSSIBLE[method], resume=kept)
+    assert exactly(resumed) == exactly(found(method, IMPOSSIBLE[method]))
 
 
-@METHODS
-def test_a_run_may_be_broken_off_and_resumed_again_and_again(tmp_path, always, method):
-    path = tmp_path / "checkpoint"
-    run(method, checkpoint=path, report=stop_after(4))
-    run(method, checkpoint=path, resume=path, report=stop_after(8))
-    run(method, checkpoint=path, resume=path, report=stop_after(12))
-    front = run(method, checkpoint=path, resume=path)
-    assert exactly(front) == exactly(found(method))
+def test_time_adds_up_over_runs(tmp_path):
+    kept = tmp_path / "checkpoint"
+
+    def slow(progress):
+        time.sleep(0.05)
+
+    first = run("vepso", checkpoint=kept, report=slow)
+    assert run("vepso", resume=kept).seconds > first.seconds > 0.05 * 15
 
 
-@METHODS
-def test_time_adds_up_over_runs(tmp_path, always, clock, method):
-    path, tick = tmp_path / "checkpoint", clock(2.0)
-
-    def stop(progress):
-        tick(progress)
-        stop_after(3)(progress)
-
-    part = run(method, checkpoint=path, report=stop)
-    assert part.seconds == 6.0
-    seen = []
-
-    def report(progress):
-        seen.append(progress.seconds)
-        tick(progress)
-
-    front = run(method, resume=path, report=report)
-    assert seen == [6.0 + 2.0 * k for k in range(12)]
-    assert front.seconds == 6.0 + 12 * 2.0
-
-
-@METHODS
-def test_resuming_a_run_that_was_over_gives_its_front(tmp_path, method):
-    path = tmp_path / "checkpoint"
-    run(method, checkpoint=path)
-    seen = []
-    assert exactly(run(method, resume=path, report=seen.append)) == exactly(found(method))
-    assert seen == []
-
-
-@METHODS
-def test_threads_may_differ_when_a_run_is_resumed(tmp_path, always, method):
-    path = tmp_path / "checkpoint"
-    settings = {"population": 210, "generations": 4}
-    run(method, **settings, checkpoint=path, report=stop_after(3))
-    assert exactly(run(method, **settings, resume=path, threads=2)) == exactly(
-        run(method, **settings)
-    )
-
-
-@pytest.mark.parametrize("make", [lambda: VEPSO(particles=8), lambda: PaperNSGA2(8)])
-def test_the_two_given_as_objects_can_be_resumed(tmp_path, always, make):
-    path = tmp_path / "checkpoint"
-    settings = {"bound": 0.5, "generations": 8, "seed": 4}
-    whole = search(HALF, make(), **settings)
-    search(HALF, make(), **settings, checkpoint=path, report=stop_after(5))
-    assert exactly(search(HALF, make(), **settings, resume=path)) == exactly(whole)
-
-
-@METHODS
-@pytest.mark.parametrize("comes_back", [False, True])
-def test_a_checkpoint_that_can_no_longer_be_written_stops_no_search(
-    tmp_path, always, method, comes_back
-):
-    path, warnings = tmp_path / "folder" / "checkpoint", []
-    path.parent.mkdir()
-
-    def remove(progress):
-        if progress.generation == 4:
-            shutil.rmtree(path.parent)
-        if progress.generation == 8 and comes_back:
-            path.parent.mkdir()
-
-    front = run(method, checkpoint=path, report=remove, warn=warnings.append)
-    assert exactly(front) == exactly(found(method))
-    if comes_back:
-        assert warnings == []
-        assert exactly(run(method, resume=path)) == exactly(front)
-    else:
-        (line,) = warnings
-        assert line.startswith("the end of the search is in no checkpoint: ")
-        assert line.endswith(f"folder {path.parent} does not exist; make it first")
-
-
-def test_a_lost_checkpoint_is_a_warning_of_pythons(tmp_path, always, monkeypatch):
+def test_a_full_disk_stops_no_search(tmp_path, monkeypatch):
     def full(path, content):
-        raise ValueError(f"{path} cannot be written: no space left on device")
+        raise ValueError("no space left on device")
 
     monkeypatch.setattr("quietarm.metaheuristics.runs.checkpoint.write_whole", full)
     with pytest.warns(RuntimeWarning, match="no space left on device"):
-        front = run("vepso", checkpoint=tmp_path / "checkpoint")
-    assert front.complete
+        front = run("nsga2", checkpoint=tmp_path / "checkpoint")
+    assert exactly(front) == exactly(found("nsga2"))
 
 
-def test_a_checkpoint_that_cannot_be_written_is_found_before_the_work(tmp_path):
-    seen = []
-    for path in (tmp_path / "missing" / "checkpoint", tmp_path):
-        with pytest.raises(ValueError, match="folder") as caught:
-            run("nsga2", checkpoint=path, report=seen.append)
-        one_line(caught)
-    assert seen == []
+# -- refusals --
 
 
-# -- SIGKILL --
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"task": HALF.__class__(HALF.plant, HALF.target, 0.9)}, "duration is 0.8, not 0.9"),
+        ({"seed": 1}, "seed is 0, not 1"),
+        ({"bound": 0.4}, "bound is 0.5, not 0.4"),
+        ({"generations": 16}, "generations is 15, not 16"),
+        ({"settings": {"crossover": 0.7}}, "crossover"),
+    ],
+)
+def test_a_checkpoint_of_another_search_is_refused(checkpoints, changes, words):
+    with pytest.raises(ValueError, match="is of another search") as told:
+        run("nsga2", **changes, resume=checkpoints / "nsga2")
+    assert words in str(told.value)
 
-KILLED = """
-import math, os, signal, sys, threading
+
+def test_a_checkpoint_of_another_method_or_version_is_refused(checkpoints, monkeypatch):
+    with pytest.raises(ValueError, match="is of another search"):
+        run("vepso", HALF, bound=0.5, resume=checkpoints / "nsga2")
+    monkeypatch.setattr("quietarm.metaheuristics.runs.settings.versions", lambda: {"casadi": "1"})
+    with pytest.raises(ValueError, match="other software: its version of"):
+        run("nsga2", resume=checkpoints / "nsga2")
+
+
+@pytest.mark.parametrize(
+    "spoil", [lambda b: b[: len(b) // 2], lambda b: b"", lambda b: b"a,b\n1,2\n"]
+)
+def test_what_is_no_checkpoint_is_refused(checkpoints, tmp_path, spoil):
+    (tmp_path / "c").write_bytes(spoil((checkpoints / "nsga2").read_bytes()))
+    with pytest.raises(FileFormatError, match="not a checkpoint, or not a whole one"):
+        run("nsga2", resume=tmp_path / "c")
+
+
+def test_a_front_is_no_checkpoint(tmp_path):
+    found("nsga2").save(tmp_path / "front.json")
+    with pytest.raises(FileFormatError, match="not a checkpoint"):
+        run("nsga2", resume=tmp_path / "front.json")
+
+
+def test_figures_that_were_changed_are_refused(checkpoints, tmp_path):
+    import numpy as np
+
+    with np.load(checkpoints / "nsga2") as archive:
+        arrays = dict(archive)
+    arrays["figures"][0, 1] /= 2
+    with (tmp_path / "c").open("wb") as file:
+        np.savez(file, **arrays)
+    with pytest.raises(ValueError, match="does not come to what is in its checkpoint"):
+        run("nsga2", resume=tmp_path / "c")
+
+
+# -- a process that is killed --
+
+LONG = """
+import sys
 from quietarm.metaheuristics import search
-from quietarm.metaheuristics.runs import keeping
-from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
-from quietarm.ocp import PointToPoint
-
-method, path, generation, delay = sys.argv[1:]
-keeping.CHECKPOINT_SECONDS = 0.0
-end = threading.Timer(float(delay), os.kill, (os.getpid(), signal.SIGKILL))
-task, bound = {
-    "nsga2": (PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), 0.5),
-    "vepso": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
-}[method]
-
+from quietarm.metaheuristics.runs import checkpoint
+from small_searches import SIXTH
+checkpoint.CHECKPOINT_SECONDS = 0.0
 def report(progress):
     print(progress.generation, flush=True)
-    if progress.generation == int(generation):
-        end.start()
-
-search(
-    task, method, bound=bound, population=20, generations=50, seed=5, checkpoint=path, report=report
-)
-end.join()  # should it be over before it is killed
+    if {slow}:
+        import time; time.sleep(0.1)
+search(SIXTH, "vepso", bound=0.2, population=20, generations=15, checkpoint=sys.argv[1],
+       report=report)
 """
 
 
-@METHODS
-@pytest.mark.skipif(os.name == "nt", reason="there is no SIGKILL")
-def test_a_run_that_was_killed_ends_bit_for_bit_as_one_that_was_not(tmp_path, method):
-    path, moment = tmp_path / "checkpoint", random.Random(method)
-    generation, delay = moment.randint(2, 25), moment.uniform(0, 0.02)
-    command = [sys.executable, "-c", KILLED, method, path, str(generation), str(delay)]
-    killed = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=600, check=False)
-    assert killed.returncode == -signal.SIGKILL
-    told = [int(line) for line in killed.stdout.split()]
-    assert told == list(range(1, len(told) + 1))
-    assert len(told) >= generation
-    # the checkpoint comes after the report of its generation, and is whole whenever it came
-    saved = len(load_checkpoint(path)[1]["hypervolume"])
-    assert saved in (len(told) - 1, len(told))
-    seen = []
-    front = run(method, seed=5, generations=50, resume=path, report=seen.append)
-    assert [progress.generation for progress in seen] == list(range(saved + 1, 51))
-    assert front.complete
-    assert exactly(front) == exactly(found(method, seed=5, generations=50))
+def test_a_run_that_was_killed_ends_bit_for_bit_as_one_that_was_not(tmp_path):
+    kept = tmp_path / "checkpoint"
+    code = LONG.format(slow=True)
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    with subprocess.Popen(
+        [sys.executable, "-c", code, str(kept)], stdout=subprocess.PIPE, text=True, env=paths
+    ) as process:
+        for line in process.stdout:
+            if int(line) >= 6:
+                process.send_signal(signal.SIGKILL)
+    assert exactly(run("vepso", resume=kept)) == exactly(found("vepso"))
+
+
+def test_a_resumed_front_comes_back_from_its_file(checkpoints, tmp_path):
+    front = run("nsga2", resume=checkpoints / "nsga2")
+    front.save(tmp_path / "front.json")
+    assert json.dumps(plain(Front.load(tmp_path / "front.json"))) == json.dumps(plain(front))

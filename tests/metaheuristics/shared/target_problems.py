@@ -39,6 +39,13 @@ class Constrained(Targets):
         out["G"] = 1.9 - x[:, :1]
 
 
+def state_of(algorithm):
+    """What a swarm knows after an iteration: velocities, and the best so far."""
+    names = ("velocities", "best_X", "best_merit", "swarm_best")
+    known = {name: getattr(algorithm, name).copy() for name in names}
+    return {**known, "random_state": algorithm.random_state.bit_generator.state}
+
+
 class States(Callback):
     """Collects the state after every iteration."""
 
@@ -47,9 +54,9 @@ class States(Callback):
         self.states = []
 
     def notify(self, algorithm):
-        self.states.append(algorithm.state())
+        self.states.append(state_of(algorithm))
 
 
 def step(algorithm):
     algorithm.next()
-    return algorithm.state()
+    return state_of(algorithm)

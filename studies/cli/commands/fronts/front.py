@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-from quietarm.metaheuristics import PRESETS
 from quietarm.studies.cli.arguments import refuse_idle, task_of
 from quietarm.studies.cli.options import (
     INPUT,
@@ -33,9 +32,18 @@ from quietarm.studies.runs.files import FrontFiles
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
-RESUMABLE = [name for name in METAHEURISTICS if PRESETS[name].resumable]
 _OF_SEARCHES: dict[str, list[str]] = dict.fromkeys(
-    ("population", "generations", "setting", "runs", "workers", "scheduler"), METAHEURISTICS
+    (
+        "population",
+        "generations",
+        "setting",
+        "runs",
+        "workers",
+        "scheduler",
+        "checkpoint",
+        "resume",
+    ),
+    METAHEURISTICS,
 )
 _ONLY_FOR = {
     "points": GRADIENT,
@@ -43,8 +51,6 @@ _ONLY_FOR = {
     "solver": GRADIENT,
     "check": GRADIENT,
     "weights": [WEIGHTED.name],
-    "checkpoint": RESUMABLE,
-    "resume": RESUMABLE,
 }
 """For every option that not all methods have: the methods that have it."""
 
@@ -93,12 +99,12 @@ _ONLY_FOR = {
 )
 @workers_options
 @click.option(
-    "--checkpoint", type=STATE, help="nsga2 and vepso: write the state here every few seconds."
+    "--checkpoint", type=STATE, help="Metaheuristic: keep the search here, every few seconds."
 )
 @click.option(
     "--resume",
     type=INPUT,
-    help="nsga2 and vepso: continue from this checkpoint. To save what follows as well, give "
+    help="Metaheuristic: continue from this checkpoint. To save what follows as well, give "
     "--checkpoint, which may name the same file.",
 )
 @click.option(

@@ -10,7 +10,7 @@ from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 from quietarm.metaheuristics.algorithms.velocity import VelocityRule
 from quietarm.metaheuristics.algorithms.vepso import VEPSO, least_crowded
-from target_problems import Constrained, States, Targets, Undefined
+from target_problems import Constrained, States, Targets, Undefined, state_of
 
 # -- archive --
 
@@ -130,7 +130,7 @@ def test_constraints_come_before_objectives():
     assert (result.CV <= 0).all()
     assert (result.G <= 0).all()
     assert (result.X[:, 0] >= 1.9).all()
-    state = result.algorithm.state()
+    state = state_of(result.algorithm)
     assert (state["best_merit"][..., 0] == 0).all()
     # the constrained minima of the objectives: x1 = 1.9, the rest as in the targets
     # (measured for seeds 0 to 19: at most 0.005 above)

@@ -16,7 +16,7 @@ from quietarm.metaheuristics.algorithms.velocity import (
     reflect,
 )
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
-from target_problems import States, Targets, step
+from target_problems import States, Targets, state_of, step
 
 
 @pytest.mark.parametrize("n_obj", [2, 3, 4])
@@ -110,7 +110,7 @@ def test_tie_in_the_own_objective_is_broken_by_the_next():
             out["F"][:, 0] = 7.0
 
     result = minimize(Flat(), VEPSO(10), ("n_gen", 100), seed=1)
-    state = result.algorithm.state()
+    state = state_of(result.algorithm)
     leader = state["best_X"][0, state["swarm_best"][0]]
     assert leader == pytest.approx([0.0, 1.0, 0.0], abs=1e-3)  # the second target
 

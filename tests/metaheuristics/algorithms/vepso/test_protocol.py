@@ -16,7 +16,7 @@ from quietarm.metaheuristics.algorithms.velocity import (
     VelocityRule,
 )
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
-from target_problems import Targets
+from target_problems import Targets, state_of
 
 # -- arguments --
 
@@ -88,7 +88,7 @@ def test_first_positions_are_uniform_in_the_box():
     assert counts.sum(axis=0).tolist() == [1000] * 3
     assert counts.min() > 60
     assert counts.max() < 140
-    goals = X + 2 * algorithm.state()["velocities"].reshape(X.shape)  # the first move is halfway
+    goals = X + 2 * state_of(algorithm)["velocities"].reshape(X.shape)  # the first move is halfway
     assert ((goals >= -1 - 1e-12) & (goals <= 2 + 1e-12)).all()
     assert abs(np.corrcoef(X.T, goals.T)[:3, 3:]).max() < 0.15
 

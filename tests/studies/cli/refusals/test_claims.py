@@ -8,10 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from lines import MOVE
-from quietarm.metaheuristics.runs.checkpoint import load_checkpoint, save_checkpoint
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front
 from quietarm.ocp.base import files
@@ -83,23 +81,6 @@ def test_a_front_that_its_plant_does_not_bear_out_is_refused(call, folder, line,
     assert err.startswith("quietarm: f.json: ")
     assert words in err
     assert not list(folder.glob("out*"))
-
-
-@pytest.mark.parametrize("figure", [0, 1])
-def test_a_checkpoint_that_its_plant_does_not_bear_out_is_refused(call, figure):
-    search = f"front {MOVE} --method nsga2 --bound 0.2 --population 20 --generations"
-    assert call(f"{search} 2 --checkpoint c")[0] == 0
-    header, state = load_checkpoint("c")
-    for known in ("population", "optimum", "pop", "opt"):  # whichever of these there are
-        if known in state["algorithm"]:
-            F = state["algorithm"][known]["F"]
-            F[:, figure] = np.where(F[:, figure] < 1e29, F[:, figure] / 2, F[:, figure])
-    save_checkpoint("c", header, state)
-    code, out, err = call(f"{search} 2 --resume c")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert (
-        f"c is not a valid checkpoint: point 1 of 20 states {('residual', 'energy')[figure]}" in err
-    )
 
 
 # Lines given to the command one after another; the statuses with which they end.

@@ -105,7 +105,7 @@ def test_other_tasks_are_refused_in_a_line(call, files, front_of):
             '{"format": "quietarm-plan", "version": 1}',
             "its format is 'quietarm-plan'; give a front file",
         ),
-        ('{"format": "quietarm-front", "version": 3}', "is not a whole front"),
+        ('{"format": "quietarm-front", "version": 3}', "missing required field"),
         (
             '{"format": "quietarm-front", "version": 2}',
             "this quietarm reads 3; find the front again",

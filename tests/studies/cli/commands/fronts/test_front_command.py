@@ -81,6 +81,7 @@ def test_an_interrupted_search_goes_on_to_the_same_front(call, interrupted_at, m
     assert (code, len(part.history), part.complete) == (1, 2, False)
     assert "(interrupted: what was found until then)" in out
     assert err.lstrip("\n") == "quietarm: interrupted; what was found until then is kept\n"
+    interrupted_at(0)  # no more
     # the same file may be gone on in
     code, _, err = call(f"{line} --resume state --checkpoint state --output resumed.json")
     assert (code, err) == (0, "")

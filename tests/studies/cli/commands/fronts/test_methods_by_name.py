@@ -96,8 +96,6 @@ def test_a_study_of_the_methods_that_are_asked_for(call, monkeypatch):
         ("study --setting rvea.alpha=1", "begin it with one of these and a dot: nsga2"),
         ("study --setting nsga2.alpha=1", "nsga2 has no setting 'alpha'"),
         (f"{FRONT} --method moead --torque-limit 1", "moead cannot search a task with limits"),
-        (f"{FRONT} --method moead --checkpoint c", "--checkpoint is for vepso and nsga2, not for"),
-        (f"{FRONT} --method moead --resume c", "--resume is for vepso and nsga2, not for moead"),
     ],
 )  # fmt: skip
 def test_what_a_method_does_not_have_is_refused_in_one_line(call, folder, line, words):
