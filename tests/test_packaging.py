@@ -142,6 +142,7 @@ def test_the_runtime_requirements_are_few():
     # moocore, which pymoo brings, is imported for the hypervolume
     assert names == {
         "casadi",
+        "jinja2",
         "daqp",
         "numpy",
         "matplotlib",

@@ -48,11 +48,13 @@ def cores_at_hand() -> int:
 
     1 without dask, which starts them.
     """
-    if find_spec("distributed") is None:
-        return 1
+    return 1 if find_spec("distributed") is None else min(cores_here(), _FEW)
+
+
+def cores_here() -> int:
+    """The cores that this process may use; a batch queue gives it fewer than the machine has."""
     able = getattr(os, "sched_getaffinity", None)  # not on every system
-    cores = len(able(0)) if able else os.cpu_count() or 1
-    return min(cores, _FEW)
+    return len(able(0)) if able else os.cpu_count() or 1
 
 
 HERE = Workers()

@@ -11,9 +11,6 @@ from pathlib import Path
 
 from quietarm.ocp.base.errors import FileFormatError
 
-written: list[Path] = []
-"""The files that this process has written, in order: so that an interruption can say what is kept.
-"""
 MOST_BYTES = 100_000_000
 """Forty times a front of ten thousand points."""
 
@@ -113,7 +110,6 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
         _replace(target, data)
     except OSError as error:
         raise unwritable(target, error) from error
-    written.append(Path(path))
 
 
 def _replace(target: Path, data: bytes) -> None:

@@ -5,36 +5,34 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from keyword import iskeyword
 
 import click
 from quietarm.ocp import FileFormatError, QuietarmError
-from quietarm.ocp.base.files import written
 from quietarm.ocp.base.interrupts import as_ctrl_c
 from quietarm.ocp.base.names import unknown
-from quietarm.studies.cli.refusals import in_our_words
-from quietarm.studies.cli.streams import patient_streams
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 
 COMMANDS = {
-    "plan": ("moves", "Find the still move of least energy."),
-    "evaluate": ("moves", "Compute the figures of given coefficients."),
-    "front": ("fronts", "Find the trade-off of residual and energy."),
-    "import": ("fronts", "Make a front of coefficients that another program found."),
-    "polish": ("fronts", "Improve a front by the gradient."),
-    "compare": ("fronts", "Compare fronts of one task."),
-    "floor": ("moves", "Find the least energy over all joint motions."),
-    "robustness": ("moves", "Show what plans leave when the plant is not the assumed one."),
-    "problems": ("fronts", "List named problems with their exact fronts."),
-    "animate": ("moves", "Draw plans in motion, as a GIF or an MP4."),
-    "study": ("studies", "Run every method on a task, and write one report."),
-    "contest": ("studies", "Hold methods with equal evaluations against exact fronts."),
-    "reproduce": ("studies", "Recompute the paper."),
+    "plan": "Find the still move of least energy.",
+    "evaluate": "Compute the figures of given coefficients.",
+    "front": "Find the trade-off of residual and energy.",
+    "import": "Make a front of coefficients that another program found.",
+    "polish": "Improve a front by the gradient.",
+    "compare": "Compare fronts of one task.",
+    "floor": "Find the least energy over all joint motions.",
+    "robustness": "Show what plans leave when the plant is not the assumed one.",
+    "problems": "List named problems with their exact fronts.",
+    "animate": "Draw plans in motion, as a GIF or an MP4.",
+    "study": "Run every method on a task, and write one report.",
+    "contest": "Hold methods with equal evaluations against exact fronts.",
+    "reproduce": "Recompute the paper.",
 }
-"""The room of each command and what it does. `NAME` is the function `NAME` of
-`commands.ROOM.NAME`, with an underscore behind it where NAME is a word of Python's."""
+"""What each command does. `NAME` is the function `NAME` of `commands.NAME`, with an underscore
+behind it where NAME is a word of Python's."""
 
 
 class LazyGroup(click.Group):
@@ -49,8 +47,7 @@ class LazyGroup(click.Group):
         name, command, others = super().resolve_command(ctx, args)
         if name is not None:
             own = f"{name}_" if iskeyword(name) else name
-            room, _ = COMMANDS[name]
-            command = getattr(import_module(f"quietarm.studies.cli.commands.{room}.{own}"), own)
+            command = getattr(import_module(f"quietarm.studies.cli.commands.{own}"), own)
         return name, command, others
 
 
@@ -64,7 +61,7 @@ def _say_version(ctx: click.Context, param: click.Parameter, wanted: bool) -> No
 
 @click.group(
     cls=LazyGroup,
-    commands=[click.Command(name, short_help=does) for name, (_, does) in COMMANDS.items()],
+    commands=[click.Command(name, short_help=does) for name, does in COMMANDS.items()],
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     no_args_is_help=True,
 )
@@ -92,52 +89,42 @@ def quietarm() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command and end the process with its status."""
-    written.clear()
     if arguments is None:  # pictures go to files: no window, whatever the user's notebooks use
         os.environ["MPLBACKEND"] = "agg"
-    try:
-        with patient_streams() as out, as_ctrl_c():
-            status = _run(arguments)
-            out.flush()
-            if out.trouble:
-                status = _complain(
-                    f"standard output cannot be written: {out.trouble}; send it elsewhere",
-                    BAD_INPUT,
-                )
-    except KeyboardInterrupt:  # one more, while the first was being answered
-        status = NOT_SOLVED
+    if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
+        del os.environ["COLUMNS"]
+    status = NOT_SOLVED
+    # one more Ctrl-C may come while the first is answered
+    with suppress(KeyboardInterrupt), as_ctrl_c():
+        status = _run(arguments)
     sys.exit(status)
 
 
 def _run(arguments: Sequence[str] | None) -> int:
     try:
-        return quietarm.main(arguments, prog_name="quietarm", standalone_mode=False) or 0
+        status = quietarm.main(arguments, prog_name="quietarm", standalone_mode=False) or 0
+        sys.stdout.flush()
+        return status
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         return BAD_INPUT
     except click.ClickException as error:
-        return _complain(in_our_words(error), BAD_INPUT)
+        return _complain(error.format_message(), BAD_INPUT)
     except (FileFormatError, ValueError) as error:
         return _complain(str(error), BAD_INPUT)
     except QuietarmError as error:
         return _complain(str(error), NOT_SOLVED)
     except (KeyboardInterrupt, click.Abort):
-        return _complain(f"interrupted; {_what_is_kept()}", NOT_SOLVED)
+        return _complain("interrupted; what was written until then is kept", NOT_SOLVED)
     except MemoryError:
         return _complain("out of memory; give a smaller population or fewer workers", NOT_SOLVED)
+    except BrokenPipeError:  # the reader has read enough, as head does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        place = f"{error.filename}: " if error.filename else ""
+        place = f"{error.filename}: " if error.filename else "standard output: "
         return _complain(f"{place}{reason}; choose another place", BAD_INPUT)
-
-
-def _what_is_kept() -> str:
-    """What was written before an interruption that nothing else told of."""
-    if not written:
-        return "nothing was written"
-    if len(written) == 1:
-        return f"wrote {written[0]}"
-    return f"wrote {len(written)} files, the last {written[-1]}"
 
 
 def _complain(message: str, status: int) -> int:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
-from quietarm.ocp import Plan, PointToPoint
+from quietarm.ocp import Front, Plan, PointToPoint
 from quietarm.ocp.plan.answer import ticks_of_move
 from quietarm.studies.cli.options import bare_angles
 from quietarm.studies.cli.plants import chosen_plant, uncertain
 from quietarm.studies.display.saving import File, drawing
-from quietarm.studies.runs.files import refuse_same_file
+from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,3 +90,48 @@ def refuse_idle(
             *some, last = methods
             known = called or (f"{', '.join(some)} and {last}" if some else last)
             raise ValueError(f"--{name} is for {known}, not for {method}; leave it out")
+
+
+@dataclass(frozen=True)
+class FrontFiles:
+    """The files that a front is written to; None where one is not asked for."""
+
+    output: Path | None
+    csv: Path | None
+    figure: Path | None
+
+    def written(self, front: Front, picture: Callable[[], Figure]) -> list[File]:
+        """What writes each of them."""
+        return [
+            (self.output, front.save),
+            (self.csv, front.save_csv),
+            (self.figure, drawing(picture)),
+        ]
+
+    def refuse_same(self, *read: tuple[str, Path]) -> None:
+        """Make sure that no two are one file, nor one that is read; ValueError names both."""
+        written = [("--output", self.output), ("--csv", self.csv), ("--figure", self.figure)]
+        refuse_same_file([*read, *written])
+
+
+def refuse_same_file(files: Iterable[tuple[str, Path | None]]) -> None:
+    """Make sure that no two options name one file; ValueError names them."""
+    names: dict[str, str] = {}
+    for name, path in files:
+        if path is None:
+            continue
+        place = os.path.realpath(path)  # of a link that goes in a circle, too
+        if names.setdefault(place, name) != name:
+            raise ValueError(f"{names[place]} and {name} are both {path}; give two files")
+
+
+def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
+    """Warn where more workers start than there are cores; no more start than pieces of work."""
+    # a plan by the gradient needs no workers
+    from quietarm.metaheuristics.sharing.workers import Workers, cores_here
+
+    cores, workers = cores_here(), Workers(workers).local(pieces)
+    if workers > cores:
+        console.print(
+            f"{workers} workers will share {cores} core{'s' * (cores > 1)}", highlight=False
+        )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, Field, fields, is_dataclass
+from dataclasses import MISSING, Field, fields
 from typing import Any
 
 from quietarm.models import Plant, known_plants
@@ -69,8 +69,7 @@ def chosen_plant(
 
 
 def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
-    entries = fields(kind) if is_dataclass(kind) else ()  # else the check of the plant says so
-    known = {entry.name: entry for entry in entries}
+    known = {entry.name: entry for entry in fields(kind)}
     given: dict[str, float] = {}
     for name, text in settings:
         if name not in known:
@@ -78,22 +77,10 @@ def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
         if name in given:
             raise ValueError(f"{name} is set twice; set it once")
         given[name] = _number(known[name], text)
-    without = [
-        name
-        for name, entry in known.items()
-        if entry.default is MISSING and entry.default_factory is MISSING and name not in given
-    ]
-    if without:
-        raise ValueError(f"{kind.name} has no value for {without[0]}; give --set {without[0]}=...")
-    try:
-        return kind(**given)
-    except ValueError:  # of a parameter
-        raise
-    except (Exception, SystemExit) as error:  # of the user's own lines
-        raise ValueError(
-            f"{kind.name} cannot be made ({type(error).__name__}: {error}); mend class "
-            f"{kind.__name__}"
-        ) from None
+    for name, entry in known.items():
+        if entry.default is MISSING and entry.default_factory is MISSING and name not in given:
+            raise ValueError(f"{kind.name} has no value for {name}; give --set {name}=...")
+    return kind(**given)
 
 
 def _number(entry: Field[Any], text: str) -> float:

@@ -14,13 +14,13 @@ from quietarm.metaheuristics.ensemble import seeds_of
 from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.metaheuristics.runs.settings import number_of_individuals, search_versions
 from quietarm.metaheuristics.sharing.workers import HERE, Workers
-from quietarm.studies.contest.folder import EXACT, Contents
-from quietarm.studies.contest.imported import Imported
 from quietarm.studies.contest.names import POPULATION, name_of, sets_population
 from quietarm.studies.contest.problems import Yardstick
-from quietarm.studies.contest.runs import REMEDY, Key, Run, check_end
+from quietarm.studies.contest.runs import Key, Run
+from quietarm.studies.contest.store import Store
 from quietarm.studies.display.words import counted
 
+_REMEDY = "remove it to have it made again"
 _CODE = ("quietarm", "pymoo")
 """What decides how a search goes; other libraries change its rounding."""
 
@@ -121,56 +121,39 @@ class Contest:
         ]
 
 
-def check_alike(contents: Contents, contest: Contest) -> None:
+def check_alike(store: Store, contest: Contest) -> None:
     """Refuse to add runs to those of a folder that cannot be compared with them."""
-    folder = contents.folder.path
     for problem in contest.problems:
-        known = contents.yardsticks.get(problem.name)
-        if known is not None:
-            _check_problem(known, problem, folder)
-    for run in [*contents.runs.values(), *contents.imports.values()]:
-        yardstick = _check_front(run, contents.yardsticks.get(run.problem), folder)
-        place = contents.folder.place(run)
-        check_figures(run.front, str(place), REMEDY)
-        if isinstance(run, Run):
-            check_end(run, yardstick, place)
-    for run in contents.runs.values():
-        _check_amounts(run, contest, folder)
-    if any(key not in contents.runs for key in contest.keys):
-        _check_versions(contents.runs.values(), folder)
-
-
-def _check_problem(known: Yardstick, problem: NamedProblem, folder: Path) -> None:
-    name = problem.name
-    if known.bound != problem.bound:
-        raise ValueError(
-            f"{folder} has {name} with a box of {known.bound:g}, and here it is {problem.bound:g}; "
-            "give another --output"
-        )
-    if (known.front.task, known.front.profile) != (problem.task, problem.profile):
-        raise ValueError(f"{folder} has another move of the name {name}; give another --output")
-
-
-def _check_front(run: Run | Imported, yardstick: Yardstick | None, folder: Path) -> Yardstick:
-    if yardstick is None:
-        raise ValueError(
-            f"{folder} has runs on {run.problem} without its exact front; put back "
-            f"{folder / EXACT / run.problem}.json, or give another --output"
-        )
-    if yardstick.scale != run.scale:
-        raise ValueError(
-            f"{folder} has a run that was measured against another exact front ({run.words}); "
-            "remove the runs on this problem, or give another --output"
-        )
-    bound = run.front.settings.get("bound")
-    if bound != yardstick.bound:
-        raise ValueError(
-            f"{folder} has a run in a box of {bound} ({run.words}), and that of the problem is "
-            f"{yardstick.bound:g}; remove it, or give another --output"
-        )
-    if (run.front.task, run.front.profile) != (yardstick.front.task, yardstick.front.profile):
-        raise ValueError(f"{folder} has a run on another move ({run.words}); remove it")
-    return yardstick
+        known = store.yardsticks.get(problem.name)
+        if known is not None and (known.bound, known.front.task, known.front.profile) != (
+            problem.bound, problem.task, problem.profile,
+        ):  # fmt: skip
+            raise ValueError(
+                f"{store.path} has another move or box of the name {problem.name}; give another "
+                "--output"
+            )
+    for run in [*store.runs.values(), *store.imports.values()]:
+        yardstick = store.yardsticks.get(run.problem)
+        if yardstick is None:
+            place = store.place(Yardstick, run.problem)
+            raise ValueError(
+                f"{store.path} has runs on {run.problem} without its exact front; put back "
+                f"{place}, or give another --output"
+            )
+        of_run = run.scale, run.front.settings.get("bound"), run.front.task, run.front.profile
+        of_problem = (
+            yardstick.scale, yardstick.bound, yardstick.front.task, yardstick.front.profile,
+        )  # fmt: skip
+        if of_run != of_problem:
+            raise ValueError(
+                f"{store.path} has a run in another box, on another move or against another exact "
+                f"front ({run.words}); remove it, or give another --output"
+            )
+        check_figures(run.front, str(store.place(type(run), run.key)), _REMEDY)
+    for run in store.runs.values():
+        _check_amounts(run, contest, store.path)
+    if any(key not in store.runs for key in contest.keys):
+        _check_versions(store.runs.values(), store.path)
 
 
 def _check_amounts(run: Run, contest: Contest, folder: Path) -> None:

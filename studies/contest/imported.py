@@ -17,8 +17,8 @@ from quietarm.ocp.answers.saved import Saved
 from quietarm.ocp.base.ranges import CountFromOne
 from quietarm.studies.contest.names import name_given
 from quietarm.studies.contest.problems import Yardstick
-from quietarm.studies.runs.foreign import read_found
-from quietarm.studies.runs.importing import import_front
+from quietarm.studies.reading.foreign import read_found
+from quietarm.studies.reading.importing import import_front
 
 
 class Source(NamedTuple):

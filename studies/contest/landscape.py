@@ -44,6 +44,11 @@ class Landscape(Saved):
     candidates: float
     boxes: tuple[tuple[Positive, float | None], ...]
 
+    @property
+    def key(self) -> str:
+        """What it is kept under."""
+        return self.problem
+
 
 def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
     """Look for the local minima of a problem."""

@@ -14,11 +14,11 @@ from quietarm.metaheuristics.budget.record import CORNER
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.comparison.staircase import objectives, within
-from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.imported import Imported
 from quietarm.studies.contest.landscape import Landscape
 from quietarm.studies.contest.problems import Yardstick
 from quietarm.studies.contest.runs import Run
+from quietarm.studies.contest.store import Store
 
 Array = NDArray[np.float64]
 _Kind = TypeVar("_Kind", Run, Imported)
@@ -175,16 +175,16 @@ class Arena:
         return np.geomspace(max(first, 1e-4), max(last, 2e-4), _TIMES)
 
 
-def arenas_of(contents: Contents) -> tuple[Arena, ...]:
+def arenas_of(store: Store) -> tuple[Arena, ...]:
     """The problems with runs, in the order of their names; methods in that of theirs."""
-    runs = [run for _, run in sorted(contents.runs.items())]
-    imports = [run for _, run in sorted(contents.imports.items())]
+    runs = [run for _, run in sorted(store.runs.items())]
+    imports = [run for _, run in sorted(store.imports.items())]
     arenas = list[Arena]()
     for problem in dict.fromkeys(run.problem for run in runs):
-        yardstick = contents.yardsticks[problem]
+        yardstick = store.yardsticks[problem]
         fields = [Field(name, yardstick, own) for name, own in _by_method(runs, problem)]
         given = [Outcome(name, yardstick, own) for name, own in _by_method(imports, problem)]
-        landscape = contents.landscapes.get(problem)
+        landscape = store.landscapes.get(problem)
         arenas.append(Arena(yardstick, tuple(fields), tuple(given), landscape))
     return tuple(arenas)
 

@@ -14,21 +14,21 @@ from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.studies.contest.asked import Contest, check_alike
-from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.imported import Imported, imported_run
 from quietarm.studies.contest.landscape import Landscape, landscape_of
 from quietarm.studies.contest.problems import Yardstick
 from quietarm.studies.contest.runs import Key, Run
+from quietarm.studies.contest.store import Store
 
 
 def set_up(
     contest: Contest,
-    contents: Contents,
+    store: Store,
     imports: Mapping[str, Sequence[Path]],
     evaluations: int | None = None,
 ) -> None:
     """Put exact fronts and results of other tools into the folder, where they are not yet."""
-    check_alike(contents, contest)
+    check_alike(store, contest)
     if evaluations is not None:
         number_of_evaluations(evaluations)
     if imports and len(contest.problems) != 1:
@@ -37,7 +37,7 @@ def set_up(
             "one PROBLEM with --import, then the next into the same folder"
         )
     yardsticks = {
-        problem.name: contents.yardsticks.get(problem.name) or Yardstick.of(problem)
+        problem.name: store.yardsticks.get(problem.name) or Yardstick.of(problem)
         for problem in contest.problems
     }
     imported = list[Imported]()
@@ -45,21 +45,21 @@ def set_up(
         (problem,) = contest.problems
         for path in files:
             run = imported_run(problem, yardsticks[problem.name], method, path, evaluations)
-            known = contents.imports.get(run.key)
+            known = store.imports.get(run.key)
             if known is None:
-                _refuse_twice(run, [*contents.imports.values(), *imported])
+                _refuse_twice(run, [*store.imports.values(), *imported])
                 imported.append(run)
             elif (known.digest, known.evaluations) != (run.digest, run.evaluations):
                 raise ValueError(
-                    f"{contents.folder.path} has another run of {method} from a file {path.name}; "
+                    f"{store.path} has another run of {method} from a file {path.name}; "
                     "rename one of them, or remove the folder's "
-                    f"{contents.folder.place(known).relative_to(contents.folder.path)}"
+                    f"{store.place(Imported, known.key).relative_to(store.path)}"
                 )
     for yardstick in yardsticks.values():
-        if yardstick.problem not in contents.yardsticks:
-            contents.keep(yardstick)
+        if yardstick.problem not in store.yardsticks:
+            store.keep(yardstick)
     for run in imported:
-        contents.keep(run)
+        store.keep(run)
 
 
 def _refuse_twice(run: Imported, others: Iterable[Imported]) -> None:
@@ -72,33 +72,33 @@ def _refuse_twice(run: Imported, others: Iterable[Imported]) -> None:
             )
 
 
-def pieces_of(contest: Contest, contents: Contents) -> list[Piece]:
+def pieces_of(contest: Contest, store: Store) -> list[Piece]:
     """The work that is still to be done."""
     pieces = list[Piece]()
     problems = {problem.name: problem for problem in contest.problems}
     for problem in contest.problems if contest.explain else ():
-        if problem.name not in contents.landscapes:
+        if problem.name not in store.landscapes:
             name = f"{problem.name}: local minima"
             work = partial(_landscape, problem, contest.seed)
             pieces.append(Piece((problem.name, "landscape"), name, work))
     for key in contest.keys:
-        if key not in contents.runs:
+        if key not in store.runs:
             name = f"{key.problem}: {key.method}, seed {key.seed}"
-            yardstick = contents.yardsticks[key.problem]
+            yardstick = store.yardsticks[key.problem]
             work = partial(_run, contest, problems[key.problem], key, yardstick)
             pieces.append(Piece(key, name, work))
     return pieces
 
 
 def run_contest(
-    pieces: Sequence[Piece], contents: Contents, workers: Workers, begin: Callable[[str], None]
+    pieces: Sequence[Piece], store: Store, workers: Workers, begin: Callable[[str], None]
 ) -> Done:
     """Do the work; every run is in the folder as soon as it is done."""
     kept = set[Hashable]()
 
     def keep(key: Hashable, answer: Run | Landscape) -> None:
         with note_interrupts() as came:
-            contents.keep(answer)
+            store.keep(answer)
             kept.add(key)
         if came:
             raise KeyboardInterrupt
@@ -107,7 +107,7 @@ def run_contest(
     with note_interrupts():
         for key, answer in done.answers.items():
             if key not in kept:  # it was on its way when Ctrl-C came
-                contents.keep(answer)
+                store.keep(answer)
     return done
 
 

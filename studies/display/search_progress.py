@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from math import isnan
 
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
-from quietarm.studies.display.progress import PLAIN_SECONDS, shown, ticking
+from quietarm.studies.display.progress import Lines, bars
 from quietarm.studies.display.words import millimetres, print_lines
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
@@ -18,73 +17,37 @@ _WIDE = 120
 """A terminal of this many columns shows every figure with its name."""
 
 
-class SearchDisplay:
-    """Called with every generation, and with every search that ends; shows nothing."""
-
-    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
-        """Show where a search is; the seed tells one of several."""
-
-    def finish(self, front: Front) -> None:
-        """Show what one of several searches found."""
-
-
 @contextmanager
 def search_display(console: Console, *, quiet: bool = False) -> Iterator[SearchDisplay]:
     """Show a search's generation, best residual, least energy, hypervolume, speed and time left."""
-    columns = (BarColumn(bar_width=12), TextColumn("{task.description}", markup=False))
-    lines = _Lines(console)
-    nothing = quiet or console.is_terminal
-    with (
-        nullcontext() if nothing else ticking(console, lambda: "" if lines.begun else "beginning"),
-        shown(console, quiet, columns, SearchDisplay(), lines, _Bars) as display,
-    ):
-        yield display
+    columns = BarColumn(bar_width=12), TextColumn("{task.description}", markup=False)
+    with bars(console, quiet, *columns) as shown:
+        yield SearchDisplay(shown, Lines(console, quiet))
 
 
-class _Bars(SearchDisplay):
-    """A bar for every search that is running."""
+class SearchDisplay:
+    """Called with every generation, and with every search that ends: a bar or lines for each."""
 
-    def __init__(self, bars: Progress) -> None:
-        self._bars = bars
+    def __init__(self, shown: Progress, lines: Lines) -> None:
+        self._bars, self._lines = shown, lines
         self._tasks: dict[int | None, TaskID] = {}
-        self._words = _figures if bars.console.width >= _WIDE else _brief
+        self._words = _figures if shown.console.width >= _WIDE else _brief
 
     def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
+        """Show where a search is; the seed tells one of several."""
         if seed not in self._tasks:
             self._tasks[seed] = self._bars.add_task("", total=progress.generations)
-        self._bars.update(
-            self._tasks[seed],
-            completed=progress.generation,
-            description=self._words(progress, seed),
-        )
+        words = self._words(progress, seed)
+        self._bars.update(self._tasks[seed], completed=progress.generation, description=words)
+        last = progress.generation == progress.generations
+        self._lines.say(_figures(progress, seed), last=last, of=seed)
 
     def finish(self, front: Front) -> None:
+        """Show what one of several searches found."""
         if front.seed in self._tasks:
             self._bars.remove_task(self._tasks.pop(front.seed))
-        print_lines(self._bars.console, _found(front))
-
-
-class _Lines(SearchDisplay):
-    """A line for each search every few seconds, and one for its last generation."""
-
-    def __init__(self, console: Console) -> None:
-        self._console = console
-        self._last: dict[int | None, float] = {}
-
-    @property
-    def begun(self) -> bool:
-        """Whether any search has said something."""
-        return bool(self._last)
-
-    def __call__(self, progress: SearchProgress, seed: int | None = None) -> None:
-        now = time.perf_counter()
-        due = now - self._last.setdefault(seed, now) >= PLAIN_SECONDS
-        if due or progress.generation == progress.generations:
-            self._last[seed] = now
-            print_lines(self._console, _figures(progress, seed))
-
-    def finish(self, front: Front) -> None:
-        print_lines(self._console, _found(front))
+        if not self._lines.quiet:
+            print_lines(self._lines.console, _found(front))
 
 
 def _found(front: Front) -> str:

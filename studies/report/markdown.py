@@ -44,7 +44,7 @@ def _block(block: Block, level: int) -> list[str]:
         case Text(words):
             return [words]
         case Bullets(lines):
-            return [_bullets(lines)]
+            return [_bullets(lines)] if lines else []
         case Facts(rows):
             return [_bullets([f"{name}: {value}" for name, value in rows])]
         case Lines(lines):

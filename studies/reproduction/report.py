@@ -2,38 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from math import isfinite
-from pathlib import Path
 
 from matplotlib.figure import Figure
 from quietarm.ocp import Plan
-from quietarm.ocp.base.files import write_whole
-from quietarm.studies.display.saving import File, drawing, inside
 from quietarm.studies.display.words import title_of
 from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
 from quietarm.studies.figures.looks import ORANGE
 from quietarm.studies.paper.case import Case
 from quietarm.studies.paper.printed import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH
-from quietarm.studies.report.markdown import table_in_markdown
+from quietarm.studies.report.document import Document, Picture, Section, Text, Verdict
 from quietarm.studies.report.table import Cell, Column, Table
-from quietarm.studies.report.terminal import show_table
 from quietarm.studies.reproduction.claims import Claim
 from quietarm.studies.reproduction.floor_dots import floor_dots
 from quietarm.studies.reproduction.floor_table import LEGEND as FLOOR_LEGEND
 from quietarm.studies.reproduction.floor_table import finding, floor_table, floor_tables
 from quietarm.studies.reproduction.recompute import Reproduction, RowResult
 from quietarm.studies.reproduction.side_by_side.picture import systems_figure
-from quietarm.studies.reproduction.side_by_side.table import (
-    all_systems,
-    print_systems,
-    systems_in_markdown,
-)
-from rich.console import Console
-from rich.padding import Padding
-from rich.text import Text
+from quietarm.studies.reproduction.side_by_side.table import all_systems, systems_blocks
 
 _MILLIMETRES = "{:.3g}".format
 _SECONDS = "{:.2f}".format
@@ -177,26 +166,6 @@ def against_earlier(result: Reproduction, condition: Case, title: str) -> Figure
     return motion_figure(lines, title, PAPER_PANELS)
 
 
-def print_reproduction(console: Console, result: Reproduction, verdicts: Sequence[Claim]) -> None:
-    """Print the tables and the claims."""
-    for table in tables(result):
-        show_table(console, table)
-    console.print(LEGEND, highlight=False, style="dim")
-    print_systems(console, result.systems)
-    for table in floor_tables(result):
-        show_table(console, table)
-    console.print(FLOOR_LEGEND, highlight=False, style="dim")
-    console.print(f"\n{finding(result)}", highlight=False)
-    show_table(console, checks_table(result))
-    console.print(CHECKS, highlight=False, style="dim")
-    console.print("\nWhat the paper claims", style="bold")
-    for claim in verdicts:
-        style = "green" if claim.holds else "red"
-        console.print(Text.assemble((claim.verdict, f"bold {style}"), f"  {claim.text}"))
-        for line in claim.evidence:
-            console.print(Padding(Text(line), (0, 0, 0, 11 if console.width >= 60 else 2)))
-
-
 _FIGURES = (
     (2, redrawn, SINGLE_LINK_SIXTH),
     (3, against_earlier, SINGLE_LINK_SIXTH),
@@ -205,39 +174,45 @@ _FIGURES = (
 )
 
 
-def reproduction_files(folder: Path, result: Reproduction, verdicts: Sequence[Claim]) -> list[File]:
-    """What writes report.md, a CSV for every table, and the pictures to a folder."""
-    writes: dict[str, Callable[[Path], object]] = {}
-    for number, draw, condition in _FIGURES:
-        title = f"Fig. {number} redrawn: {title_of(condition.task)}"
-        writes[f"figure_{number}.png"] = drawing(partial(draw, result, condition, title))
+def reproduction_document(result: Reproduction, verdicts: Sequence[Claim]) -> Document:
+    """The paper's tables and figures, all systems side by side, the floor, both solvers, claims."""
     paper_tables = tables(result)
-    for number, table in zip(_TITLES, paper_tables, strict=True):
-        writes[f"table_{number}.csv"] = table.save_csv
-    writes["systems.png"] = drawing(partial(systems_figure, result.systems))
-    writes["systems.csv"] = all_systems(result.systems).save_csv
-    writes["floor.png"] = drawing(partial(floor_dots, result))
-    writes["floor.csv"] = floor_table(result).save_csv
-    report = _markdown(result, paper_tables, verdicts)
-    writes["report.md"] = lambda path: write_whole(path, report)
-    return inside(folder, writes)
-
-
-def _markdown(
-    result: Reproduction, paper_tables: Sequence[Table], verdicts: Sequence[Claim]
-) -> str:
-    parts = ["# The paper, recomputed\n", LEGEND + "\n"]
-    parts += [table_in_markdown(table) + "\n" for table in paper_tables]
-    parts += ["## Side by side\n", "![Side by side](systems.png)\n"]
-    parts += systems_in_markdown(result.systems)
-    parts += ["## How far from the floor\n", finding(result) + "\n", FLOOR_LEGEND + "\n"]
-    parts += [table_in_markdown(table) + "\n" for table in floor_tables(result)]
-    parts.append("![Multiples of the floor](floor.png)\n")
-    parts += [table_in_markdown(checks_table(result)) + "\n", CHECKS + "\n"]
-    parts.append("## What the paper claims\n")
-    for claim in verdicts:
-        evidence = "\n".join(f"- {line}" for line in claim.evidence)
-        parts.append(f"### {claim.text} **{claim.verdict.capitalize()}.**\n\n{evidence}\n")
-    parts.append("## Figures\n")
-    parts += [f"![Fig. {number}](figure_{number}.png)\n" for number, _, _ in _FIGURES]
-    return "\n".join(parts)
+    figures = [
+        Picture(
+            f"figure_{number}.png",
+            partial(draw, result, case, f"Fig. {number} redrawn: {title_of(case.task)}"),
+            f"Fig. {number}",
+        )
+        for number, draw, case in _FIGURES
+    ]
+    side_by_side = Picture("systems.png", partial(systems_figure, result.systems), "Side by side")
+    multiples = Picture("floor.png", partial(floor_dots, result), "Multiples of the floor")
+    return Document(
+        "The paper, recomputed",
+        [
+            *paper_tables,
+            Text(LEGEND, soft=True),
+            Section("Side by side", [side_by_side, *systems_blocks(result.systems)]),
+            Section(
+                "How far from the floor",
+                [
+                    Text(finding(result)),
+                    *floor_tables(result),
+                    Text(FLOOR_LEGEND, soft=True),
+                    multiples,
+                    checks_table(result),
+                    Text(CHECKS, soft=True),
+                ],
+            ),
+            Section(
+                "What the paper claims",
+                [Verdict(one.text, one.verdict, one.holds, one.evidence) for one in verdicts],
+            ),
+            Section("Figures", figures, screen=False),
+        ],
+        {
+            **{f"table_{n}": table for n, table in zip(_TITLES, paper_tables, strict=True)},
+            "systems": all_systems(result.systems),
+            "floor": floor_table(result),
+        },
+    )

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-import quietarm.studies.runs.reports.comparison
+import quietarm.studies.reports.comparison
 import quietarm.studies.study.pieces
 from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
 from quietarm.models import SingleLinkManipulator
@@ -187,7 +187,7 @@ def started():
 def called(capfd, monkeypatch, quick_pictures):
     """Run a command in this process, with rough floors; status, standard output and error."""
     rough = partial(energy_floor, starts=1, tolerance=0.05)
-    monkeypatch.setattr(quietarm.studies.runs.reports.comparison, "energy_floor", rough)
+    monkeypatch.setattr(quietarm.studies.reports.comparison, "energy_floor", rough)
     monkeypatch.setattr(quietarm.studies.study.pieces, "energy_floor", rough)
     monkeypatch.setattr(floor_search, "FIRST_INTERVALS", 24)
 

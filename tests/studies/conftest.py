@@ -28,7 +28,6 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
-from quietarm.studies.display import progress
 from quietarm.studies.registry.methods import METHODS
 from quietarm.studies.reproduction import pieces, recompute
 
@@ -98,7 +97,6 @@ def let_sweep(monkeypatch):
 @pytest.fixture
 def call(capfd, monkeypatch):
     """Run a line in this process: its status, standard output and standard error."""
-    monkeypatch.setattr(progress, "SILENT_SECONDS", 1e6)  # however slow the machine is
 
     def run_here(line):
         words = line if isinstance(line, list) else shlex.split(line)

@@ -6,11 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from quietarm.studies.paper.case import Case
-from quietarm.studies.report.markdown import table_in_markdown
+from quietarm.studies.report.document import Block, Bullets, Text
 from quietarm.studies.report.table import Cell, Column, Table
-from quietarm.studies.report.terminal import show_table
 from quietarm.studies.reproduction.side_by_side.results import FREQUENCY_ERROR, System
-from rich.console import Console
 
 Systems = Mapping[Case, Sequence[System]]
 
@@ -95,11 +93,6 @@ def systems_table(case: Case, systems: Sequence[System]) -> Table:
     return Table(f"Side by side: {case.name}", [Column("system"), *columns], rows).turned()
 
 
-def why_not(systems: Sequence[System]) -> list[str]:
-    """Why figures are missing, a line for each system that lacks some."""
-    return [f"{found.name}: {found.why}" for found in systems if found.why]
-
-
 def all_systems(systems: Systems) -> Table:
     """Every system on every move, for CSV."""
     columns = [Column(name, key=name) for name in ("plant", "move", "system")]
@@ -115,20 +108,10 @@ def all_systems(systems: Systems) -> Table:
     return Table("Side by side", [*columns, Column("why", key="why")], rows)
 
 
-def print_systems(console: Console, systems: Systems) -> None:
-    """Print a table for each move, what is missing below it, and how to read them."""
+def systems_blocks(systems: Systems) -> list[Block]:
+    """A table for each move, what is missing below it, and how to read them."""
+    blocks: list[Block] = []
     for case, every in systems.items():
-        show_table(console, systems_table(case, every))
-        for line in why_not(every):
-            console.print(line, highlight=False, markup=False, style="dim")
-    console.print(LEGEND, highlight=False, markup=False, style="dim")
-
-
-def systems_in_markdown(systems: Systems) -> list[str]:
-    """The same in Markdown."""
-    parts = [f"{LEGEND}\n"]
-    for case, every in systems.items():
-        parts.append(table_in_markdown(systems_table(case, every)) + "\n")
-        parts += [f"- {line}" for line in why_not(every)]
-        parts.append("")
-    return parts
+        missing = [f"{found.name}: {found.why}" for found in every if found.why]
+        blocks += [systems_table(case, every), Bullets(missing, soft=True)]
+    return [*blocks, Text(LEGEND, soft=True)]

@@ -3,10 +3,8 @@
 import signal
 
 import pytest
-import quietarm.studies.cli.commands.moves.evaluate
-import quietarm.studies.cli.commands.moves.plan
 import quietarm.studies.reproduction.recompute
-import quietarm.studies.runs.searching
+from quietarm.studies.cli.commands import evaluate, front, plan
 from quietarm.studies.display.search_progress import SearchDisplay
 
 
@@ -49,12 +47,9 @@ def no_solve(monkeypatch):
     def solve(*arguments, **settings):
         pytest.fail("a solve was begun")
 
-    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", solve)
-    monkeypatch.setattr(
-        quietarm.studies.cli.commands.moves.evaluate, "evaluate_coefficients", solve
-    )
-    for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
-        monkeypatch.setattr(quietarm.studies.runs.searching, name, solve)
+    for module in (plan, evaluate, front):
+        for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
+            monkeypatch.setattr(module, name, solve, raising=False)
     monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", solve)
 
 

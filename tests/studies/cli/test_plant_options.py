@@ -207,12 +207,3 @@ def test_a_rate_of_another_kind_is_refused(call, option):
     assert code == 2
     assert option.split()[1] in err
     assert "60deg" in err
-
-
-def test_a_plant_that_cannot_be_made_is_told_in_one_line(call, crane_file):
-    made = "    def __post_init__(self):\n        raise RuntimeError('no\\nway')\n\n"
-    text = crane_file.read_text()
-    crane_file.write_text(text.replace("    def torque", made + "    def torque"))
-    code, out, err = call(f"plan {MOVE} --plant-file crane.py")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "crane cannot be made (RuntimeError: no way); mend class Crane" in err

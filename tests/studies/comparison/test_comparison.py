@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import quietarm.studies.comparison.measures
-import quietarm.studies.runs.reports.comparison
+import quietarm.studies.reports.comparison
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -20,7 +20,7 @@ from quietarm.ocp import (
 from quietarm.studies.comparison.measures import FILL
 from quietarm.studies.comparison.staircase import evenly_spaced, filled
 from quietarm.studies.comparison.tables import units
-from quietarm.studies.runs.reports.comparison import with_floor
+from quietarm.studies.reports.comparison import with_floor
 from rich.console import Console
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
@@ -290,7 +290,7 @@ def test_the_floor_is_the_assumed_plants_and_says_so(good, poor, uncertain, monk
         asked.append(task)
         return SimpleNamespace(complete=True, energy=0.3)
 
-    monkeypatch.setattr(quietarm.studies.runs.reports.comparison, "energy_floor", floor_of)
+    monkeypatch.setattr(quietarm.studies.reports.comparison, "energy_floor", floor_of)
     comparison, task = compare([good, poor]), good.task
     if uncertain:
         uncertain_task = dataclasses.replace(

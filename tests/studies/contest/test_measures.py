@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.measures import Field, Outcome, arenas_of
+from quietarm.studies.contest.store import Store
 from small_contest import METHODS, NAME, area, documents, least_energy, median_of, rows_of, scaled
 
 LEVELS = (1e-4, 1e-3, 5e-3)
@@ -35,7 +35,7 @@ def test_expected_running_time_of_hand_made_runs():
 
 @pytest.fixture(scope="module")
 def arena(held):
-    (only,) = arenas_of(Contents.of(held))
+    (only,) = arenas_of(Store(held))
     return only
 
 

@@ -2,8 +2,8 @@
 
 import pytest
 from quietarm.metaheuristics import PROBLEMS
-from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.problems import Yardstick, problems_of
+from quietarm.studies.contest.store import Store
 from quietarm.studies.paper.printed import CONDITIONS
 from small_contest import LINE, NAME, documents, rows_of
 
@@ -21,7 +21,7 @@ def test_without_a_name_they_are_the_papers_conditions():
 
 
 def test_the_yardstick_is_the_front_that_comes_with_the_problem(held):
-    found = Contents.of(held).yardsticks[NAME]
+    found = Store(held).yardsticks[NAME]
     assert (found.front,) == PROBLEMS[NAME].fronts()
     assert found == Yardstick.of(PROBLEMS[NAME])
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 from html import unescape
 
 import pytest
-from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.measures import Arena, Field, arenas_of
 from quietarm.studies.contest.report import page
 from quietarm.studies.contest.report.figures import draw_ranks, ranks_figure
 from quietarm.studies.contest.report.files import report_files
 from quietarm.studies.contest.report.page import contest_document
 from quietarm.studies.contest.statistics import ranking_over
+from quietarm.studies.contest.store import Store
 from quietarm.studies.report.document import Section
 from quietarm.studies.report.page import page as page_of
 from small_contest import NAME, rows_of
@@ -37,7 +37,7 @@ RANKED = ["NSGA-II (1.00)", "GDE3 (2.00)", "VEPSO (3.00)"]
 @pytest.fixture(scope="module")
 def arena(held):
     """Five runs of three methods on one problem, that missed what is written down."""
-    (known,) = arenas_of(Contents.of(held))
+    (known,) = arenas_of(Store(held))
     given = known.fields[0].runs[0]
 
     def run(method, seed, missing):

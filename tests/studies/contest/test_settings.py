@@ -57,7 +57,7 @@ def test_it_takes_part_beside_the_same_method_without(call, copy):
     assert {method for method, _ in kept} == {*METHODS, SET}
     # exactly what a search with these settings finds
     problem = problem_of(NAME)
-    scale = work.Contents.of(copy).yardsticks[NAME].scale
+    scale = work.Store(copy).yardsticks[NAME].scale
     alone = search_within(
         problem.task, "nsga2", 130, scale, profile=problem.profile, bound=problem.bound,
         population=16, settings={"crossover": 0.5}, seed=1,

@@ -5,15 +5,15 @@ import re
 import signal
 
 import pytest
-from quietarm.studies.contest.folder import Contents
 from quietarm.studies.contest.runs import Run
+from quietarm.studies.contest.store import Store
 from small_contest import LINE, found
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 
 
 def test_it_stops_and_one_process_goes_on_to_the_same_runs(call, folder, held, monkeypatch):
-    keep, kept = Contents.keep, []
+    keep, kept = Store.keep, []
 
     def keep_and_interrupt(self, what):
         keep(self, what)
@@ -23,7 +23,7 @@ def test_it_stops_and_one_process_goes_on_to_the_same_runs(call, folder, held, m
                 signal.raise_signal(signal.SIGINT)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Contents, "keep", keep_and_interrupt)
+        patch.setattr(Store, "keep", keep_and_interrupt)
         code, _, err = call(f"{LINE} --workers 2 --output shared")
     assert code == 1
     assert multiprocessing.active_children() == []

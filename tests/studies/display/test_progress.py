@@ -1,7 +1,6 @@
 """Progress: a bar on a terminal, plain lines elsewhere, nothing when quiet."""
 
 import io
-import time
 
 import pytest
 from quietarm.studies.display.progress import count, progress
@@ -69,15 +68,6 @@ def test_an_error_inside_passes_through(terminal, quiet):
 
 
 # Many small pieces
-
-
-def test_counts_are_a_line_every_two_seconds_and_one_at_the_end(monkeypatch):
-    pipe, now = console(), iter([0.0, 1.0, 2.0, 3.0, 3.5, 3.5])
-    monkeypatch.setattr(time, "monotonic", lambda: next(now))
-    with count(4, "points", pipe) as report:
-        for done in range(1, 5):  # at 1, 2, 3 and 3.5 seconds
-            report(done, 4)
-    assert pipe.file.getvalue() == "2 of 4 points\n4 of 4 points\n"
 
 
 def test_counts_are_a_bar_on_a_terminal_and_nothing_when_quiet():

@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 import pytest
 import quietarm.studies.comparison.measures
-import quietarm.studies.runs.loading
-import quietarm.studies.runs.reports.comparison
+import quietarm.studies.reading.saved
+import quietarm.studies.reports.comparison
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from quietarm.models import ArmOnFlexibleLink

@@ -10,6 +10,7 @@ import pytest
 from quietarm.studies.display.words import move_of
 from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
 from quietarm.studies.report.markdown import table_in_markdown
+from quietarm.studies.report.terminal import show
 from quietarm.studies.reproduction.claims import claims
 from quietarm.studies.reproduction.floor_dots import floor_dots
 from quietarm.studies.reproduction.floor_table import (
@@ -22,7 +23,7 @@ from quietarm.studies.reproduction.floor_table import (
     multiples,
 )
 from quietarm.studies.reproduction.pieces import SEARCHES
-from quietarm.studies.reproduction.report import print_reproduction
+from quietarm.studies.reproduction.report import reproduction_document
 from rich.console import Console
 
 TERMS = (2, 4, 6, 8, 10)
@@ -99,7 +100,7 @@ def test_a_table_a_plant_for_the_screen(reproduction):
     assert [row[1] for row in single.rows] == [c.label for c in CONDITIONS[:3]]
     assert [row[1] for row in arm.rows] == [c.label for c in CONDITIONS[3:]]
     console = Console(file=io.StringIO(), width=80)
-    print_reproduction(console, reproduction, claims(reproduction))
+    show(console, reproduction_document(reproduction, claims(reproduction)))
     text = console.file.getvalue()
     for condition in CONDITIONS:
         for m in multiples(reproduction, condition):

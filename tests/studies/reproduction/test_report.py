@@ -11,12 +11,13 @@ from quietarm.studies.paper.printed import (
     ARM_HALF,
     SINGLE_LINK_SIXTH,
 )
+from quietarm.studies.report.files import document_files
+from quietarm.studies.report.terminal import show
 from quietarm.studies.reproduction.claims import claims
 from quietarm.studies.reproduction.report import (
     against_earlier,
-    print_reproduction,
     redrawn,
-    reproduction_files,
+    reproduction_document,
     tables,
 )
 from rich.console import Console
@@ -28,7 +29,7 @@ from rich.console import Console
 def report(reproduction, tmp_path_factory, coarsely):
     """The folder that `write` filled, and what it says it wrote."""
     folder = tmp_path_factory.mktemp("results")
-    files = reproduction_files(folder, reproduction, claims(reproduction))
+    files = document_files(folder, reproduction_document(reproduction, claims(reproduction)))
     with coarsely():
         for path, write in files:
             write(path)
@@ -169,7 +170,7 @@ def test_the_mended_coefficients_stand_in_a_column_of_their_own(reproduction):
 @pytest.mark.parametrize("width", [80, 120])
 def test_the_screen_shows_every_figure_whole(reproduction, width):
     console = Console(file=io.StringIO(), width=width)
-    print_reproduction(console, reproduction, claims(reproduction))
+    show(console, reproduction_document(reproduction, claims(reproduction)))
     text = console.file.getvalue()
     assert max(map(len, text.splitlines())) <= width
     assert "…" not in text

@@ -113,5 +113,5 @@ def test_an_interrupt_leaves_no_file(call, folder, monkeypatch):
 
     monkeypatch.setattr(study_module, "run_study", interrupted)
     code, _, err = call(f"{MOVE} --quiet")
-    assert (code, err.strip()) == (1, "quietarm: interrupted; nothing was written")
+    assert (code, err.strip()) == (1, "quietarm: interrupted; what was written until then is kept")
     assert list(folder.iterdir()) == []

@@ -12,7 +12,7 @@ from lines import EVERY_FILE, MOVE
 from quietarm.ocp import Plan
 from quietarm.studies.reproduction.pieces import pieces_of_paper
 
-INTERRUPTED = "quietarm: interrupted; nothing was written"
+INTERRUPTED = "quietarm: interrupted; what was written until then is kept"
 GUARD = 120
 """Seconds after which a process that does not end has hung, on any machine."""
 
@@ -22,19 +22,18 @@ GUARD = 120
 ANNOUNCED = """
 import time
 import quietarm.studies.cli
-import quietarm.studies.cli.commands.moves.plan
+import quietarm.studies.cli.commands.plan
 import quietarm.studies.display.progress
 from quietarm.ocp.program import sqp
 
 sqp._Run.iterate = lambda run: time.sleep(0.05)
-quietarm.studies.display.progress.SILENT_SECONDS = 1e6
-solve = quietarm.studies.cli.commands.moves.plan.plan_move
+solve = quietarm.studies.cli.commands.plan.plan_move
 
 def announced(*arguments, **settings):
     print("begun", flush=True)
     return solve(*arguments, **settings)
 
-quietarm.studies.cli.commands.moves.plan.plan_move = announced
+quietarm.studies.cli.commands.plan.plan_move = announced
 quietarm.studies.cli.main()
 """
 

@@ -47,8 +47,7 @@ def test_the_help_of_a_command_loads_no_other(tmp_path):
     assert found.isdisjoint(HEAVY)
     commands = [name for name in found if name.startswith("quietarm.studies.cli.commands.")]
     assert sorted(commands) == [
-        "quietarm.studies.cli.commands.moves",
-        "quietarm.studies.cli.commands.moves.plan",
+        "quietarm.studies.cli.commands.plan",
     ]
 
 

@@ -10,7 +10,7 @@ from importlib import import_module
 
 import pytest
 import quietarm.studies.cli
-import quietarm.studies.runs.reports.comparison
+import quietarm.studies.reports.comparison
 from lines import MOVE
 from quietarm.ocp import Front
 
@@ -112,7 +112,7 @@ def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder,
     assert call(f"{line} epsilon --output a.json")[0] == 0
     assert call(f"{line} weighted --output b.json")[0] == 0
     monkeypatch.setattr(
-        quietarm.studies.runs.reports.comparison,
+        quietarm.studies.reports.comparison,
         "energy_floor",
         lambda task: signal.raise_signal(signal.SIGINT),
     )
@@ -122,7 +122,7 @@ def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder,
 
 
 def test_ctrl_c_while_the_plan_beside_it_is_looked_for_keeps_the_floor(call, folder, monkeypatch):
-    command = import_module("quietarm.studies.cli.commands.moves.floor")
+    command = import_module("quietarm.studies.cli.commands.floor")
     beside = command.plan_beside
 
     def interrupted(floor):

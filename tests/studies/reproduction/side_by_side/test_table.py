@@ -5,19 +5,25 @@ import io
 from pathlib import Path
 
 import pytest
-from quietarm.studies.report.markdown import table_in_markdown
+from quietarm.studies.report.document import Document
+from quietarm.studies.report.markdown import markdown, table_in_markdown
+from quietarm.studies.report.terminal import show
 from quietarm.studies.reproduction.side_by_side.table import (
     all_systems,
-    print_systems,
     seconds_in_words,
-    systems_in_markdown,
+    systems_blocks,
     systems_table,
-    why_not,
 )
 from rich.console import Console
 
 WHOLE = ("plain cycloid", "ZV", "ZVD", "EI", "paper", "boxed gradient", "gradient")
 """Systems that are not cut short in these tests."""
+
+
+def missing(systems):
+    return [f"{found.name}: {found.why}" for found in systems if found.why]
+
+
 PAGES = Path(__file__).parents[4]
 
 
@@ -32,7 +38,7 @@ def test_seconds_take_little_room(seconds, words):
 @pytest.mark.parametrize("width", [80, 120])
 def test_every_table_is_whole_on_the_screen(reproduction, width):
     console = Console(file=io.StringIO(), width=width)
-    print_systems(console, reproduction.systems)
+    show(console, Document("", systems_blocks(reproduction.systems)))
     text = console.file.getvalue()
     assert max(map(len, text.splitlines())) <= width
     for case, systems in reproduction.systems.items():
@@ -49,7 +55,7 @@ def test_every_table_is_whole_on_the_screen(reproduction, width):
                 assert f" {found.wrong_residual * 1e3:.2f} " in line
     joined = " ".join(text.split())
     for systems in reproduction.systems.values():
-        for why in why_not(systems):
+        for why in missing(systems):
             assert why in joined
 
 
@@ -74,10 +80,10 @@ def test_csv_holds_everything_with_every_digit(reproduction):
 
 
 def test_markdown_has_a_table_for_each_move_and_what_is_missing(reproduction):
-    text = "\n".join(systems_in_markdown(reproduction.systems))
+    text = markdown(Document("", systems_blocks(reproduction.systems)))
     for case, systems in reproduction.systems.items():
         assert table_in_markdown(systems_table(case, systems)) in text
-        for why in why_not(systems):
+        for why in missing(systems):
             assert f"\n- {why}\n" in text
 
 
@@ -97,4 +103,4 @@ def test_the_page_of_systems_shows_what_is_computed(reproduction):
                     assert theirs.strip() == mine or float(theirs) == pytest.approx(
                         float(mine), rel=0.01, abs=0.011
                     )
-        assert all(f"- {why}\n" in page for why in why_not(systems) if why.split(":")[0] in WHOLE)
+        assert all(f"- {why}\n" in page for why in missing(systems) if why.split(":")[0] in WHOLE)

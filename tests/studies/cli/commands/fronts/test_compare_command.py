@@ -7,8 +7,8 @@ import re
 
 import pytest
 import quietarm.studies.comparison.measures
-import quietarm.studies.runs.loading
-import quietarm.studies.runs.reports.comparison
+import quietarm.studies.reading.saved
+import quietarm.studies.reports.comparison
 from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.ocp import FrontPoint, SolverFailedError, evaluate_coefficients
 from quietarm.studies.paper.printed import ARM_HALF
@@ -22,7 +22,7 @@ def files(good, poor, tmp_path, monkeypatch):
     """Two files, in the folder of the test."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
-    monkeypatch.setattr(quietarm.studies.runs.loading, "check_figures", lambda front, name: None)
+    monkeypatch.setattr(quietarm.studies.reading.saved, "check_figures", lambda front, name: None)
     good.save("good.json")
     poor.save("poor.json")
     return tmp_path
@@ -70,9 +70,7 @@ def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     class Found:
         energy, complete = 0.1234, True
 
-    monkeypatch.setattr(
-        quietarm.studies.runs.reports.comparison, "energy_floor", lambda task: Found()
-    )
+    monkeypatch.setattr(quietarm.studies.reports.comparison, "energy_floor", lambda task: Found())
     code, out, _ = call("compare good.json poor.json --as-found")
     assert code == 0
     assert "arrive at rest, not of polynomials only, is 0.1234 J" in " ".join(out.split())
@@ -82,7 +80,7 @@ def test_a_floor_that_is_not_found_is_no_obstacle(call, files, monkeypatch):
     def fail(task):
         raise SolverFailedError("no start ended at an optimum")
 
-    monkeypatch.setattr(quietarm.studies.runs.reports.comparison, "energy_floor", fail)
+    monkeypatch.setattr(quietarm.studies.reports.comparison, "energy_floor", fail)
     code, out, err = call("compare good.json poor.json --as-found")
     assert (code, err) == (0, "no floor: no start ended at an optimum\n")
     assert "Floor" not in out

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-import quietarm.studies.runs.searching
+import quietarm.studies.cli.commands.plan
 import quietarm.studies.study.work
 from lines import MOVE
 from quietarm.metaheuristics import PRESETS, search
@@ -46,7 +46,7 @@ def test_a_plan_by_any_method_with_settings(call, monkeypatch):
         asked.update(given, method=method)
         return directly(method, settings=given["settings"])
 
-    monkeypatch.setattr(quietarm.studies.runs.searching, "search", small)
+    monkeypatch.setattr(quietarm.studies.cli.commands.plan, "search", small)
     line = f"plan {MOVE} --bound 0.2 --terms 2 --method spea2 --setting normalise=false"
     code, _, err = call(f"{line} --residual-limit 50mm --quiet --output p.json")
     assert (code, err) == (0, "")

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import quietarm.studies.runs.loading
-import quietarm.studies.runs.polishing
+import quietarm.studies.cli.commands.polish
+import quietarm.studies.reading.saved
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -23,8 +23,8 @@ from quietarm.ocp import (
     epsilon_front,
     polish_front,
 )
+from quietarm.studies.cli.commands.polish import thinned
 from quietarm.studies.figures.sweep import polish_figure
-from quietarm.studies.runs.polishing import thinned
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +91,7 @@ def test_ctrl_c_keeps_what_was_polished(call, monkeypatch):
 
         return polish_front(front, report=hear, **rest)
 
-    monkeypatch.setattr(quietarm.studies.runs.polishing, "polish_front", interrupted)
+    monkeypatch.setattr(quietarm.studies.cli.commands.polish, "polish_front", interrupted)
     code, out, err = call("polish f.json --quiet --output p.json --csv p.csv --figure p.png")
     assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
     assert "(interrupted after 3 of them)" in out
@@ -108,10 +108,10 @@ def test_points_that_fail_or_are_beaten_are_told(call, monkeypatch, front_of):
     )
     gains = (Gain(0, 0.8, 0.8), Gain(4e-3, 0.5, 0.3), Gain(8e-3, 0.4, 0.4))
     monkeypatch.setattr(
-        quietarm.studies.runs.polishing, "polish_front", lambda *_, **__: Polish(after, gains)
+        quietarm.studies.cli.commands.polish, "polish_front", lambda *_, **__: Polish(after, gains)
     )
     monkeypatch.setattr(
-        quietarm.studies.runs.loading, "check_figures", lambda front, name: None
+        quietarm.studies.reading.saved, "check_figures", lambda front, name: None
     )  # invented
     before.save("f.json")
     _, out, _ = call("polish f.json")

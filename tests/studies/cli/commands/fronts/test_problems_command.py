@@ -56,7 +56,7 @@ def test_an_interruption_keeps_the_fronts_that_are_whole(call, folder, monkeypat
     assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
     assert [path.name for path in (folder / "fronts").iterdir()] == [f"{SMALL}.json"]
     code, _, err = call(f"problems {SMALL} --again --output others --quiet")
-    assert (code, err.strip()) == (1, "quietarm: interrupted; nothing was written")
+    assert (code, err.strip()) == (1, "quietarm: interrupted; what was written until then is kept")
     assert not (folder / "others").exists()
 
 

@@ -4,7 +4,7 @@ import math
 import signal
 
 import pytest
-import quietarm.studies.runs.animating
+import quietarm.studies.animation
 from PIL import Image
 from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.studies.animation import stage
@@ -31,13 +31,13 @@ def test_plans_of_different_plants_and_durations_share_a_picture(call, folder):
 
 
 def test_a_plan_alone_stands_beside_the_plain_cycloid(call, monkeypatch):
-    drawn, animate = [], quietarm.studies.runs.animating.animate
+    drawn, animate = [], quietarm.studies.animation.animate
 
     def note(motions, **settings):
         drawn.append((motions, settings))
         return animate(motions, **settings)
 
-    monkeypatch.setattr(quietarm.studies.runs.animating, "animate", note)
+    monkeypatch.setattr(quietarm.studies.animation, "animate", note)
     line = "animate plan.json --speed 200% --deflection-scale 3 --output move.gif"
     code, _, err = call(f"{line} --width 240 --frames-per-second 4")
     assert (code, err.splitlines()[-1]) == (0, "4 of 4 frames")
@@ -58,7 +58,7 @@ def test_a_plant_of_ones_own_is_drawn_from_its_file(call, crane_file):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("plan.json", "--output is missing; give it, as --output FILE"),
+        ("plan.json", "Missing option '--output'"),
         ("--output m.gif", "no plan is given; give files that were written by quietarm plan"),
         ("plan.json --output m.png", "m.png is no animation; end its name in .gif or .mp4"),
         ("plan.json --output m", "m is no animation; end its name in .gif or .mp4"),
@@ -104,6 +104,10 @@ def test_ctrl_c_leaves_nothing_behind(call, folder, monkeypatch):
     before = set(folder.iterdir())
     code, out, err = call(f"animate plan.json --output m.gif {SMALL}")
     # click first ends the terminal's line of ^C
-    assert (code, out, err) == (1, "", "\nquietarm: interrupted; nothing was written\n")
+    assert (code, out, err) == (
+        1,
+        "",
+        "\nquietarm: interrupted; what was written until then is kept\n",
+    )
     assert drawn == [0, 1, 2, 3]
     assert set(folder.iterdir()) == before

@@ -9,7 +9,7 @@ import pytest
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import Floor, FloorSettings, PointToPoint, SolverFailedError, energy_floor
 from quietarm.studies.figures.motion import PAPER_PANELS, Line, floor_figure, motion_figure
-from quietarm.studies.runs.reports.floor import plan_beside
+from quietarm.studies.reports.floor import plan_beside
 
 MOVE = "arm-on-flexible-link --target pi/2 --duration 0.8"
 
@@ -81,7 +81,7 @@ def test_the_help_shows_examples_that_are_read(call, monkeypatch, tmp_path):
         asked.append((task, settings))
         raise SolverFailedError("enough is known")
 
-    monkeypatch.setattr("quietarm.studies.cli.commands.moves.floor.energy_floor", note)
+    monkeypatch.setattr("quietarm.studies.cli.commands.floor.energy_floor", note)
     for example in examples:
         assert call(example.removeprefix("quietarm "))[0] == 1
     assert len(asked) == len(examples) == 2

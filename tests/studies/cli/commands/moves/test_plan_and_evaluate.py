@@ -10,13 +10,11 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-import quietarm.studies.cli.commands.moves.evaluate
-import quietarm.studies.cli.commands.moves.floor
-import quietarm.studies.cli.commands.moves.plan
+import quietarm.studies.cli.commands.evaluate
+import quietarm.studies.cli.commands.floor
+import quietarm.studies.cli.commands.plan
+import quietarm.studies.reading.saved
 import quietarm.studies.reproduction.recompute
-import quietarm.studies.runs.loading
-import quietarm.studies.runs.polishing
-import quietarm.studies.runs.searching
 import quietarm.studies.study.work
 from lines import EVERY_FILE, MOVE, PLAN, TWO_TERMS, run
 from quietarm.ocp import InfeasibleTaskError, Plan
@@ -152,7 +150,7 @@ def test_every_limit_reaches_the_solver(monkeypatch, call):
         asked.update(task=task, profile=profile, settings=settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", note)
+    monkeypatch.setattr(quietarm.studies.cli.commands.plan, "plan_move", note)
     call(
         f"plan {MOVE} --torque-limit 0.2 --speed-limit 1.5 --acceleration-limit 9 "
         "--jerk-limit 700 --deflection-limit 80mm --residual-window 500ms --residual-limit 1mm "
@@ -175,7 +173,7 @@ def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call)
         asked.update(task=task, profile=profile, settings=settings)
         raise InfeasibleTaskError("enough is known")
 
-    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", note)
+    monkeypatch.setattr(quietarm.studies.cli.commands.plan, "plan_move", note)
     call(f"plan {MOVE}")
     assert (asked["task"].start, asked["task"].limits) == (0.0, {})
     assert asked["task"].residual_window == 1.0
@@ -211,7 +209,7 @@ def test_a_reason_of_several_lines_is_put_on_one(refused, monkeypatch):
     def end(*arguments, **settings):
         raise InfeasibleTaskError("no way\n  at all")
 
-    monkeypatch.setattr(quietarm.studies.cli.commands.moves.plan, "plan_move", end)
+    monkeypatch.setattr(quietarm.studies.cli.commands.plan, "plan_move", end)
     assert refused(f"{PLAN} {EVERY_FILE}", status=1) == "quietarm: no way at all\n"
 
 

@@ -10,7 +10,7 @@ from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.front.robust import EXCESS
-from quietarm.studies.runs.reports.plan import print_plan
+from quietarm.studies.reports.plan import print_plan
 from rich.console import Console
 
 

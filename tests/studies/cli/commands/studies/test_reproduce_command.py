@@ -4,20 +4,18 @@ import re
 from pathlib import Path
 
 import pytest
-import quietarm.studies.cli.commands.moves.evaluate
-import quietarm.studies.cli.commands.moves.floor
-import quietarm.studies.cli.commands.moves.plan
+import quietarm.studies.cli.commands.evaluate
+import quietarm.studies.cli.commands.floor
+import quietarm.studies.cli.commands.plan
+import quietarm.studies.reading.saved
 import quietarm.studies.reproduction.recompute
-import quietarm.studies.runs.loading
-import quietarm.studies.runs.polishing
-import quietarm.studies.runs.searching
 import quietarm.studies.study.work
 from quietarm.metaheuristics.sharing import workers
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import QuietarmError
 from quietarm.studies.paper.printed import ROWS
+from quietarm.studies.report.files import document_files
 from quietarm.studies.reproduction.pieces import pieces_of_paper
-from quietarm.studies.reproduction.report import reproduction_files
 
 
 @pytest.fixture
@@ -59,9 +57,9 @@ def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(
     call, reproduced, folder, monkeypatch
 ):
     # what is in the files: tests/studies/reproduction
-    every = reproduction_files
+    every = document_files
     monkeypatch.setattr(
-        "quietarm.studies.reproduction.report.reproduction_files",
+        "quietarm.studies.report.files.document_files",
         lambda *given: [(path, Path.touch) for path, _ in every(*given)],
     )
     (folder / "results").mkdir()
@@ -103,12 +101,3 @@ def test_by_default_it_takes_the_cores_at_hand(call, monkeypatch, dask):
     monkeypatch.setattr(workers, "find_spec", lambda _: object() if dask else None)
     assert "this is enough" in call("reproduce --quiet")[2]
     assert asked == [Workers(2) if dask else Workers()]
-
-
-def test_reproduce_makes_the_folder(call, reproduced, folder, monkeypatch):
-    every = reproduction_files
-    report = "quietarm.studies.reproduction.report.reproduction_files"
-    monkeypatch.setattr(report, lambda *given: [f for f in every(*given) if f[0].suffix == ".md"])
-    code, _, _ = call("reproduce --output results")
-    assert code == 0
-    assert (folder / "results" / "report.md").is_file()

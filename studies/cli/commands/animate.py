@@ -1,0 +1,75 @@
+"""`quietarm animate`: plans as a picture that moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from quietarm.studies.cli.options import (
+    INPUT,
+    NUMBER,
+    SHARE,
+    STATE,
+    WHOLE,
+    plant_file_option,
+    quiet_option,
+)
+
+
+@click.command()
+@click.argument("plans", nargs=-1, type=INPUT, metavar="PLAN ...")
+@click.option("--output", type=STATE, required=True,
+              help="The file: .gif, or .mp4 where ffmpeg is installed.")  # fmt: skip
+@click.option("--speed", type=SHARE, default="100%", show_default=True,
+              help="Speed of the clock; 25% is slow motion.")  # fmt: skip
+@click.option("--deflection-scale", type=NUMBER,
+              help="Draw deflections so many times larger than they are. [default: the largest "
+              "becomes up to a fifth of the structure]")  # fmt: skip
+@click.option("--frames-per-second", type=NUMBER, default=25.0, show_default=True,
+              help="Frames in a second of the animation.")  # fmt: skip
+@click.option("--width", type=WHOLE, default=800, show_default=True, help="In pixels.")
+@plant_file_option(expose_value=False)
+@quiet_option
+def animate(
+    plans: tuple[Path, ...],
+    output: Path,
+    speed: float,
+    deflection_scale: float | None,
+    frames_per_second: float,
+    width: int,
+    quiet: bool,
+) -> None:
+    """Draw structures in motion, side by side and on one clock.
+
+    PLANs are files written by `quietarm plan` or `evaluate`, of any plants and durations; one alone
+    is drawn beside the plain cycloid of its move. Every link bends as its mode does; the picture
+    says how far that is exaggerated. Below are the joint angle and the power, with a cursor.
+
+    \b
+    Examples:
+      quietarm animate plan.json --output move.gif
+      quietarm animate plan.json zvd.json --speed 25% --output slowly.gif
+      quietarm animate plan.json --deflection-scale 5 --width 1200 --output move.gif
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from quietarm.studies.animation import animate as draw
+    from quietarm.studies.animation.clock import Clock, end_of
+    from quietarm.studies.animation.formats import check_format, format_of
+    from quietarm.studies.display.progress import count
+    from quietarm.studies.display.saving import finish
+    from quietarm.studies.display.words import print_lines
+    from quietarm.studies.figures import Line
+    from quietarm.studies.reading.saved import load_plans
+    from rich.console import Console
+
+    kind = format_of(output)
+    check_format(kind)
+    lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
+    motions = lines if len(lines) > 1 else lines[0].plan
+    frames = len(Clock(end_of(lines), speed, frames_per_second).times)
+    with count(frames, "frames", Console(stderr=True), quiet=quiet) as report:
+        film = draw(
+            motions, speed=speed, deflection_scale=deflection_scale, width=width,
+            frames_per_second=frames_per_second, format=kind, report=report,
+        )  # fmt: skip
+    size = f"{film.frames} frames, {film.seconds:.1f} s, {len(film.content) / 1e3:.0f} kB"
+    finish([(output, film.save)], lambda console: print_lines(console, size))

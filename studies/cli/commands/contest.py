@@ -1,0 +1,153 @@
+"""`quietarm contest`: methods with equal evaluations against exact fronts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from quietarm.studies.cli.options import (
+    FOLDER,
+    WHOLE,
+    method_settings_option,
+    quiet_option,
+    settings_by_method,
+    workers_options,
+)
+from rich.console import Console
+
+if TYPE_CHECKING:
+    from quietarm.metaheuristics.sharing.pieces import Done
+
+
+@click.command()
+@click.argument("problems", nargs=-1, metavar="[PROBLEM]...")
+@click.option(
+    "--methods", default="nsga2,vepso", show_default=True, metavar="NAME,NAME,...",
+    help="Methods, with commas between them: those of quietarm front, as they are or with the "
+    "gradient's help (nsga2+polish, nsga2+seeds); multistart is the gradient alone.",
+)  # fmt: skip
+@click.option("--runs", type=WHOLE, default=31, show_default=True, help="Seeds of each method.")
+@click.option(
+    "--evaluations", type=WHOLE, default=20_000, show_default=True, help="Evaluations of each run."
+)
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="First seed.")
+@click.option("--population", type=WHOLE, help="Of every method; each method's own by default.")
+@method_settings_option(
+    "as in --setting nsga2.crossover=0.7, or its population; it takes part beside the same method "
+    "with others"
+)
+@click.option(
+    "--import", "given", multiple=True, metavar="[NAME=]PATH",
+    help="Results of another tool on the one PROBLEM: a file of coefficients as quietarm import "
+    "reads it, or a folder with such a file for each run; may be repeated. Without NAME the method "
+    "is called as the file or folder.",
+)  # fmt: skip
+@click.option(
+    "--import-evaluations", type=WHOLE,
+    help="Evaluations that each imported run took. Where they are not known, or not as many as "
+    "--evaluations, the runs are shown and marked, and left out of the tests.",
+)  # fmt: skip
+@click.option(
+    "--explain", is_flag=True,
+    help="Look for the local minima of each problem as well, and say what the box costs.",
+)  # fmt: skip
+@click.option(
+    "--output", type=FOLDER, required=True,
+    help="Folder for the runs and what they say; runs that are there are not done again.",
+)  # fmt: skip
+@workers_options
+@quiet_option
+def contest(
+    problems: tuple[str, ...],
+    methods: str,
+    runs: int,
+    evaluations: int,
+    seed: int,
+    population: int | None,
+    setting: tuple[tuple[str, str], ...],
+    given: tuple[str, ...],
+    import_evaluations: int | None,
+    explain: bool,
+    output: Path,
+    workers: int,
+    scheduler: str | None,
+    quiet: bool,
+) -> None:
+    """Hold methods with equal evaluations against the exact front of each PROBLEM.
+
+    Without PROBLEM, on the six conditions of the paper. Every run is a file in the folder as soon
+    as it is done. The same line again goes on after any stop; one with another method adds that
+    one's runs. The page, tables and pictures show all that is in the folder.
+
+    \b
+    Examples:
+      quietarm contest --methods nsga2,vepso --runs 31 --output contest
+      quietarm contest single-link-30deg-0.8s --runs 5 --evaluations 5000 --output small
+      quietarm contest single-link-30deg-0.8s --runs 5 --import "my swarm=results" --output small
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from quietarm.metaheuristics.sharing.workers import Workers
+    from quietarm.ocp import QuietarmError
+    from quietarm.studies.cli.arguments import warn_of_workers
+    from quietarm.studies.contest import store as stores
+    from quietarm.studies.contest.asked import Contest
+    from quietarm.studies.contest.imported import named_files
+    from quietarm.studies.contest.measures import arenas_of
+    from quietarm.studies.contest.problems import problems_of
+    from quietarm.studies.contest.report.files import check_places, report_files
+    from quietarm.studies.contest.report.notes import not_alike, wrong_claims
+    from quietarm.studies.contest.report.tables import summary_table
+    from quietarm.studies.contest.statistics import why_none
+    from quietarm.studies.contest.work import pieces_of, run_contest, set_up
+    from quietarm.studies.display.progress import progress, working
+    from quietarm.studies.display.saving import Together, finish
+    from quietarm.studies.display.words import print_lines
+    from quietarm.studies.report.terminal import show_table
+
+    names = tuple(name.strip() for name in methods.split(","))
+    asked = Contest(
+        problems_of(problems), names, runs, evaluations, seed, population,
+        settings_by_method(setting, names), explain, Workers(workers, scheduler),
+    )  # fmt: skip
+    if import_evaluations is not None and not given:
+        raise ValueError("--import-evaluations says how long imported runs are; give --import too")
+    files, errors = named_files(given), Console(stderr=True)
+    with working("reading", errors, quiet=quiet):
+        stores.check_places(output, asked.keys)
+        check_places(output)
+        store = stores.Store(output)
+        set_up(asked, store, files, import_evaluations)
+    pieces = pieces_of(asked, store)
+    if not quiet and store.runs:
+        print_lines(errors, asked.how_far(store.runs, output))
+    warn_of_workers(errors, workers, len(pieces))
+    with progress(len(pieces), errors, quiet=quiet) as begin:
+        done = run_contest(pieces, store, asked.workers, begin)
+    arenas = arenas_of(store)
+    if not arenas:
+        raise QuietarmError(_why_not_whole(done, len(pieces)) or "no run was done")
+
+    def show(console: Console) -> None:
+        for arena in arenas:
+            print_lines(console, arena.problem)
+            show_table(console, summary_table(arena))
+        notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *asked.left_out]
+        print_lines(console, *filter(None, notes))
+
+    trouble = _why_not_whole(done, len(pieces))
+    page, *others = report_files(arenas, output, asked.left_out)
+    finish(
+        [page], show, trouble=QuietarmError(trouble) if trouble else None, quiet=quiet,
+        together=Together("tables and pictures", output, others),
+    )  # fmt: skip
+
+
+def _why_not_whole(done: Done, pieces: int) -> str:
+    """What was not done, and why; empty where all was."""
+    failures = [f"{piece}: {error}" for piece, error in done.failures.items()]
+    words = [f"{done.stopped}: {len(done.answers)} of {pieces} pieces of work are done; give the "
+             "same line again to go on"] if done.stopped else []  # fmt: skip
+    if failures:
+        more = f"; and {len(failures) - 1} more" if len(failures) > 1 else ""
+        words.append(f"{failures[0]}{more}")
+    return "; ".join(words)

@@ -1,0 +1,73 @@
+"""`quietarm floor`: the least energy over all joint motions."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from quietarm.ocp import energy_floor
+from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.studies.cli.arguments import refuse_same_file, task_of
+from quietarm.studies.cli.options import NUMBER, OUTPUT, PICTURE, WHOLE, quiet_option, task_options
+from quietarm.studies.display.progress import working
+from quietarm.studies.display.saving import drawing, finish, interruption
+from quietarm.studies.reports.floor import plan_beside, print_floor
+from rich.console import Console
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@click.command()
+@task_options
+@click.option("--smooth", is_flag=True, help="Keep the acceleration continuous: the jerk is free.")
+@click.option("--starts", type=WHOLE, default=4, show_default=True, help="Starts of the solver.")
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random starts.")
+@click.option(
+    "--tolerance", type=NUMBER, default=0.005, show_default=True,
+    help="Refine the grid until the energy changes by less than this share.",
+)  # fmt: skip
+@click.option("--output", type=OUTPUT, help="Write the floor to this JSON file.")
+@click.option("--figure", type=PICTURE, help="Draw it over the plan (.png, .pdf or .svg).")
+@quiet_option
+def floor(
+    smooth: bool,
+    starts: int,
+    seed: int,
+    tolerance: float,
+    output: Path | None,
+    figure: Path | None,
+    quiet: bool,
+    **rest: Any,
+) -> None:
+    """Find the least energy of a move over all joint motions, at rest on arrival.
+
+    The joint follows no profile: its acceleration is free. The energy of a plan above this floor is
+    the price of its profile. Without an acceleration limit the floor's motion begins and ends with
+    a jolt.
+
+    \b
+    Examples:
+      quietarm floor arm-on-flexible-link --target pi/2 --duration 0.8
+      quietarm floor single-link --target 30deg --duration 0.8 --acceleration-limit 80 \\
+          --figure floor.png --output floor.json
+    """  # noqa: D301  # \b is click's: do not rewrap
+    refuse_same_file([("--output", output), ("--figure", figure)])
+    task = task_of(rest)
+    with working("refining the grid", Console(stderr=True), quiet=quiet):
+        found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
+        with note_interrupts() as came:  # the floor is found, and the plan takes a moment
+            plan = plan_beside(found) if found.complete else None
+
+    def picture() -> Figure:
+        from quietarm.studies.figures import floor_figure
+
+        return floor_figure(found, plan)
+
+    finish(
+        [(output, found.save), (figure, drawing(picture))],
+        partial(print_floor, floor=found, plan=plan),
+        trouble=interruption(found.provenance.stopped) if came or not found.complete else None,
+    )

@@ -1,0 +1,116 @@
+"""`quietarm import`: coefficients that another program found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from quietarm.studies.cli.arguments import FrontFiles, task_of
+from quietarm.studies.cli.options import (
+    INPUT,
+    NUMBER,
+    OUTPUT,
+    PICTURE,
+    WHOLE,
+    family_option,
+    quiet_option,
+    task_options,
+)
+from quietarm.studies.display.progress import working
+from quietarm.studies.display.saving import finish
+from quietarm.studies.display.words import print_lines
+from quietarm.studies.reading.foreign import read_found
+from quietarm.studies.reading.importing import import_front
+from quietarm.studies.registry.profiles import FAMILIES
+from quietarm.studies.reports.search import print_fronts
+from rich.console import Console
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@click.command("import")
+@click.argument("file", type=INPUT)
+@task_options
+@family_option
+@click.option(
+    "--terms", type=WHOLE, help="Refuse the file if it has another number of coefficients."
+)
+@click.option("--bound", type=NUMBER, help="Refuse coefficients beyond this box.")
+@click.option("--method", help="What found them; by default the name of the file.")
+@click.option("--output", type=OUTPUT, help="Write the front to this JSON file.")
+@click.option("--csv", "csv_file", type=OUTPUT, help="Write its points to this CSV file.")
+@click.option("--figure", type=PICTURE, help="Draw the front (.png, .pdf or .svg).")
+@quiet_option
+def import_(
+    file: Path,
+    profile: str,
+    terms: int | None,
+    bound: float | None,
+    method: str | None,
+    output: Path | None,
+    csv_file: Path | None,
+    figure: Path | None,
+    quiet: bool,
+    **rest: Any,
+) -> None:
+    """Evaluate coefficients that any program found, and make a front of them.
+
+    FILE is text with a row for each motion, .npy, .npz or .mat. Its columns are coefficients, a_1,
+    a_2, ...; what it claims, in columns residual_m and energy_J, is held against what its
+    coefficients give. The front goes to compare, polish and others like any other.
+
+    \b
+    Examples:
+      quietarm import results.csv single-link --target pi/6 --duration 0.8 --output front.json
+      quietarm import found.mat arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 \\
+          --method "my swarm" --output front.json --figure front.png
+    """  # noqa: D301  # \b is click's: do not rewrap
+    task = task_of(rest)
+    found = read_found(file)
+    columns = found.coefficients.shape[1]
+    if terms is not None:
+        size = FAMILIES[profile](terms).size
+        if size != columns:
+            turned = ", or transpose it" if len(found.coefficients) == size else ""
+            raise ValueError(
+                f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
+                f"{size}; leave --terms out{turned}"
+            )
+    try:
+        motions = FAMILIES[profile].of_size(columns)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
+    settings: dict[str, Any] = {"imported": file.name}
+    if bound is not None:
+        settings["bound"] = bound
+    name = method or file.stem
+    files = FrontFiles(output, csv_file, figure)
+    files.refuse_same(("FILE", file))
+    with working("evaluating", Console(stderr=True), quiet=quiet):
+        try:
+            front, claims = import_front(task, motions, found, name, settings)
+        except ValueError as error:
+            raise ValueError(f"{file}: {error}") from None
+
+    def picture() -> Figure:
+        from quietarm.studies.figures import front_figure
+
+        return front_figure([front])
+
+    def show(console: Console) -> None:
+        print_fronts(console, [front])
+        lines = [claim.line() for claim in claims]
+        if not claims:
+            lines.append(
+                "the file states neither residual nor energy in numbers: nothing to hold against"
+            )
+        if found.ignored:
+            lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
+        print_lines(console, *lines)
+
+    finish(
+        files.written(front, picture),
+        show,
+    )

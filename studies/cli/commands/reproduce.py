@@ -1,0 +1,77 @@
+"""`quietarm reproduce`: the paper recomputed."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import click
+from quietarm.studies.cli.options import FOLDER, WHOLE, quiet_option, workers_at_hand_options
+from rich.console import Console
+
+
+@click.command()
+@click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
+@click.option(
+    "--seeds",
+    type=WHOLE,
+    default=1,
+    show_default=True,
+    help="Seeds of VEPSO and NSGA-II; 5 give medians and quartiles.",
+)
+@workers_at_hand_options
+@quiet_option
+def reproduce(
+    output: Path | None, seeds: int, workers: int | None, scheduler: str | None, quiet: bool
+) -> None:
+    """Recompute the paper's Tables 2, 3, 5 and 6 and its claims; compare every system.
+
+    \b
+    Examples:
+      quietarm reproduce --output results
+      quietarm reproduce --output results --workers 1
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from quietarm.metaheuristics.sharing.pieces import InterruptedPiece
+    from quietarm.metaheuristics.sharing.workers import Workers, cores_at_hand
+    from quietarm.ocp import QuietarmError
+    from quietarm.studies.cli.arguments import warn_of_workers
+    from quietarm.studies.display.progress import progress
+    from quietarm.studies.display.saving import finish, inside
+    from quietarm.studies.display.words import print_lines
+    from quietarm.studies.report.files import document_files
+    from quietarm.studies.report.terminal import show
+    from quietarm.studies.reproduction.claims import claims
+    from quietarm.studies.reproduction.pieces import pieces_of_paper
+    from quietarm.studies.reproduction.recompute import recompute_paper
+    from quietarm.studies.reproduction.report import reproduction_document
+    from quietarm.studies.reproduction.unfinished import FILE, unfinished_table
+
+    if workers is None:
+        workers = cores_at_hand() if scheduler is None else 1
+    where, errors, pieces = (
+        Workers(workers, scheduler),
+        Console(stderr=True),
+        pieces_of_paper(seeds),
+    )
+    warn_of_workers(errors, workers, len(pieces))
+    try:
+        with progress(len(pieces), errors, quiet=quiet) as begin:
+            result = recompute_paper(begin, seeds, where)
+    except InterruptedPiece as stop:
+        if not stop.part.answers:
+            raise
+        table = unfinished_table(pieces, stop.part)
+        finish(
+            [] if output is None else inside(output, {FILE: table.save_csv}),
+            lambda console: print_lines(console, table.csv().rstrip()),
+            trouble=QuietarmError(
+                f"{stop.part.stopped}: {stop.part.number} of {len(pieces)} pieces of work are done"
+            ),
+        )
+    else:
+        document = reproduction_document(result, claims(result))
+        finish(
+            [] if output is None else document_files(output, document),
+            partial(show, document=document),
+            quiet=quiet,
+        )

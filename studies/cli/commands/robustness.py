@@ -1,0 +1,146 @@
+"""`quietarm robustness`: what plans leave when the plant is not the assumed one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+import click
+from quietarm.ocp import Plan, Robustness, evaluate_robustness
+from quietarm.ocp.robustness.uncertain import assumed_plant
+from quietarm.ocp.simulation.errors import checked_ranges
+from quietarm.studies.cli.options import (
+    FOLDER,
+    INPUT,
+    SHARE,
+    WHOLE,
+    plant_file_option,
+    quiet_option,
+)
+from quietarm.studies.display.progress import count
+from quietarm.studies.display.saving import finish, interruption
+from quietarm.studies.reading.saved import load_plans
+from quietarm.studies.report.files import document_files
+from quietarm.studies.report.terminal import show
+from quietarm.studies.reports.robustness import Figured, robustness_document
+from rich.console import Console
+
+DEFAULT_RANGES: Mapping[str, float] = {"frequency": 0.2, "damping": 0.5}
+"""The errors where none is asked for."""
+
+
+@click.command(context_settings={"ignore_unknown_options": True})
+@click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="PLAN ... [--PARAMETER SHARE]")
+@click.option("--frequency", type=SHARE, multiple=True,
+              help="Largest error of all natural frequencies, as 20%.")  # fmt: skip
+@click.option("--damping", type=SHARE, multiple=True,
+              help="Largest error of all damping ratios, as 50%.")  # fmt: skip
+@click.option("--samples", type=WHOLE, default=10_000, show_default=True,
+              help="Monte Carlo samples of each plan, all errors at once.")  # fmt: skip
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="Of the samples.")
+@click.option("--output", type=FOLDER,
+              help="Write table, picture, sweeps and samples to this folder.")  # fmt: skip
+@plant_file_option(expose_value=False)
+@quiet_option
+@click.pass_context
+def robustness(
+    context: click.Context,
+    words: tuple[str, ...],
+    frequency: tuple[float, ...],
+    damping: tuple[float, ...],
+    samples: int,
+    seed: int,
+    output: Path | None,
+    quiet: bool,
+) -> None:
+    """Show what plans leave, and what they take, when the plant is not the assumed one.
+
+    PLANs are files written by `quietarm plan` or `evaluate`. Any parameter of the plant may be
+    wrong: --omega 10% is one by up to 10 % either way. Each error alone gives a curve and the range
+    within which the residual stays below 5 % of the plain cycloid's; all at once, drawn at random,
+    give percentiles of residual, energy and peak torque. Without any error named: --frequency 20%
+    --damping 50%.
+
+    \b
+    Examples:
+      quietarm robustness plan.json
+      quietarm robustness plan.json zvd.json --frequency 20% --output robust
+      quietarm robustness plan.json --omega 10% --alpha1 5% --samples 100000
+    """  # noqa: D301  # \b is click's: do not rewrap
+    named: dict[str, float] = {}
+    for name, shares in {"frequency": frequency, "damping": damping}.items():
+        if len(shares) > 1:
+            raise ValueError(f"--{name} is given twice; give it once")
+        named.update((name, share) for share in shares)
+    paths, others = _parted(context, words)
+    ranges = {**named, **others} or dict(DEFAULT_RANGES)
+    plans = load_plans(paths)
+    for path, plan in zip(paths, plans.values(), strict=True):
+        try:
+            checked_ranges(assumed_plant(plan.task.plant), ranges)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+    figured, trouble = _evaluated(plans, ranges, samples, seed, quiet), None
+    if len(figured) < len(plans):
+        trouble = interruption(f"{len(figured)} of {len(plans)} plans")
+    document = robustness_document(figured)
+    files = [] if output is None else document_files(output, document)
+    finish(files, partial(show, document=document), trouble=trouble, quiet=quiet)
+
+
+def _parted(context: click.Context, words: tuple[str, ...]) -> tuple[list[Path], dict[str, float]]:
+    """The plans among the words, and the errors of parameters by their names."""
+    paths, ranges, rest = list[Path](), dict[str, float](), list(words)
+    while rest:
+        word = rest.pop(0)
+        if not word.startswith("--"):
+            if word.startswith("-"):
+                if Path(word).exists():  # click takes the -- away that may have been before it
+                    raise ValueError(f"{word} looks like an option; give ./{word}")
+                raise click.NoSuchOption(word, ctx=context)
+            paths.append(INPUT.convert(word, None, context))
+            continue
+        option, equals, share = word.partition("=")
+        name = option[2:].replace("-", "_")
+        if not equals:
+            if not rest:
+                raise ValueError(f"{option} has no value; give one, as {option} 10%")
+            share = rest.pop(0)
+        if name in ranges:
+            raise ValueError(f"{option} is given twice; give it once")
+        try:
+            ranges[name] = SHARE.parse(share)
+        except ValueError as error:
+            raise ValueError(f"{option}: {error}") from None
+    return paths, ranges
+
+
+@contextmanager
+def _keeping(found: Mapping[str, object]) -> Iterator[None]:
+    """Let Ctrl-C end the block, but raise it where nothing was found."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not found:
+            raise
+
+
+def _evaluated(
+    plans: Mapping[str, Plan], ranges: Mapping[str, float], samples: int, seed: int, quiet: bool
+) -> Figured:
+    """The figures of every plan; after Ctrl-C those of the plans until then, if there are any."""
+    figured: dict[str, tuple[Plan, Robustness]] = {}
+    words = samples * len(plans), "evaluations", Console(stderr=True)
+    with _keeping(figured), count(*words, quiet=quiet) as report:
+        for number, (label, plan) in enumerate(plans.items()):
+
+            def told(done: int, total: int, number: int = number) -> None:
+                report(number * total + done, len(plans) * total)
+
+            figured[label] = plan, evaluate_robustness(
+                plan.task, plan.profile, plan.coefficients, ranges,
+                samples=samples, seed=seed, report=told,
+            )  # fmt: skip
+    return figured

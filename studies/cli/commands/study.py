@@ -1,0 +1,152 @@
+"""`quietarm study`: every method on a task, or on all of the paper's, in one report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+from click.core import ParameterSource
+from quietarm.metaheuristics import PRESETS
+from quietarm.studies.cli.arguments import task_of
+from quietarm.studies.cli.options import (
+    FOLDER,
+    INPUT,
+    NUMBER,
+    PAGE,
+    WHOLE,
+    Named,
+    method_settings_option,
+    quiet_option,
+    settings_by_method,
+    task_options,
+    workers_options,
+)
+from quietarm.studies.registry.methods import PAPERS
+from rich.console import Console
+
+
+def _not_required(command: click.Command) -> click.Command:
+    """A command whose task may be left out."""
+    for parameter in command.params:
+        parameter.required = False
+    return command
+
+
+@_not_required
+@click.command()
+@task_options
+@click.option("--bound", type=NUMBER, help="Largest coefficient; the paper's for its plants.")
+@click.option("--terms", type=WHOLE, default=6, show_default=True, help="Terms of the polynomial.")
+@click.option(
+    "--points", type=WHOLE, default=50, show_default=True, help="Points of the gradient's fronts."
+)
+@click.option(
+    "--runs", type=WHOLE, default=3, show_default=True, help="Seeds of each metaheuristic."
+)
+@click.option("--seed", type=WHOLE, default=0, show_default=True, help="First seed.")
+@click.option(
+    "--method", "methods", type=Named("metaheuristic", PRESETS), multiple=True,
+    default=[method.name for method in PAPERS], show_default=True,
+    help="A metaheuristic to run; may be repeated.",
+)  # fmt: skip
+@workers_options
+@click.option(
+    "--population", type=WHOLE,
+    help="Individuals, or particles in a swarm; docs/methods.md has the defaults.",
+)  # fmt: skip
+@click.option("--generations", type=WHOLE, help="Generations.")
+@method_settings_option("as in --setting nsga2.crossover=0.7")
+@click.option(
+    "--output", type=PAGE, default="study.html", show_default=True, help="Write the report here."
+)
+@click.option(
+    "--front", "given", type=INPUT, multiple=True,
+    help="Compare with this front as well, as quietarm import writes one; may be repeated.",
+)  # fmt: skip
+@click.option("--fronts", type=FOLDER, help="Write every front to this folder.")
+@quiet_option
+@click.pass_context
+def study(
+    context: click.Context, output: Path, fronts: Path | None, quiet: bool, **rest: Any
+) -> None:
+    """Run every method on a task, compare what they find, and write one page of HTML.
+
+    Without PLANT, on all six conditions of the paper, which takes some minutes. The methods:
+    fronts by gradient (epsilon-constraint and weighted sum), NSGA-II and VEPSO or other
+    metaheuristics from several seeds, each polished by the gradient, and the floor. The page stands
+    alone: pictures are inside.
+
+    \b
+    Examples:
+      quietarm study --output study.html
+      quietarm study arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 --runs 5
+      quietarm study single-link --target 30deg --duration 0.8 --torque-limit 0.2 --fronts fronts
+      quietarm study single-link --target 30deg --duration 0.8 --method smsemoa --method gde3
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from quietarm.ocp import QuietarmError
+    from quietarm.studies.cli.arguments import refuse_same_file, warn_of_workers
+    from quietarm.studies.display.progress import progress
+    from quietarm.studies.display.saving import Together, finish
+    from quietarm.studies.display.words import counted
+    from quietarm.studies.paper.case import Case
+    from quietarm.studies.paper.printed import CONDITIONS
+    from quietarm.studies.reading.saved import load_front
+    from quietarm.studies.study.findings import case_findings, findings
+    from quietarm.studies.study.page import front_files, page_file
+    from quietarm.studies.study.pieces import StudySettings
+    from quietarm.studies.study.work import amount_of_work, run_study
+
+    refuse_same_file([("--output", output), ("--fronts", fronts)])
+    names = ("terms", "points", "runs", "seed", "workers", "scheduler", "population", "generations")
+    settings = StudySettings(
+        **{name: rest.pop(name) for name in names},
+        methods=tuple(dict.fromkeys(rest["methods"])),
+        settings=settings_by_method(rest.pop("setting"), rest.pop("methods")),
+        fronts=tuple(map(load_front, rest.pop("given"))),
+    )
+    bound = rest.pop("bound")
+    if rest["plant"] is None and rest["plant_file"] is None:
+        _refuse_without_plant(context, ("bound", *rest))
+        cases = CONDITIONS
+    else:
+        _refuse_without_move(rest)
+        cases = (Case(task_of(rest), bound),)
+    errors, total = Console(stderr=True), amount_of_work(cases, settings)
+    warn_of_workers(errors, settings.workers, total)
+    with progress(total, errors, quiet=quiet) as begin:
+        result = run_study(cases, settings, begin)
+
+    def show(console: Console) -> None:
+        several = len(cases) > 1
+        for line in findings(result) if several else case_findings(result.cases[0]):
+            console.print(f"- {line}", highlight=False, markup=False)
+
+    trouble = None
+    if result.done is not None:
+        trouble = QuietarmError(
+            f"{result.stopped}: {result.done} of {counted(total, 'piece')} of work are done; what "
+            "was found until then is kept"
+        )
+    together = None
+    if fronts is not None:
+        together = Together("fronts", fronts, front_files(result, fronts))
+    page = [page_file(result, output)]
+    finish(page, show, trouble=trouble, together=together, quiet=quiet)
+
+
+def _refuse_without_plant(context: click.Context, names: Iterable[str]) -> None:
+    for name in names:
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            raise click.UsageError(
+                f"--{name.replace('_', '-')} is for a task of your own: give its plant as well"
+            )
+
+
+def _refuse_without_move(rest: Mapping[str, Any]) -> None:
+    for name in ("target", "duration"):
+        if rest[name] is None:
+            raise click.UsageError(
+                f"give --{name} with the plant, or no plant for the paper's tasks"
+            )

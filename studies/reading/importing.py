@@ -1,0 +1,149 @@
+"""Fronts from elsewhere: coefficients of a file, evaluated here, beside what the file claims."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.metaheuristics import MoveFunction
+from quietarm.metaheuristics.objective.claims import FIGURES, agrees
+from quietarm.metaheuristics.objective.population import UNUSABLE
+from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError
+from quietarm.ocp.answers.provenance import REST, Setting
+from quietarm.ocp.base.checks import whole
+from quietarm.ocp.front.evaluation import refuse_beyond_box
+from quietarm.studies.reading.foreign import MOST_MOTIONS, Found
+
+if TYPE_CHECKING:
+    pass
+
+Array = NDArray[np.float64]
+
+_NEAR = 1e-3
+"""Motions that another beats by more than this share are not evaluated a second time."""
+_NEAR_REST = 1e-6
+"""They leave more than it does by this much [m] as well: near rest a share says little."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """How what a file states of one figure compares with what its coefficients give."""
+
+    figure: str
+    unit: str
+    stated: int
+    differ: int
+    row: int
+    theirs: float
+    ours: float
+    factor: float
+
+    def line(self) -> str:
+        """In words."""
+        if not self.differ:
+            motions = "its motion" if self.stated == 1 else f"all {self.stated} motions"
+            return f"the file's {self.figure} is right for {motions}"
+        hint = ""
+        if abs(self.factor / 1000 - 1) < 0.05:
+            hint = f"; is it in m{self.unit}? name the column {self.figure}_m{self.unit}"
+        return (
+            f"the file's {self.figure} is wrong for {self.differ} of {self.stated} motions, most "
+            f"for motion {self.row}: {self.theirs:.4g} {self.unit} in the file, {self.ours:.4g} "
+            f"{self.unit} by its coefficients{hint}"
+        )
+
+
+def import_front(
+    task: PointToPoint,
+    profile: JointProfile,
+    found: Found,
+    method: str,
+    settings: dict[str, Setting],
+) -> tuple[Front, list[Claim]]:
+    """The front of coefficients from elsewhere, and how its claims compare."""
+    table = found.coefficients
+    whole("number of motions", len(table), 1, MOST_MOTIONS)
+    rows = np.array([_checked(i, row, profile, task) for i, row in enumerate(table, start=1)])
+    refuse_beyond_box(profile, rows, settings.get("bound"))
+    widest = max(float(np.abs(rows).max()), 1e-3)  # any box: the function needs one
+    objectives, violations = MoveFunction(task, profile, bound=min(widest, 1e6))(rows)
+    failed = np.asarray((objectives >= UNUSABLE).any(axis=1))
+    broken = ~failed & (violations > _NEAR).any(axis=1)
+    usable = np.flatnonzero(~failed & ~broken)
+    near = usable[_not_beaten(objectives[usable])]
+    if not near.size:
+        raise SolverFailedError(_why_none(rows, failed, violations, task))
+    front = Front.from_coefficients(
+        task, rows[near], method=method, profile=profile, settings=settings
+    )
+    front = replace(
+        front,
+        evaluations=len(rows),
+        failed=int(failed.sum()) + front.failed,
+        infeasible=int(broken.sum()) + front.infeasible,
+    )
+    if not front.points:
+        raise SolverFailedError(front.why_empty())
+    return front, _claims(found.claims, objectives[:, :2])
+
+
+def _checked(
+    number: int, row: Array, profile: JointProfile, task: PointToPoint
+) -> tuple[float, ...]:
+    try:
+        return profile.checked(row, task.duration)
+    except ValueError as error:
+        raise ValueError(f"motion {number}: {error}") from None
+
+
+def _why_none(rows: Array, failed: NDArray[np.bool_], violations: Array, task: PointToPoint) -> str:
+    none = f"no motion of {len(rows)} can be used: "
+    if failed.all():
+        return (
+            f"{none}with coefficients of up to {np.abs(rows).max():.4g} their figures overflow; "
+            "give those of the profile, in radians"
+        )
+    nearest = violations[~failed].max(axis=1).argmin()
+    passed = violations[~failed][nearest]
+    name, limit = list(task.limits.items())[int(passed.argmax())]
+    reached = (1 + passed.max()) * limit
+    return (
+        f"{none}the {name} of the one that keeps the limits best is {reached:.4g}, above "
+        f"{limit:g}; widen that limit, or give a longer duration"
+    )
+
+
+def _not_beaten(F: Array) -> NDArray[np.bool_]:
+    """Rows that no other is clearly better than."""
+    import moocore  # not at the top: it takes long to load
+
+    if not len(F):
+        return np.zeros(0, dtype=bool)
+    best = F[moocore.is_nondominated(F)]
+    best = best[np.argsort(best[:, 0])] * (1 + _NEAR) + np.array([_NEAR_REST, 0.0])
+    # energies fall along the front: the last point within a residual has the least
+    last = np.searchsorted(best[:, 0], F[:, 0], side="right") - 1
+    return (last < 0) | (F[:, 1] < best[np.maximum(last, 0), 1])
+
+
+def _claims(stated: Array, figures: Array) -> list[Claim]:
+    found: list[Claim] = []
+    for column, (figure, unit, least) in enumerate(FIGURES):
+        theirs, ours = stated[:, column], figures[:, column]
+        known = ~np.isnan(theirs)
+        if not known.any():
+            continue
+        gap = np.where(known, np.abs(theirs - ours) - least, 0.0)
+        wrong = known & ~agrees(theirs, ours, least)
+        worst = int(np.argmax(np.where(wrong, gap / np.maximum(np.abs(ours), 1e-300), -1.0)))
+        telling = known & (ours > 100 * REST)
+        factor = float(np.median(theirs[telling] / ours[telling])) if telling.any() else np.nan
+        found.append(
+            Claim(
+                figure, unit, int(known.sum()), int(wrong.sum()), worst + 1,
+                float(theirs[worst]), float(ours[worst]), factor,
+            )
+        )  # fmt: skip
+    return found

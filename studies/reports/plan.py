@@ -1,0 +1,152 @@
+"""A plan on the screen, and the lines that it shares with a floor."""
+
+from __future__ import annotations
+
+import math
+
+from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid
+from quietarm.ocp.answers.provenance import AGREEMENT
+from quietarm.ocp.plan.robust import EXCESS
+from quietarm.ocp.robustness.uncertain import assumed_plant
+from quietarm.ocp.task.quantities import QUANTITIES
+from quietarm.studies.display.words import millimetres, move_of, plant_words
+from quietarm.studies.report.document import Facts
+from quietarm.studies.report.terminal import show_block
+from quietarm.studies.reports.worst import worst_in_words
+from rich.console import Console
+
+Row = tuple[str, str]
+_ROUNDING = 1e-12
+"""Angles below this [rad] are rounding errors."""
+
+
+def print_plan(console: Console, plan: Plan) -> None:
+    """Print a plan's coefficients, figures and verification."""
+    motion = plan.motion
+    rows = [
+        *move_rows(plan.task, motion),
+        _choice(plan),
+        ("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
+        *figure_rows(plan.task, motion),
+        *_worst_rows(plan),
+        ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
+        _verified_row(plan),
+        ("time", f"{plan.provenance.seconds:.2f} s"),
+    ]
+    show_block(console, Facts(rows))
+
+
+def _worst_rows(plan: Plan) -> list[Row]:
+    """Where within the errors of its plant a plan leaves most; none where it has no errors."""
+    if plan.worst is None:
+        return []
+    words = worst_in_words(plan.worst)
+    if plan.excess is not None:
+        side = "above" if plan.excess > 0 else "below"
+        share = f"{100 * abs(plan.excess):.1f} %"
+        where = "at" if share == "0.0 %" else f"{share} {side}"
+        words += f", {where} the limit{_not_held(plan)}"
+    return [("at worst", words)]
+
+
+def _not_held(plan: Plan) -> str:
+    """That a robust plan passes its residual limit between the samples, and what would help."""
+    if plan.excess is None or plan.excess <= EXCESS:
+        return ""
+    remedy = (
+        "give a larger --residual-limit, more --terms or a smaller --robust error"
+        if plan.complete
+        else "let the plan run to its end"
+    )
+    return f"; not robust enough: more than {EXCESS:.0%} above; {remedy}"
+
+
+def stopped_words(after: str | None) -> str:
+    """That Ctrl-C came, and after what; nothing where it did not."""
+    return f" Interrupted after {after}; this is the best until then." if after else ""
+
+
+def _verified_row(plan: Plan) -> Row:
+    """How far the two integrators agree; the word `verified` only where that is near enough."""
+    check = plan.verification
+    differ = (
+        f"{check.steps} fixed steps differ by {check.energy_share:.0e} in energy and "
+        f"{millimetres(abs(check.residual_difference))} in residual"
+    )
+    if check.agrees:
+        return "verified", f"by CVODES: {differ}"
+    remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
+    return "not verified", (
+        f"the figures are by CVODES, and {differ}, where {AGREEMENT:g} of each is agreement; give "
+        f"{remedy}"
+    )
+
+
+def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
+    """The move and its limits, and where the motion breaks one."""
+    limits = ", ".join(
+        f"{name} {_quantity(name, value)}{_broken(name, motion.peak(name), value)}"
+        for name, value in task.limits.items()
+    )
+    return [
+        ("move", f"{plant_words(task.plant)}, {move_of(task)}"),
+        *([("limits", limits)] if limits else []),
+    ]
+
+
+def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
+    """A motion's residual, peaks and overshoot."""
+    known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
+    return [
+        (
+            "residual F1",
+            f"{millimetres(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
+        ),
+        *((f"peak {name}", _peak(name, task, motion)) for name in known),
+        ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot > _ROUNDING else "none"),
+    ]
+
+
+def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
+    peak, unit = motion.peak(name), QUANTITIES[name].unit
+    return f"{millimetres(peak)}{_large(task, motion)}" if unit == "m" else f"{peak:.4g} {unit}"
+
+
+def _large(task: PointToPoint, motion: Motion) -> str:
+    """A warning where the tip leaves what the plant's equations are made for."""
+    limit = task.plant.small_deflection
+    if limit is None or max(motion.peak_deflection, motion.residual) <= limit:
+        return ""
+    return (
+        f"  (warning: beyond {millimetres(limit)}, up to which the plant's deflections count as "
+        "small; its equations are less exact there)"
+    )
+
+
+def _choice(plan: Plan) -> tuple[str, str]:
+    """What makes the motion differ from others of its task, and its name."""
+    if isinstance(plan.profile, ShapedCycloid):
+        impulses = len(plan.profile.impulses.times)
+        shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
+        return "profile", f"{plan.profile.label}: {shaper}"
+    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    if not isinstance(plan.profile, CycloidPolynomial):
+        return "profile", f"{plan.profile.label}: {coefficients}"
+    return "coefficients", coefficients or "none: the plain cycloid"
+
+
+def _tip(task: PointToPoint) -> str:
+    tips = assumed_plant(task.plant).tips
+    words = "tip" if tips == 1 else f"worst of {tips} tips"
+    return (
+        words if tips == task.plant.tips else f"{words}, worst of {task.plant.tips // tips} samples"
+    )
+
+
+def _quantity(name: str, value: float) -> str:
+    return f"{value:g} {QUANTITIES[name].unit}"
+
+
+def _broken(name: str, peak: float, limit: float) -> str:
+    """How a limit is broken; nothing where it is kept to the README's tolerance."""
+    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {QUANTITIES[name].unit})"
