@@ -13,6 +13,7 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    ProgressColumn,
     SpinnerColumn,
     TextColumn,
     TimeElapsedColumn,
@@ -25,7 +26,7 @@ _WORDS = TextColumn("{task.description}", markup=False)
 
 
 @contextmanager
-def bars(console: Console, quiet: bool, *columns: BarColumn | TextColumn) -> Iterator[Progress]:
+def bars(console: Console, quiet: bool, *columns: ProgressColumn) -> Iterator[Progress]:
     """Bars that are shown on a terminal alone."""
     hidden = quiet or not console.is_terminal
     with Progress(*columns, console=console, transient=True, disable=hidden) as shown:
