@@ -254,34 +254,24 @@ def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
 @lru_cache(maxsize=32)
 def _compiled(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
     """(coefficients, move) -> samples at the nodes in order of time, arrival, energy, net work."""
-    coefficients, move = ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
-    rollout = symbolic_rollout(
-        plant, profile, ca.vertsplit(coefficients), ca.vertsplit(move), steps
-    )
+    a, move = ca.MX.sym("a", profile.size), ca.MX.sym("move", 3)
+    found = symbolic_rollout(plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps, jerk=True)
 
-    def in_time(at_nodes: Sequence[Expression]) -> Expression:
-        return ca.vec(ca.vertcat(*at_nodes))
+    def in_time(*rows: Sequence[Expression]) -> Expression:
+        """A column for each quantity, from its values at the nodes of every step."""
+        return ca.horzcat(*(ca.vec(ca.vertcat(*at_nodes)) for at_nodes in rows))
 
-    tips = [plant.tip_displacements(state.W) for state in rollout.states]
-    net_work = ca.sum2(
-        rollout.h * sum(weight * p for weight, p in zip(GAUSS_WEIGHTS, rollout.power, strict=True))
-    )
+    tips = [plant.tip_displacements(node.W) for node in found.states]
+    net_work = sum(w * p for w, p in zip(GAUSS_WEIGHTS, found.power, strict=True))
     outputs = [
-        ca.horzcat(*(in_time([joint[i] for joint in rollout.joints]) for i in range(3))),
-        ca.horzcat(*(in_time([tip[i] for tip in tips]) for i in range(plant.tips))),
-        in_time(rollout.torque),
-        rollout.arrival,
-        rollout.energy,
-        net_work,
+        in_time(*zip(*found.joints, strict=True)),
+        in_time(*zip(*tips, strict=True)),
+        in_time(found.torque),
+        found.arrival,
+        found.energy,
+        ca.sum2(found.h * net_work),
     ]
-    at_nodes = ca.Function("at_nodes", [coefficients, move], outputs)
-    a, of_move = ca.MX.sym("a", profile.size), ca.MX.sym("move", 3)
-    begin, length = mesh(ca.DM(np.arange(steps)).T, steps)
-    times = ca.vec(ca.vertcat(*(begin + node * length for node in GAUSS_NODES)))
-    # Built for all nodes at once, much sooner than scalar by scalar.
-    jerk = _jerk(profile, ca.vertsplit(a), times, ca.vertsplit(of_move), steps)
-    joint, *others = at_nodes(a, of_move)
-    return ca.Function("rollout", [a, of_move], [ca.horzcat(joint, jerk), *others])
+    return ca.Function("rollout", [a, move], outputs)
 
 
 @dataclass(frozen=True)
@@ -335,13 +325,12 @@ def rollout(
     function = _compiled(task.plant, profile, steps)
     values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.move))
     joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
-    residual = float(np.abs(residual_matrix(task) @ arrival.ravel()).max())
     motion = Motion.from_samples(
         task,
         JointMotion(*joint.T),
         tips,
         torque.ravel(),
-        residual=residual,
+        residual=float(np.abs(residual_matrix(task) @ arrival.ravel()).max()),
         energy=energy.item(),
         net_work=net_work.item(),
     )
