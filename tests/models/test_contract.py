@@ -1,12 +1,11 @@
 """What a person gets wrong in a plant, and what `validate` says of it."""
 
 import math
-from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.models import Plant, SingleLinkManipulator, known_plants, parameter
+from quietarm.models import Plant, SingleLinkManipulator, known_plants
 from quietarm.ocp import PointToPoint
 from sound_plant import Sound
 
@@ -124,40 +123,6 @@ def test_what_is_wrong_is_told_in_one_line(changes, told):
     assert "\n" not in str(error.value)
 
 
-SOUND = {
-    "as it is": {},
-    "excited by motion alone": {
-        "accelerations": lambda p, j, W, dW: [
-            -W[0] - ca.cos(j.angle) * j.acceleration - ca.sin(j.angle) * j.speed**2 - j.speed
-        ]
-    },
-    "time-varying": {
-        "accelerations": lambda p, j, W, dW: [
-            -(1 + j.speed**2) * W[0] - (1 + ca.sin(j.angle)) * dW[0] - j.acceleration
-        ]
-    },
-    "undamped": {  # roots on the imaginary axis
-        "modes": 3,
-        "accelerations": lambda p, j, W, dW: [
-            -(100.0 + i) * W[i] - j.acceleration for i in range(3)
-        ],
-    },
-    "not made for some angles": {  # a slider and crank at its dead point
-        "accelerations": lambda p, j, W, dW: [-W[0] - j.acceleration / ca.sin(j.angle)]
-    },
-    "at rest but for rounding": {
-        "accelerations": lambda p, j, W, dW: [
-            -W[0] - j.acceleration - (1 - ca.cos(j.angle) ** 2 - ca.sin(j.angle) ** 2)
-        ]
-    },
-}
-
-
-@pytest.mark.parametrize("changes", SOUND.values(), ids=SOUND)
-def test_what_is_sound_is_accepted(changes):
-    _plant(**changes).validate()
-
-
 @pytest.mark.parametrize(
     ("parameters", "told"),
     [
@@ -207,44 +172,9 @@ def test_a_plant_must_give_its_equations():
         type("Empty", (Plant,), {"name": "empty", "modes": 1})()
 
 
-def _equations():
-    names = ("modal_accelerations", "torque", "tip_displacements")
-    return {name: getattr(Sound, name) for name in names}
-
-
-@pytest.mark.parametrize("name", [{}, {"name": ""}])
-def test_a_missing_name_is_told(name):
-    plant = dataclass(frozen=True)(type("Nameless", (Plant,), {"modes": 1, **name, **_equations()}))
-    with pytest.raises(ValueError, match=r"class Nameless has no name; .*name: ClassVar\[str\]"):
-        plant()
-
-
-def test_a_name_that_is_written_as_a_parameter_is_told():
-    members = {"name": "x-name", "modes": 1, "__annotations__": {"name": str}, **_equations()}
-    plant = dataclass(frozen=True)(type("Field", (Plant,), members))
-    with pytest.raises(ValueError, match=r"name is not a parameter.*ClassVar\[str\]"):
-        plant()
-
-
-def test_a_missing_dataclass_is_told():
-    members = {"name": "x", "modes": 1, "omega": parameter(3.0, "rad/s", "measured")}
-    bare = type("Crane", (Plant,), {**members, **_equations()})
-    soft = dataclass(type("Soft", (Plant,), {"name": "x", "modes": 1, **_equations()}))
-    for kind in (bare, soft):
-        with pytest.raises(ValueError, match=r"@dataclass\(frozen=True\) above class"):
-            kind().validate()
-
-
 @pytest.mark.parametrize("name", ["single-link", "arm-on-flexible-link"])
 def test_a_plant_of_ones_own_does_not_take_the_place_of_quietarms(name):
     before = known_plants()[name]
     with pytest.raises(ValueError, match=rf"'{name}' is that of quietarm's own .*class Mine"):
         type("Mine", (Sound,), {"name": name})
     assert known_plants()[name] is before
-
-
-def test_a_class_may_be_written_again():
-    # As in a notebook whose cell is run twice.
-    type("Mine", (Sound,), {"name": "mine-again"})
-    second = type("Mine", (Sound,), {"name": "mine-again"})
-    assert known_plants()["mine-again"] is second

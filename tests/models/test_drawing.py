@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 from quietarm.models import (
     ArmOnFlexibleLink,
-    Body,
     DualLinkManipulator,
     SingleLinkManipulator,
-    flexible_link,
-    rigid_link,
 )
 from quietarm.models.drawing import TIP_SLOPE, cantilever
 from sound_plant import Sound
@@ -41,13 +38,6 @@ def test_the_mode_shape_is_that_of_a_clamped_free_beam():
         assert derivatives(at)[3] == pytest.approx(k**4 * cantilever(at), rel=1e-3)
     # Blevins, table 8-1: the tip of cosh - cos - 0.7341 (sinh - sin) is at 2, the middle at 0.679.
     assert 2 * cantilever(0.5) == pytest.approx(0.679, abs=1e-3)
-
-
-@pytest.mark.parametrize("link", [flexible_link, rigid_link])
-def test_a_link_ends_at_its_length_and_displacement(link):
-    points = link(2.0, np.pi / 2, 0.3, base=(1.0, 1.0))
-    assert points[0] == pytest.approx([1, 1])
-    assert points[-1] == pytest.approx([1 - 0.3, 1 + 2])  # to the left of its direction
 
 
 def test_the_tip_of_the_single_link_moves_as_its_kinetic_energy_has_it():
@@ -87,15 +77,6 @@ def test_the_arm_turns_as_the_signs_of_its_equations_say():
 def test_a_plant_of_your_own_is_drawn_as_a_straight_link_of_a_metre():
     (tip,) = tips_of(Sound().structure(np.pi / 2, [0.1]))
     assert tip == pytest.approx([-0.1, 1.0])
-
-
-@pytest.mark.parametrize(
-    ("points", "told"),
-    [(np.zeros(3), r"shape \(3,\); give \(points, 2\)"), ([[np.nan, 0]], "not fin")],
-)
-def test_points_that_cannot_be_drawn_are_told(points, told):
-    with pytest.raises(ValueError, match=told):
-        Body(points)
 
 
 def test_what_is_drawn_thick_is_hubs_motor_arm_and_clamp():

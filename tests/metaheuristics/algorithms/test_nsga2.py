@@ -178,9 +178,3 @@ def _arm_with_limits():
 
 
 PROBLEMS = pytest.mark.parametrize("problem", [_zdt1, _arm, _arm_with_limits])
-
-
-def _begin(problem, population=20, generations=25, seed=3):
-    algorithm = PaperNSGA2(population)
-    algorithm.setup(problem(), seed=seed, termination=_generations(generations))
-    return algorithm

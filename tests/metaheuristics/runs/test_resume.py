@@ -14,10 +14,6 @@ from quietarm.ocp.answers.documents import plain
 from small_searches import HALF, IMPOSSIBLE, LIMITED, METHODS, SIXTH, exactly, found, run
 
 
-class CrashError(Exception):
-    """What a test breaks a run off with, when it is not Ctrl-C."""
-
-
 def broken_off(after, error=KeyboardInterrupt):
     def report(progress):
         if progress.generation == after:

@@ -54,8 +54,3 @@ def test_a_changed_file_is_refused_with_both_digests(saved, crane_file):
     assert before[:12] in told
     assert after[:12] in told
     assert "give the file as it was, or compute anew" in told
-
-
-def test_a_plant_of_that_name_from_elsewhere_is_refused(saved):
-    type("Crane", (Plant,), {"name": "crane"})
-    assert "not the one of a file here" in _refused(saved[0])

@@ -23,31 +23,6 @@ def test_content_is_written_as_it_is(tmp_path, content):
     assert _left_over(tmp_path) == ["file"]
 
 
-def test_permissions_are_the_users(tmp_path):
-    before = os.umask(0o027)
-    try:
-        write_whole(tmp_path / "file", "text")
-    finally:
-        os.umask(before)
-    assert stat.S_IMODE((tmp_path / "file").stat().st_mode) == 0o640
-    (tmp_path / "file").chmod(0o600)
-    write_whole(tmp_path / "file", "text")
-    assert stat.S_IMODE((tmp_path / "file").stat().st_mode) == 0o600
-
-
-def test_a_link_still_points_to_the_file_that_was_written(tmp_path):
-    (tmp_path / "real.json").write_text("old")
-    (tmp_path / "link.json").symlink_to(tmp_path / "real.json")
-    write_whole(tmp_path / "link.json", "new")
-    assert (tmp_path / "link.json").is_symlink()
-    assert (tmp_path / "real.json").read_text() == "new"
-
-
-def test_checking_makes_nothing(tmp_path):
-    assert check_writable(str(tmp_path / "file")) == tmp_path / "file"
-    assert _left_over(tmp_path) == []
-
-
 @pytest.mark.parametrize("write", [check_writable, lambda path: write_whole(path, "text")])
 @pytest.mark.parametrize(
     ("name", "message"),
@@ -67,12 +42,6 @@ def test_where_no_file_can_be_is_named(tmp_path, write, name, message):
         write(tmp_path / name)
     assert (tmp_path / "file").read_text() == "text"
     assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode)
-
-
-@pytest.mark.parametrize("use", [read_bytes, check_writable])
-def test_an_empty_name_is_no_file(use):
-    with pytest.raises(ValueError, match="the name of the file is empty; give one"):
-        use("")
 
 
 def test_a_disk_that_is_full_leaves_the_old_file_and_nothing_else(tmp_path):

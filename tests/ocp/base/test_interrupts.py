@@ -5,12 +5,11 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 
 import pytest
-from quietarm.ocp.base.interrupts import keep_interrupts, note_interrupts
+from quietarm.ocp.base.interrupts import keep_interrupts
 
 ROOT = Path(__file__).parents[3]
 
@@ -46,44 +45,6 @@ def test_an_error_that_a_swallowed_ctrl_c_causes_is_not_what_one_sees():
         work()
     with pytest.raises(AttributeError), keep_interrupts():
         raise AttributeError
-
-
-def test_the_users_handler_is_back_after_the_block():
-    before = signal.getsignal(signal.SIGINT)
-    with contextlib.suppress(KeyboardInterrupt), keep_interrupts():
-        assert signal.getsignal(signal.SIGINT) is not before
-        _swallow_ctrl_c()
-    assert signal.getsignal(signal.SIGINT) is before
-    with contextlib.suppress(RuntimeError), keep_interrupts():
-        raise RuntimeError
-    assert signal.getsignal(signal.SIGINT) is before
-
-
-@pytest.mark.parametrize("times", [0, 1, 3])
-def test_noted_interrupts_are_told_and_end_nothing(times):
-    before = signal.getsignal(signal.SIGINT)
-    with note_interrupts() as interrupts:
-        for _ in range(times):
-            signal.raise_signal(signal.SIGINT)
-        with keep_interrupts():  # inside, it leaves them to the outer block
-            value = 1
-    assert value == 1
-    assert interrupts == [signal.SIGINT] * times
-    assert signal.getsignal(signal.SIGINT) is before
-
-
-def test_other_threads_leave_signals_alone():
-    seen = []
-
-    def work():
-        with keep_interrupts():
-            seen.append(signal.getsignal(signal.SIGINT))
-
-    before = signal.getsignal(signal.SIGINT)
-    thread = threading.Thread(target=work)
-    thread.start()
-    thread.join()
-    assert seen == [before]
 
 
 def test_ctrl_c_ends_a_solve():

@@ -1,7 +1,6 @@
 """Ctrl-C while a floor is found: the starts and grids that were solved are not lost."""
 
 import signal
-from dataclasses import replace
 
 import pytest
 import quietarm.ocp.floor.search as search
@@ -60,12 +59,3 @@ def test_before_a_start_is_solved_there_is_nothing_to_keep(tasks, ctrl_c_in):
     ctrl_c_in("_paths", 1)
     with pytest.raises(KeyboardInterrupt):
         energy_floor(tasks["arm"], starts=1)
-
-
-def test_ctrl_c_in_the_plan_that_it_starts_from_keeps_the_start_before(tasks, monkeypatch, solved):
-    whole = solved(tasks["arm"], 6)
-    part = replace(whole, provenance=replace(whole.provenance, stopped="1 of 1 starts"))
-    monkeypatch.setattr(search, "plan_move", lambda *given, **settings: part)
-    floor = energy_floor(tasks["arm"], starts=2)
-    assert floor.provenance.stopped == "1 of 2 starts"
-    assert len(floor.starts) == 1

@@ -15,12 +15,11 @@ from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     InfeasibleTaskError,
     PointToPoint,
-    SolverFailedError,
     SolveStatus,
     energy_floor,
 )
 from quietarm.ocp.floor.answer import Level
-from quietarm.ocp.floor.program import FloorProgram, FreeSolution
+from quietarm.ocp.floor.program import FloorProgram
 
 ROOT = Path(__file__).parents[3]
 GUARD = 240
@@ -152,63 +151,10 @@ def test_the_estimate_continues_the_falls_of_the_energy(coarse_of, energies, rat
     assert missed > 0
 
 
-@pytest.mark.usefixtures("coarse")
-def test_where_a_finer_grid_needs_more_the_coarser_motion_is_kept(monkeypatch, coarse_of):
-    usual, solve = coarse_of(ARM, **SHORT), FloorProgram.solve
-    first, second = usual.levels[:2]
-    fastest = usual.motion.peak_speed
-
-    def worse_when_fine(self, free, limits, **settings):
-        # Slower than the best motion: it arrives at rest too, and needs more.
-        fine = free.steps > second.steps
-        return solve(self, free, {"speed": 0.8 * fastest} if fine else limits, **settings)
-
-    monkeypatch.setattr(FloorProgram, "solve", worse_when_fine)
-    floor = energy_floor(replace(ARM, speed_limit=2 * fastest), tolerance=0.5, **SHORT)
-    assert [level.energy for level in floor.levels[:2]] == pytest.approx(
-        [first.energy, second.energy], rel=1e-4
-    )
-    assert len(floor.levels) == 3
-    assert floor.levels[2].energy > 1.001 * second.energy
-    assert floor.free.steps == floor.verification.steps == second.steps
-    assert floor.energy == pytest.approx(second.energy, rel=1e-3)
-    assert floor.left > max(first.energy - second.energy, -floor.change)
-
-
-@pytest.mark.usefixtures("coarse")
-def test_a_floor_whose_refinement_failed_says_so(monkeypatch, coarse_of):
-    usual, solve = coarse_of(ARM, **SHORT), FloorProgram.solve
-    assert usual.settled
-    second = usual.levels[1].steps
-
-    def fail_when_fine(self, free, *arguments, **settings):
-        if free.steps > second:
-            return FreeSolution(free, math.nan, {}, SolveStatus.ITERATION_LIMIT, 0)
-        return solve(self, free, *arguments, **settings)
-
-    monkeypatch.setattr(FloorProgram, "solve", fail_when_fine)
-    stopped = energy_floor(ARM, tolerance=1e-3, **SHORT)
-    assert not stopped.settled
-    assert stopped.levels == usual.levels[:2]
-    assert stopped.status is SolveStatus.OPTIMAL
-    assert stopped.left > 1e-3 * stopped.energy
-
-
-def test_a_move_of_too_many_periods_is_refused():
-    with pytest.raises(ValueError, match=r"duration 200 s takes .* intervals .* shorter"):
-        energy_floor(replace(ARM, duration=200.0))
-
-
 def test_a_residual_window_beyond_reason_is_refused_before_the_solves(monkeypatch):
     monkeypatch.delattr(FloorProgram, "solve")
     with pytest.raises(ValueError, match=r"residual window 10000 s .* give at most \S+ s"):
         energy_floor(replace(ARM, residual_window=1e4))
-
-
-def test_starts_that_agree_are_counted(coarse_of):
-    floor = replace(coarse_of(ARM, **SHORT), starts=(1.0, 1.004, 1.006, 2.0))
-    assert floor.agreeing() == 2
-    assert floor.agreeing(0.01) == 3
 
 
 @pytest.mark.usefixtures("coarsest")
@@ -235,27 +181,6 @@ def test_limits_that_nothing_meets_are_named_with_what_would_do():
     assert 0.05 < enough < 0.5
     roomy = replace(task, torque_limit=1.1 * enough)
     assert energy_floor(roomy, **SHORT).motion.peak_torque < 1.11 * enough
-
-
-@pytest.mark.usefixtures("coarse")
-def test_a_start_that_ends_nowhere_is_no_answer(monkeypatch):
-    monkeypatch.setattr(SolveStatus, "from_ipopt", lambda status: SolveStatus.ITERATION_LIMIT)
-    with pytest.raises(SolverFailedError, match="ran out of iterations"):
-        energy_floor(ARM, **SHORT)
-
-
-@pytest.mark.parametrize(
-    ("settings", "named"),
-    [
-        ({"starts": 0}, "starts is 0"),
-        ({"seed": -1}, "seed is -1"),
-        ({"tolerance": 0.0}, "tolerance is 0"),
-        ({"tolerance": math.nan}, "tolerance is nan"),
-    ],
-)
-def test_settings_out_of_range_are_refused(settings, named):
-    with pytest.raises(ValueError, match=named):
-        energy_floor(ARM, **settings)
 
 
 def test_ctrl_c_ends_it_on_the_first_grid():

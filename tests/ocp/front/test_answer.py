@@ -1,6 +1,5 @@
 """Fronts as values: selecting from them, equality, and what cannot be made."""
 
-import dataclasses
 import math
 
 import numpy as np
@@ -13,15 +12,8 @@ from quietarm.ocp import (
     Generation,
     non_dominated,
 )
-from quietarm.ocp.answers.provenance import versions
 
 # -- selecting --
-
-
-def test_ends():
-    one = front()
-    assert one.stillest() is one.points[0]
-    assert one.cheapest() is one.points[-1]
 
 
 @pytest.mark.parametrize(
@@ -38,12 +30,6 @@ def test_a_residual_that_no_point_keeps_is_told_with_the_least_there_is(limit):
     ) as e:
         front().cheapest(limit)
     assert "\n" not in str(e.value)
-
-
-@pytest.mark.parametrize("select", ["stillest", "cheapest", "knee"])
-def test_an_empty_front_says_what_to_do(select):
-    with pytest.raises(ValueError, match="no point; search longer or widen the bound"):
-        getattr(front(()), select)()
 
 
 def _distances(one):
@@ -64,15 +50,6 @@ def test_the_knee_is_farthest_below_the_line_between_the_ends(figures):
     assert distance[one.points.index(one.knee())] >= distance.max() - 1e-9
 
 
-def test_the_knee_of_a_plain_case():
-    assert front().knee().coefficients[0] == 1
-    bent = points((0.0, 1.0), (0.1, 0.9), (0.3, 0.3), (0.5, 0.25), (1.0, 0.0))
-    assert front(bent).knee() is bent[2]  # 0.4 below the line; the others 0, 0.25
-    outward = points((0.0, 1.0), (0.9, 0.9), (1.0, 0.0))
-    assert front(outward).knee() in (outward[0], outward[2])  # the bulge is above the line
-    assert front(points((0.1, 0.2))).knee().coefficients[0] == 0
-
-
 def test_the_knee_does_not_depend_on_units():
     figures = [(0.0, 1.0), (0.1, 0.6), (0.3, 0.3), (0.7, 0.05), (1.0, 0.0)]
     small = [(r * 1e-6, 5 + e * 1e3) for r, e in figures]
@@ -80,46 +57,6 @@ def test_the_knee_does_not_depend_on_units():
 
 
 # -- values --
-
-
-def test_figures_as_arrays():
-    one = front()
-    assert one.residuals.tolist() == [1e-4, 2e-4, 8e-4]
-    assert one.energies.tolist() == [0.5, 0.2, 0.1]
-    assert front(()).residuals.shape == front(()).energies.shape == (0,)
-
-
-def test_a_front_is_frozen():
-    one = front()
-    for changed, name in ((one, "points"), (one.points[0], "energy"), (one.history[0],
-                                                                       "hypervolume")):  # fmt: skip
-        with pytest.raises(dataclasses.FrozenInstanceError):
-            setattr(changed, name, None)
-
-
-def test_changing_an_array_of_figures_leaves_the_front_alone():
-    one = front()
-    for name in ("residuals", "energies"):
-        array = getattr(one, name)
-        if array.flags.writeable:  # then a copy
-            array[:] = 0.0
-    assert one == front()
-
-
-def test_equality_is_of_everything_but_the_time():
-    assert front() == front(seconds=99.0)
-    for change in (
-        {"seed": 4},
-        {"method": "vepso"},
-        {"failed": 3},
-        {"history": ()},
-        {"complete": True},
-        {"points": points((1e-4, 0.5), (2e-4, 0.2))},
-        {"settings": {"bound": 0.4}},
-        {"reference": (0.015, 0.26)},
-        {"versions": {**versions(), "numpy": "0"}},
-    ):
-        assert front() != front(**change), change
 
 
 # -- what is made is what can be loaded --
@@ -139,8 +76,3 @@ WRONG = {
     "an energy that is none": ({"found": points((1e-4, math.nan))}, "energy of point 1 is nan"),
     "a residual below zero": ({"found": points((-1e-4, 0.5))}, "residual of point 1 is -0.0001 m"),
 }
-
-
-def test_a_setting_that_no_file_can_hold_is_refused():
-    with pytest.raises(ValueError, match=r"setting bound is nan; give a finite number"):
-        dataclasses.replace(front(), settings={"bound": math.nan})

@@ -88,24 +88,6 @@ def test_what_is_no_table_of_coefficients_is_refused(task, rows, words):
     assert "\n" not in str(caught.value)
 
 
-def test_rows_of_another_length_than_the_profile_are_refused(task):
-    with pytest.raises(ValueError, match="got 2 coefficients for a profile of 3"):
-        Front.from_coefficients(task, ROWS, method="mine", profile=CycloidPolynomial(3))
-
-
-def test_a_front_is_columns(given):
-    columns = given.columns()
-    assert list(columns) == ["residual_m", "energy_J", "a_1", "a_2"]
-    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-    assert list(rows) == [(p.residual, p.energy, *p.coefficients) for p in given.points]
-
-
-def test_an_empty_front_is_empty_columns(given):
-    columns = replace(given, points=()).columns()
-    assert list(columns) == ["residual_m", "energy_J", "a_1", "a_2"]
-    assert all(column.shape == (0,) for column in columns.values())
-
-
 @pytest.mark.parametrize("points", [None, ()])
 def test_a_front_is_saved_as_a_table_with_every_digit(given, tmp_path, points):
     front = given if points is None else replace(given, points=points)
@@ -115,8 +97,3 @@ def test_a_front_is_saved_as_a_table_with_every_digit(given, tmp_path, points):
     assert header == list(front.columns())
     found = [[float(cell) for cell in row] for row in rows]
     assert found == [[p.residual, p.energy, *p.coefficients] for p in front.points]
-
-
-def test_a_table_that_cannot_be_written_is_told(given, tmp_path):
-    with pytest.raises(ValueError, match="does not exist; make it first"):
-        given.save_csv(tmp_path / "missing" / "f.csv")

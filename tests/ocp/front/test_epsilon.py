@@ -1,7 +1,6 @@
 """The front by epsilon-constraint: its ends, its spacing, and that no point could be cheaper."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,20 +8,12 @@ from front_moves import CASES
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     CycloidPolynomial,
-    Front,
-    InfeasibleTaskError,
     PointToPoint,
     epsilon_front,
     plan_move,
-    reference_corner,
     resimulate,
     weighted_front,
 )
-from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.ocp.base.status import SolveStatus
-from quietarm.ocp.front.sweep import SAME, Sweep
-from quietarm.ocp.plan.starts import first_steps
-from quietarm.ocp.program import solving
 from quietarm.ocp.program.solution import STILL
 
 POINTS = 12
@@ -74,34 +65,6 @@ def test_every_point_has_the_figures_of_the_independent_integrator(case):
         assert np.abs(point.coefficients).max() <= bound
 
 
-def test_a_front_says_where_it_comes_from(case, tmp_path):
-    task, bound, front = case
-    assert (front.method, front.complete, front.failures) == ("epsilon", True, ())
-    asked, steps = dict(front.settings), front.settings["steps"]
-    assert asked == {"bound": bound, "points": POINTS, "starts": 4, "steps": steps, "solver": "sqp"}
-    # The first steps, doubled while the independent integrator disagrees.
-    assert steps in [first_steps(task, front.profile, SolveSettings()) * 2**k for k in range(4)]
-    assert front.reference == reference_corner(task)
-    assert front.evaluations == 0  # no search
-    assert front.iterations > POINTS  # several a point
-    front.save(tmp_path / "front.json")
-    assert Front.load(tmp_path / "front.json") == front
-
-
-def test_its_iterations_are_all_iterations_of_the_solver(monkeypatch):
-    # counted where the solver is run: the ends' four starts each, all points, verification
-    counted, minimise = [], solving.minimise
-
-    def counting(*arguments, **settings):
-        ended = minimise(*arguments, **settings)
-        counted.append(ended.iterations.sum())
-        return ended
-
-    monkeypatch.setattr(solving, "minimise", counting)
-    front = epsilon_front(CASES["arm"][0], CycloidPolynomial(3), bound=0.5, points=4)
-    assert front.iterations == sum(counted)
-
-
 def test_limits_of_the_task_are_kept_along_the_front():
     plant = ArmOnFlexibleLink()
     free = epsilon_front(PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=3, starts=1)
@@ -126,12 +89,6 @@ def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     assert len(front.points) > 2
 
 
-def test_an_impossible_task_is_refused():
-    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, torque_limit=1e-3)
-    with pytest.raises(InfeasibleTaskError, match=r"torque <= 0\.001 N m; feasible"):
-        epsilon_front(task, CycloidPolynomial(2), points=3, starts=1)
-
-
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
@@ -144,47 +101,6 @@ def test_an_impossible_task_is_refused():
 def test_bad_input_is_refused(arguments, text):
     with pytest.raises(ValueError, match=text):
         epsilon_front(CASES["arm"][0], **arguments)
-
-
-def test_a_move_of_too_many_periods_is_refused():
-    task = PointToPoint(ArmOnFlexibleLink(), 1.0, 1000.0)
-    with pytest.raises(ValueError, match=r"duration is 1000 s, .* radians .* give a shorter"):
-        epsilon_front(task, points=3)
-
-
-# Each point starts from between the solutions at limits on either side, and from these two.
-@pytest.mark.parametrize(
-    ("starts", "to"),
-    [
-        pytest.param([0], {"factor": 1.05}, id="one start ends high"),
-        pytest.param([0, 1, 2], {"factor": 1.05}, id="all do, where random starts are tried too"),
-        pytest.param([0, 1, 2], {"status": SolveStatus.ITERATION_LIMIT}, id="none is solved"),
-    ],
-)
-def test_what_one_start_misses_another_mends(monkeypatch, starts, to):
-    task, bound = CASES["arm"]
-    profile = CycloidPolynomial(3)
-    expected = epsilon_front(task, profile, bound=bound, points=8)
-    whole, spoilt = Sweep.solve, []
-
-    def spoil(self, rows, *, warm=False, **rest):
-        found = whole(self, rows, warm=warm, **rest)
-        if not warm or spoilt:  # the first that are beside minima are all points
-            return found
-        limits = [ask.limits["residual"] for _, ask in rows]
-        third = [i for i, limit in enumerate(limits) if limit == sorted(set(limits))[2]]
-        for i in [third[start] for start in starts]:
-            changes = {**to}
-            energy = found[i].energy * changes.pop("factor", 1.0)
-            found[i] = replace(found[i], energy=energy, **changes)
-            spoilt.append(i)
-        return found
-
-    monkeypatch.setattr(Sweep, "solve", spoil)
-    front = epsilon_front(task, profile, bound=bound, points=8)
-    assert len(spoilt) == len(starts)
-    # solutions that differ by less count as one
-    np.testing.assert_allclose(front.energies, expected.energies, rtol=SAME)
 
 
 @pytest.mark.parametrize("bound", [0.2, None])
@@ -201,17 +117,6 @@ def test_both_solvers_find_the_same_front(bound):
         assert other.cheapest(residual).energy == pytest.approx(energy, rel=1e-6)
     assert other.stillest().energy == pytest.approx(one.stillest().energy, rel=1e-6)
     assert other.cheapest().energy == pytest.approx(one.cheapest().energy, rel=1e-6)
-
-
-def test_the_same_settings_give_the_same_front():
-    task, bound = CASES["arm"]
-    one, two = (epsilon_front(task, CycloidPolynomial(3), bound=bound, points=3) for _ in "12")
-    assert one == two
-
-
-def test_settings_of_a_sweep_reach_its_solves():
-    sweep = Sweep(CASES["arm"][0], CycloidPolynomial(3), SolveSettings(starts=3, steps=50))
-    assert (sweep.program.steps, len(sweep.guesses)) == (50, 3)
 
 
 @pytest.mark.parametrize("points", [2, 6])
@@ -237,9 +142,3 @@ def test_no_weighted_sum_beats_it_at_a_residual_that_is_asked_for():
     weighted = weighted_front(task, profile, bound=bound, points=8)
     front = epsilon_front(task, profile, bound=bound, points=6, starts=2, at=[level])
     assert front.cheapest(level).energy <= weighted.cheapest(level).energy * (1 + 1e-5)
-
-
-@pytest.mark.parametrize("residual", [0.0, -1e-3, math.nan])
-def test_a_residual_out_of_range_is_refused(residual):
-    with pytest.raises(ValueError, match="residual is"):
-        epsilon_front(CASES["arm"][0], at=[residual])

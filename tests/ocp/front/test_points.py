@@ -70,8 +70,3 @@ def test_equal_in_one_is_not_better_in_both():
     # the same residual, less energy: that one alone; and the other way about
     given_points = points((1.0, 3.0), (1.0, 2.0), (1.5, 2.0))
     assert non_dominated(given_points) == (given_points[1],)
-
-
-def test_of_no_points_none_stay():
-    assert non_dominated([]) == ()
-    assert non_dominated(points((math.nan, 1.0), (1.0, math.inf), (-math.inf, 0.0))) == ()

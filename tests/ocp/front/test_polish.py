@@ -1,12 +1,10 @@
 """Polishing: no point gets worse, each keeps its residual, and they land on the front."""
 
 import math
-import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
-import quietarm.ocp.front.assembly
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -18,10 +16,8 @@ from quietarm.ocp import (
     polish_front,
     resimulate,
 )
-from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.base.status import SolveStatus
 from quietarm.ocp.front.sweep import Sweep
-from quietarm.ocp.plan.solver import first_steps
 
 TASK, BOUND, PROFILE = (
     PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8),
@@ -78,16 +74,6 @@ def test_the_figures_are_those_of_the_independent_integrator(polish):
         assert np.abs(point.coefficients).max() <= BOUND
 
 
-def test_the_polished_front_says_where_it_comes_from(rough, polish):
-    front = polish.front
-    assert (front.method, front.seed, front.reference) == ("random, polished", 0, rough.reference)
-    steps = first_steps(TASK, PROFILE, SolveSettings())
-    assert front.settings == {"bound": BOUND, "population": 60, "steps": steps}
-    assert front.evaluations == rough.evaluations
-    assert front.iterations > len(rough.points)  # of the solver: several a point
-    assert front.seconds > rough.seconds
-
-
 def test_a_point_that_cannot_be_improved_stays(rough, monkeypatch):
     whole = Sweep.solve
 
@@ -112,22 +98,3 @@ def test_ctrl_c_keeps_what_was_improved(rough):
     assert polish.gains[0].share > 0
     assert [gain.tried for gain in polish.gains] == [i < 2 for i in range(len(rough.points))]
     assert {gain.share for gain in polish.gains[2:]} == {0.0}
-
-
-def test_an_empty_front_is_refused(rough):
-    with pytest.raises(ValueError, match="front has no point"):
-        polish_front(replace(rough, points=()))
-
-
-def test_ctrl_c_after_the_last_point_loses_none(rough, monkeypatch):
-    corner = quietarm.ocp.front.assembly.reference_corner
-
-    def interrupted(task):
-        signal.raise_signal(signal.SIGINT)
-        return corner(task)
-
-    monkeypatch.setattr(quietarm.ocp.front.assembly, "reference_corner", interrupted)
-    few = replace(rough, points=rough.points[:2])
-    polish = polish_front(few)
-    assert polish.complete
-    assert all(gain.tried for gain in polish.gains)

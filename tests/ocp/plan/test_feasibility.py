@@ -118,14 +118,6 @@ def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks,
     assert scan * 0.9999 <= float(text) <= scan * 1.002
 
 
-def test_a_limit_just_below_the_one_offered_is_refused_again(refused, tasks):
-    (_, text), *_ = QUOTED.findall(refused("torque, arm").split("with the rest kept")[1])
-    task = tasks["arm"]
-    limited = PointToPoint(task.plant, task.target, task.duration, torque_limit=0.97 * float(text))
-    with pytest.raises(InfeasibleTaskError, match="torque limit"):
-        plan_move(limited, starts=1)
-
-
 def test_two_limits_in_the_way_are_said_to_be_two(tasks):
     task = tasks["single link"]
     both = PointToPoint(

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from quietarm.ocp import (
     CycloidPolynomial,
-    FileFormatError,
     InfeasibleTaskError,
     Plan,
     epsilon_front,
@@ -76,15 +75,3 @@ def changed(pair, tmp_path):
         return path
 
     return write
-
-
-def test_a_file_from_before_the_jerk_was_told_loads(pair, changed):
-    plan = Plan.load(changed())
-    assert plan.motion == replace(pair[0].motion, peak_jerk=None)
-    assert plan.task == pair[0].task
-
-
-@pytest.mark.parametrize("value", ["much", True, [1.0]], ids=repr)
-def test_a_jerk_that_is_no_number_is_refused(changed, value):
-    with pytest.raises(FileFormatError, match="peak_jerk"):
-        Plan.load(changed(peak_jerk=value))

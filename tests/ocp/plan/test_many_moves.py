@@ -56,15 +56,3 @@ def test_a_move_without_a_plan_does_not_stop_the_others(plants):
     assert [status.solved for status in found.status] == [True, False]
     assert np.isfinite(found.energy[0])
     assert np.isnan([found.energy[1], found.residual[1], *found.coefficients[1]]).all()
-
-
-def test_the_same_moves_give_the_same_plans(moves):
-    first, again = plan_moves(moves, starts=2), plan_moves(moves, starts=2)
-    assert first.coefficients.tolist() == again.coefficients.tolist()
-
-
-def test_moves_of_several_plants_are_refused(tasks):
-    with pytest.raises(ValueError, match="plant"):
-        plan_moves([tasks["arm"], tasks["single link"]])
-    with pytest.raises(ValueError):  # noqa: PT011
-        plan_moves([])

@@ -55,8 +55,3 @@ def test_more_terms_and_limits_take_more_steps(tasks, terms, limits, steps):
     task = PointToPoint(tasks["arm"].plant, np.pi / 2, 0.8, **limits)
     assert first_steps(task, CycloidPolynomial(terms), SolveSettings()) == steps
     assert first_steps(task, CycloidPolynomial(terms), SolveSettings(steps=33)) == 33
-
-
-def test_a_move_of_too_many_periods_is_refused(tasks):
-    with pytest.raises(ValueError, match=r"duration is 1000 s, .* give a shorter duration"):
-        first_steps(PointToPoint(tasks["arm"].plant, 1.0, 1000.0), PROFILE, SolveSettings())

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from quietarm.ocp import MAX_TERMS, CycloidPolynomial
-from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
 
 angles = st.floats(-2 * math.pi, 2 * math.pi)
 durations = st.floats(0.1, 10.0)
@@ -199,24 +198,6 @@ def test_path_keeps_the_shape_of_the_times(shape, order):
     assert result.ravel().tolist() == each
 
 
-@pytest.mark.parametrize("order", [-1, 4, 1.5, "speed", None])
-def test_a_derivative_order_that_is_not_0_to_3_is_named(order):
-    with pytest.raises(ValueError, match="derivative order is"):
-        _path([])(0.5, order)
-
-
-@pytest.mark.parametrize("time", [math.nan, math.inf, -math.inf])
-def test_a_time_that_is_not_finite_is_refused(time):
-    with pytest.raises(ValueError, match="time is not finite"):
-        _path([])([0.1, time])
-
-
-def test_a_path_remembers_its_numbers():
-    path = CycloidPolynomial(2).path(np.array([0.1, -0.2]), 0.0, 1.0, 0.8)
-    assert path.coefficients == (0.1, -0.2)
-    assert (path.start, path.target, path.duration) == (0.0, 1.0, 0.8)
-
-
 # -- terms and coefficients --
 
 
@@ -226,65 +207,7 @@ def test_terms_are_the_number_of_coefficients(terms):
     assert type(CycloidPolynomial(terms).terms) is int
 
 
-def test_six_terms_by_default():
-    assert CycloidPolynomial() == CycloidPolynomial(6)  # section 3.1: N = 6
-
-
-@pytest.mark.parametrize(
-    "terms", [-1, MAX_TERMS + 1, 1000, 2.5, 6.0, True, False, "6", None, math.nan]
-)
-def test_terms_out_of_range_are_named_with_the_range(terms):
-    with pytest.raises(ValueError, match=f"terms is .*{MAX_TERMS}") as error:
-        CycloidPolynomial(terms)
-    assert str(terms) in str(error.value)
-    assert "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize("count", [0, 1, 3, 20])
-def test_a_wrong_number_of_coefficients_is_named(count):
-    with pytest.raises(ValueError, match=f"got {count} coefficients .* give 2 numbers"):
-        CycloidPolynomial(2).path([0.0] * count, 0.0, 1.0, 1.0)
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_a_coefficient_that_is_not_finite_is_named(value):
-    with pytest.raises(ValueError, match=f"coefficient 2 is {value}"):
-        CycloidPolynomial(3).path([0.0, value, 0.0], 0.0, 1.0, 1.0)
-
-
-def test_of_two_coefficients_that_are_not_finite_the_first_is_named():
-    with pytest.raises(ValueError, match="coefficient 2 is nan"):
-        CycloidPolynomial(4).checked([0.0, math.nan, math.inf, 0.0])
-
-
-@pytest.mark.parametrize(
-    ("value", "says"),
-    [
-        ([None, 1.0], "coefficient 1 is nan"),
-    ],
-)
-def test_coefficients_that_are_not_a_row_of_numbers_are_refused(value, says):
-    with pytest.raises(ValueError, match=says):
-        CycloidPolynomial(2).checked(value)
-
-
-def test_checked_coefficients_are_plain_floats():
-    checked = CycloidPolynomial(2).checked(np.array([1, 2]))
-    assert checked == (1.0, 2.0)
-    assert [type(value) for value in checked] == [float, float]
-
-
 # -- families by name --
-
-
-def test_the_papers_family_is_known_by_name():
-    assert known_profiles()["cycloid-polynomial"] is CycloidPolynomial
-
-
-def test_a_users_family_is_known_from_its_definition_on(monkeypatch):
-    monkeypatch.setattr(JointProfile, "_known", dict(JointProfile._known))
-    mine = type("Mine", (JointProfile,), {"name": "of-a-user"})
-    assert known_profiles()["of-a-user"] is mine
 
 
 def test_the_most_terms_still_tell_the_powers_apart():

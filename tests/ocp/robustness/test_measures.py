@@ -15,7 +15,6 @@ from quietarm.ocp import (
     with_errors,
 )
 from quietarm.ocp.robustness.population import ErrorPopulation
-from quietarm.ocp.simulation.residual import MOST_SAMPLES
 from scipy.optimize import brentq
 
 LINEAR = SingleLinkManipulator(beta2=0.0, zeta=0.0)
@@ -194,9 +193,3 @@ def test_samples_come_from_the_seed_and_fill_the_ranges(plans):
     assert one.seed == 1
     assert one.percentile("residual", 100) == one.samples.residual.max()
     assert one.percentile("energy", 50) == pytest.approx(np.median(one.samples.energy))
-
-
-def test_a_window_of_too_many_periods_is_refused(plans):
-    task = replace(plans["arm"].task, residual_window=MOST_SAMPLES * 0.02)
-    with pytest.raises(ValueError, match=r"give at most \S+ s"):
-        evaluate_robustness(task, CycloidPolynomial(0), [], {"frequency": 0.1})

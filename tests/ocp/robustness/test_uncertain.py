@@ -10,7 +10,6 @@ import pytest
 from quietarm.models import DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
-    Plan,
     PointToPoint,
     UncertainPlant,
     evaluate_coefficients,
@@ -113,13 +112,6 @@ def test_a_plant_without_errors_has_no_worst(task):
 
 
 # -- files --
-
-
-def test_a_saved_evaluation_loads_equal(evaluated, tmp_path):
-    evaluated.save(tmp_path / "plan.json")
-    loaded = Plan.load(tmp_path / "plan.json")
-    assert loaded == evaluated
-    assert hash(loaded.task.plant) == hash(evaluated.task.plant)
 
 
 # -- bad input --

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from quietarm.models import JointMotion
 from quietarm.ocp import CycloidPolynomial, resimulate
-from quietarm.ocp.floor.grid import finer, first_grid
+from quietarm.ocp.floor.grid import finer
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
@@ -54,15 +54,6 @@ def test_refining_halves_every_interval_and_quarters_jumps_of_the_speed(free):
     changes = np.abs(np.diff(free.boundaries(0.0)[1]))
     expected = np.where(changes > 0.02 * np.abs(free.boundaries(0.0)[1]).max(), 4, 2)
     assert finer(free).steps == expected.sum()
-
-
-def test_the_first_grid_is_whole_and_finest_at_the_ends():
-    grid = first_grid(80)
-    lengths = np.diff(grid)
-    assert (grid[0], grid[-1], len(lengths)) == (0.0, 1.0, 80)
-    assert lengths.min() > 0
-    assert lengths == pytest.approx(lengths[::-1], abs=1e-12)
-    assert lengths.argmin() in (0, 79)
 
 
 def test_the_figures_do_not_depend_on_how_a_motion_is_cut_in_intervals(tasks):
@@ -138,28 +129,3 @@ def test_times_stand_twice_where_the_torque_jumps(tasks):
         assert sampled.joint[[before, after], 2] == pytest.approx(free.acceleration[k - 1 : k + 1])
         assert sampled.joint[before, :2] == pytest.approx(sampled.joint[after, :2])
     assert sampled.time[-1] == pytest.approx(1.8)
-
-
-@pytest.mark.parametrize(
-    ("change", "named"),
-    [
-        ({"times": [0.0, 0.3, 0.2, 0.4, 0.8]}, "do not increase"),
-        ({"times": [0.1, 0.2, 0.3, 0.4, 0.8]}, "do not increase"),
-        ({"times": [0.0, 0.8]}, "do not fit"),
-        ({"jerk": [0.0, np.nan, 0.0, 0.0]}, "jerk"),
-        ({"acceleration": [[1.0], [2.0]]}, "acceleration"),
-    ],
-)
-def test_what_is_no_motion_is_refused(change, named):
-    with pytest.raises(ValueError, match=named):
-        FreeMotion(**{"times": COARSE, "acceleration": np.ones(4), "jerk": np.zeros(4)} | change)
-
-
-def test_arrays_are_read_only_and_compared(free):
-    with pytest.raises(ValueError, match="read-only"):
-        free.acceleration[0] = 1.0
-    same = FreeMotion(free.times, free.acceleration, free.jerk)
-    assert same == free
-    assert hash(same) == hash(free)
-    assert same != FreeMotion(free.times, free.acceleration + 1e-9, free.jerk)
-    assert same != "a motion"

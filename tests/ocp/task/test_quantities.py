@@ -2,10 +2,9 @@
 
 from dataclasses import fields
 
-import pytest
-from quietarm.models import ArmOnFlexibleLink, JointMotion
+from quietarm.models import JointMotion
 from quietarm.ocp import Motion, PointToPoint
-from quietarm.ocp.task.quantities import QUANTITIES, ask_for_jerk
+from quietarm.ocp.task.quantities import QUANTITIES
 
 
 def test_every_quantity_has_a_limit_in_a_task_and_a_peak_in_a_motion():
@@ -22,14 +21,3 @@ def test_derivatives_of_the_joint_say_which_they_are():
     }  # fmt: skip
     for name, order in orders.items():
         assert order is None or JointMotion._fields[order] == name
-
-
-def test_only_the_deflection_has_a_value_for_each_tip(two_links):
-    rows = {name: quantity.rows(two_links) for name, quantity in QUANTITIES.items()}
-    assert rows == {**dict.fromkeys(QUANTITIES, 1), "deflection": 2}
-    assert {quantity.rows(ArmOnFlexibleLink()) for quantity in QUANTITIES.values()} == {1}
-
-
-@pytest.mark.parametrize("name", [*QUANTITIES, "residual", "power"])
-def test_only_a_jerk_limit_asks_for_the_jerk(name):
-    assert ask_for_jerk(["torque", name]) == (name == "jerk")

@@ -3,8 +3,6 @@
 import signal
 
 import pytest
-import quietarm.studies.reproduction.recompute
-from quietarm.studies.cli.commands import evaluate, front, plan
 from quietarm.studies.display.search_progress import SearchDisplay
 
 
@@ -38,19 +36,6 @@ def refused(call, folder):
         return err
 
     return run_refused
-
-
-@pytest.fixture
-def no_solve(monkeypatch):
-    """Make a solve fail the test: what is wrong must be found before it."""
-
-    def solve(*arguments, **settings):
-        pytest.fail("a solve was begun")
-
-    for module in (plan, evaluate, front):
-        for name in ("plan_move", "evaluate_coefficients", "search", "search_many"):
-            monkeypatch.setattr(module, name, solve, raising=False)
-    monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", solve)
 
 
 @pytest.fixture

@@ -101,14 +101,6 @@ def test_a_run_on_another_move_is_refused(refused, copy):
     assert f"(nsga2 on {NAME} from seed 0); remove it" in refused(LINE)
 
 
-def _marks(copy, change):
-    """Change the marks of a run by hand."""
-    path = copy / f"runs/{NAME}/vepso/seed1.json"
-    marks = json.loads(path.read_text())["marks"]
-    change(marks)
-    _spoil(path, marks=marks)
-
-
 def test_figures_that_were_altered_are_not_believed(refused, copy):
     path = copy / f"runs/{NAME}/nsga2/seed0.json"
     front = json.loads(path.read_text())["front"]
