@@ -1,6 +1,5 @@
 """What the tests of `studies` share: one reproduction of the paper, one plan."""
 
-import errno
 import math
 import os
 import shlex
@@ -141,16 +140,6 @@ def ctrl_c():
         return process.communicate(timeout=240)
 
     return press
-
-
-@pytest.fixture
-def no_place(monkeypatch):
-    """Nothing can be made in any folder, whatever permissions say, as in /proc."""
-
-    def fail(*given, **settings):
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
-
-    monkeypatch.setattr("tempfile.TemporaryFile", fail)
 
 
 @pytest.fixture(scope="session")

@@ -79,13 +79,3 @@ def test_settings_change_the_front_and_stand_in_it():
     assert plain.points != other.points
     assert "eta=15.0" in plain.settings["crossover"]
     assert "eta=5.0" in other.settings["crossover"]
-
-
-def test_settings_beside_an_algorithm_of_ones_own_are_refused():
-    with pytest.raises(ValueError, match="settings are set in the algorithm that you give"):
-        search(HALF, PRESETS["nsga3"].build(8), bound=0.5, generations=2, settings={"mutation": 1})
-
-
-def test_an_unknown_method_is_refused_with_the_nearest_one():
-    with pytest.raises(ValueError, match="unknown method 'nsga'; did you mean 'nsga2'"):
-        search(HALF, "nsga", **SMALL)

@@ -116,20 +116,6 @@ def test_settings_state_every_operator_as_it_is():
         assert isinstance(part.eliminate_duplicates, ExactDuplicates)
 
 
-def test_no_two_share_an_operator_that_one_could_change():
-    one, other = PaperNSGA2(), PaperNSGA2()
-    assert one.mating.crossover is not other.mating.crossover
-    assert one.mating.mutation is not other.mating.mutation
-    assert one.mating.selection is not other.mating.selection
-    assert one.survival is not other.survival
-
-
-@pytest.mark.parametrize("population", [1, 0, -3])
-def test_a_population_that_cannot_cross_is_refused(population):
-    with pytest.raises(ValueError, match=f"population is {population}; give a whole"):
-        PaperNSGA2(population)
-
-
 @pytest.mark.parametrize("population", [2, 3, 7, 20])
 def test_every_generation_evaluates_exactly_the_population(population):
     algorithm = PaperNSGA2(population)

@@ -8,24 +8,10 @@ from pathlib import Path
 import pytest
 from quietarm.metaheuristics import PRESETS, VEPSO, PaperNSGA2
 from quietarm.metaheuristics.algorithms import building
-from quietarm.metaheuristics.algorithms.presets import preset_of
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "methods.md"
 NUMBA = {"agemoea", "agemoea2"}  # pymoo compiles these for seconds as they load
 NAMES = pytest.mark.parametrize("name", [name for name in PRESETS if name not in NUMBA])
-
-
-def test_the_papers_settings_are_the_defaults_of_its_searches():
-    # sections 3.1 and 3.2
-    assert (PRESETS["vepso"].population, PRESETS["vepso"].generations) == (100, 200)
-    assert (PRESETS["nsga2"].population, PRESETS["nsga2"].generations) == (200, 500)
-    assert PRESETS["vepso"].evaluations(100, 200) == 40_000  # two swarms
-
-
-def test_presets_are_known_by_their_names_and_have_labels():
-    assert [preset.name for preset in PRESETS.values()] == list(PRESETS)
-    assert (PRESETS["vepso"].label, PRESETS["nsga2"].label) == ("VEPSO", "NSGA-II")
-    assert len({preset.label for preset in PRESETS.values()}) == len(PRESETS)
 
 
 def test_every_algorithm_of_pymoo_for_two_objectives_is_there():
@@ -121,34 +107,6 @@ def test_bad_settings_are_refused_with_the_remedy(name, settings, words):
         PRESETS[name].build(10, settings)
     assert all(word in str(caught.value) for word in words)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("name", "population", "settings", "least"),
-    [("gde3", 3, {}, 4), ("nsde", 5, {"variant": "DE/best/2/exp"}, 6), ("nsder", 2, {}, 4)],
-)
-def test_too_few_for_a_difference_are_refused(name, population, settings, least):
-    # pymoo looks for ever for vectors that differ
-    with pytest.raises(ValueError, match=rf"population is {population}; give at least {least}: DE"):
-        PRESETS[name].build(population, settings)
-
-
-@NAMES
-def test_all_pairs_of_a_huge_population_are_not_compared(name):
-    most = PRESETS[name].most
-    with pytest.raises(ValueError, match=f"population is {most + 1}; give at most {most}: {name}"):
-        PRESETS[name].build(most + 1)
-
-
-def test_an_unknown_method_is_refused_with_the_nearest_one():
-    with pytest.raises(ValueError, match="unknown method 'smsmoa'; did you mean 'smsemoa'"):
-        preset_of("smsmoa")
-
-
-def test_a_method_without_its_library_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(building, "find_spec", lambda name: None)
-    with pytest.raises(ValueError, match=r"agemoea2 needs numba; .*'quietarm\[numba\]'"):
-        PRESETS["agemoea2"].build(10)
 
 
 def test_the_document_has_every_method_with_its_settings_and_defaults():

@@ -1,7 +1,6 @@
 """Any algorithm of pymoo in a search."""
 
 import dataclasses
-import math
 
 import pytest
 from pymoo.algorithms.moo.moead import MOEAD
@@ -15,9 +14,9 @@ from pymoo.algorithms.soo.nonconvex.pattern import PatternSearch
 from pymoo.algorithms.soo.nonconvex.pso import PSO
 from pymoo.operators.mutation.pm import PM
 from pymoo.util.ref_dirs import get_reference_directions
-from quietarm.metaheuristics import INERTIA_2002, VEPSO, MoveProblem, PopulationObjective, search
-from quietarm.ocp import CycloidPolynomial, Front, rollout
-from small_searches import HALF, LIMITED, assert_is_a_front, exactly, failing, one_line
+from quietarm.metaheuristics import INERTIA_2002, VEPSO, search
+from quietarm.ocp import Front, rollout
+from small_searches import HALF, LIMITED, assert_is_a_front, exactly, one_line
 
 
 def _moead():
@@ -72,26 +71,10 @@ def test_the_settings_of_any_algorithm_are_in_the_front():
 
 
 @OTHER
-def test_generations_of_any_algorithm_are_counted_as_asked_for(name):
-    # 'history: hypervolume by generation'; a report is one 'after every generation'
-    seen = []
-    front = search(HALF, OTHERS[name](), bound=0.5, generations=5, seed=2, report=seen.append)
-    assert [progress.generation for progress in seen] == [1, 2, 3, 4, 5]
-    assert len(front.history) == 5
-
-
-@OTHER
 def test_the_seed_decides_for_any_algorithm(name):
     fronts = [search(HALF, OTHERS[name](), bound=0.5, generations=4, seed=s) for s in (2, 2, 3)]
     assert exactly(fronts[0]) == exactly(fronts[1])
     assert fronts[0].points != fronts[2].points
-
-
-@OTHER
-def test_an_algorithm_may_be_given_twice(name):
-    algorithm = OTHERS[name]()
-    first, second = (search(HALF, algorithm, bound=0.5, generations=4, seed=2) for _ in range(2))
-    assert exactly(first) == exactly(second)
 
 
 @pytest.mark.parametrize("name", ["SMSEMOA", "MOPSO_CD", "NSGA2", "VEPSO"])
@@ -113,30 +96,3 @@ def test_an_algorithm_for_one_objective_is_refused_before_the_work(make):
         search(HALF, make(), bound=0.5, generations=3, report=seen.append)
     one_line(caught)
     assert seen == []
-
-
-@OTHER
-@pytest.mark.parametrize("steps", [0, 2])
-def test_an_algorithm_that_was_set_up_or_run_is_refused(name, steps):
-    problem = MoveProblem(PopulationObjective(HALF, CycloidPolynomial(6)), 0.5)
-    algorithm = OTHERS[name]().setup(problem, termination=("n_gen", 9), seed=1)
-    for _ in range(steps):
-        algorithm.next()
-    with pytest.raises(ValueError, match=f"this {name} was set up or run before; give a new one"):
-        search(HALF, algorithm, bound=0.5, generations=3)
-
-
-def test_an_algorithm_that_cannot_keep_limits_is_refused():
-    task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5)
-    with pytest.raises(ValueError, match="MOEAD cannot search this task: ") as caught:
-        search(task, _moead(), bound=0.5, generations=3)
-    one_line(caught)
-
-
-def test_failed_candidates_never_enter_the_front_of_any_algorithm(monkeypatch):
-    counts = failing(monkeypatch, math.nan)
-    for make in OTHERS.values():
-        counts.clear()
-        front = search(HALF, make(), bound=0.5, generations=4, seed=2)
-        assert front.failed == sum(counts) > 0
-        assert all(point.coefficients[0] <= 0 for point in front.points)

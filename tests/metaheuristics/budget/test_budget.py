@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from quietarm.metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
 from quietarm.metaheuristics.budget.record import CORNER, Scale, Visits, marks_of
-from quietarm.metaheuristics.budget.run import parts_of, search_within
+from quietarm.metaheuristics.budget.run import search_within
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.ocp import CycloidPolynomial, Front, FrontPoint, reference_corner
 from small_searches import BOUNDS, HALF, LIMITED, METHODS, SIXTH, SWARMS, TASKS
@@ -183,16 +183,3 @@ def test_gradient_seeds_are_in_the_first_population(candidates):
     )
     # the seeds arrive at rest; a search of so few evaluations does not
     assert found.front.residuals[0] < 1e-4 < alone.front.residuals[0]
-
-
-@pytest.mark.parametrize(
-    ("method", "words"),
-    [
-        ("nsga", "unknown method 'nsga'; did you mean 'nsga2'?"),
-        ("nsga2+", "give nsga2\\+polish or nsga2\\+seeds"),
-        ("multistart+polish", "unknown method 'multistart\\+polish'"),
-    ],
-)
-def test_an_unknown_method_is_refused_with_the_nearest(method, words):
-    with pytest.raises(ValueError, match=words):
-        parts_of(method)

@@ -204,46 +204,6 @@ def test_two_threads_give_identical_bits(tasks, name):
     assert same_bits(one, two)
 
 
-def test_the_population_given_is_left_as_it_was(tasks):
-    task, bound = tasks["arm"]
-    X = candidates(201, bound)
-    before = X.copy()
-    X.setflags(write=False)
-    PopulationObjective(task, PROFILE)(X)
-    assert np.array_equal(X, before)
-
-
-def test_lists_and_arrays_of_any_layout_are_taken(tasks):
-    task, bound = tasks["arm"]
-    objective, X = PopulationObjective(task, PROFILE), candidates(6, bound)  # square
-    expected = objective(X)
-    assert same_bits(objective(X.tolist()), expected)
-    assert same_bits(objective(np.asfortranarray(X)), expected)
-    assert same_bits(objective(np.repeat(X, 2, axis=0)[::2]), expected)
-
-
-def test_an_empty_population_has_no_values():
-    task = PointToPoint(ARM, pi / 2, 0.8, torque_limit=1.0, speed_limit=1.0)
-    values = PopulationObjective(task, PROFILE)(np.empty((0, 6)))
-    assert values.residual.shape == values.energy.shape == (0,)
-    assert values.violations.shape == (0, 2)
-
-
-@pytest.mark.parametrize("shape", [(6,), (6, 20), (20, 5), (20, 7), (2, 20, 6), (), (0,), (6, 0)])
-def test_a_wrong_shape_is_named(tasks, shape):
-    objective = PopulationObjective(tasks["arm"][0], PROFILE)
-    with pytest.raises(ValueError, match=r"has shape .*; give \(candidates, 6\)") as caught:
-        objective(np.zeros(shape))
-    assert str(shape) in str(caught.value)
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("threads", [0, -1])
-def test_threads_below_one_are_refused(tasks, threads):
-    with pytest.raises(ValueError, match=f"threads is {threads}; give "):
-        PopulationObjective(tasks["arm"][0], PROFILE, threads=threads)
-
-
 @PLANTS
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e200])
 def test_a_candidate_that_is_not_finite_spoils_only_its_own_row(tasks, name, bad):

@@ -113,19 +113,6 @@ def test_the_fronts_are_found_again(monkeypatch):
     )
 
 
-def test_random_starts_find_what_the_sweep_passes_by(monkeypatch):
-    # a sweep whose middle point is not the best of its residual
-    problem = problem_of(TWO_TERMS[0])
-    (front,) = problem.fronts()
-    middle = front.points[14]
-    worse = replace(middle, energy=middle.energy * 1.001)
-    swept = replace(front, points=(front.points[0], worse, front.points[-1]))
-    monkeypatch.setattr(finding, "epsilon_front", lambda *task, **settings: swept)
-    found = finding.exact_front(problem.task, problem.profile, problem.bound)
-    assert found.points[1].energy == pytest.approx(middle.energy, rel=BETTER)
-    assert (found.points[0], found.points[2]) == (front.points[0], front.points[-1])
-
-
 def test_pymoo_has_the_exact_front_and_set():
     problem = problem_of("arm-on-flexible-link-90deg-0.8s-limits")
     made = problem.pymoo()
@@ -193,8 +180,3 @@ def test_the_limit_of_the_third_objective_costs_nothing_where_it_is_wide():
     free, wide = problem_of("single-link-30deg-0.8s").fronts()[0], problem_of(THIRD).fronts()[-1]
     assert wide.stillest().energy == pytest.approx(free.stillest().energy, rel=BETTER)
     assert wide.cheapest().energy == pytest.approx(free.cheapest().energy, rel=BETTER)
-
-
-def test_an_unknown_problem_is_refused_with_the_nearest_one():
-    with pytest.raises(ValueError, match="unknown problem 'dual-link'; did you mean 'dual-link-90"):
-        problem_of("dual-link")

@@ -1,7 +1,6 @@
 """A move as a function of arrays."""
 
 import dataclasses
-import math
 
 import numpy as np
 import pytest
@@ -59,30 +58,3 @@ def test_a_profile_with_a_box_of_its_own_needs_no_bound():
     function = MoveFunction(SIXTH, CycloidGaussians(2), steps=10)
     assert (function.lower < function.upper).all()
     assert len(function.variables) == CycloidGaussians(2).size
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({}, "give a bound"),
-        ({"bound": math.nan}, "give a finite number"),
-        ({"bound": -1}, "positive"),
-        ({"bound": 0.2, "peaks": ["torqe"]}, "unknown quantity 'torqe'; did you mean 'torque'"),
-        ({"bound": 0.2, "profile": CycloidPolynomial(0)}, "give 1 term or more"),
-        ({"bound": 0.2, "threads": 0}, "threads is 0"),
-    ],
-)
-def test_bad_input_is_refused(given, words):
-    with pytest.raises(ValueError, match=words):
-        MoveFunction(SIXTH, **given)
-
-
-@pytest.mark.parametrize("candidates", [np.zeros(6), np.zeros((2, 5)), np.zeros((2, 6, 1))])
-def test_candidates_of_another_shape_are_refused(candidates):
-    with pytest.raises(ValueError, match=r"the population has shape .*; give \(candidates, 6\)"):
-        MoveFunction(SIXTH, bound=0.2, steps=10)(candidates)
-
-
-def test_peaks_in_one_word_are_refused():
-    with pytest.raises(ValueError, match=r"peaks is 'torque'; give a list of .*, as \['torque'\]"):
-        MoveFunction(SIXTH, bound=0.2, peaks="torque")

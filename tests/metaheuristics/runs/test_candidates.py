@@ -3,10 +3,7 @@
 import dataclasses
 import math
 
-import numpy as np
 import pytest
-from quietarm.metaheuristics import PopulationObjective
-from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
 from quietarm.ocp import CycloidPolynomial, Front, resimulate, rollout
 from small_searches import (
     IMPOSSIBLE,
@@ -71,25 +68,6 @@ def test_limits_that_nothing_keeps_leave_an_empty_front(tmp_path, method):
     assert Front.load(tmp_path / "front.json") == front
 
 
-@METHODS
-def test_candidates_that_break_a_limit_are_counted(monkeypatch, method):
-    counts, evaluate = [], PopulationObjective.__call__
-
-    def counting(self, coefficients):
-        values = evaluate(self, coefficients)
-        if self.steps == CANDIDATE_STEPS:
-            counts.append(sum(any(v > 0 for v in row) for row in values.violations.tolist()))
-        return values
-
-    monkeypatch.setattr(PopulationObjective, "__call__", counting)
-    seen = []
-    front = run(method, LIMITED[method], report=seen.append)
-    assert 0 < front.infeasible < front.evaluations
-    assert [progress.infeasible for progress in seen] == np.cumsum(counts).tolist()
-    assert front.infeasible == seen[-1].infeasible
-    assert found(method).infeasible == 0  # a task without limits
-
-
 # -- candidates that fail --
 
 
@@ -114,22 +92,3 @@ def test_failed_candidates_are_counted_and_never_enter_a_front(monkeypatch, meth
     assert all(point.coefficients[0] <= 0 for point in front.points)
     assert_is_a_front(front)
     assert all(0 <= entry.hypervolume < 1 for entry in front.history)
-
-
-@METHODS
-@pytest.mark.parametrize("energy", [math.inf, 1e31])
-def test_when_all_candidates_fail_the_front_is_empty(monkeypatch, method, energy):
-    evaluate = PopulationObjective.__call__
-
-    def overflowing(self, coefficients):
-        values = evaluate(self, coefficients)
-        values.energy[:] = energy  # finite or not, it is counted
-        return values
-
-    monkeypatch.setattr(PopulationObjective, "__call__", overflowing)
-    front = run(method, generations=4)
-    assert front.points == ()
-    assert front.failed == front.evaluations == SWARMS[method] * 80
-    assert [entry.hypervolume for entry in front.history] == [0.0] * 4
-    with pytest.raises(ValueError, match=r"no point; .* all \d+ .* overflow; narrow the bound"):
-        front.stillest()

@@ -1,12 +1,8 @@
 """The history of a search, its reports, and Ctrl-C."""
 
-import signal
-import threading
-
 import numpy as np
 import pytest
-from quietarm.metaheuristics import PopulationObjective, search
-from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
+from quietarm.metaheuristics import search
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, rollout
 from small_searches import (
     METHODS,
@@ -20,25 +16,6 @@ from small_searches import (
 )
 
 # -- history and reports --
-
-
-@METHODS
-@pytest.mark.parametrize(("population", "generations"), [(20, 15), (7, 3), (2, 1), (201, 2)])
-def test_evaluations_are_exact(monkeypatch, method, population, generations):
-    asked = []
-    evaluate = PopulationObjective.__call__
-
-    def counting(self, coefficients):
-        if self.steps == CANDIDATE_STEPS:  # not the finer one, for the points of the front
-            asked.append(len(coefficients))
-        return evaluate(self, coefficients)
-
-    monkeypatch.setattr(PopulationObjective, "__call__", counting)
-    front = run(method, population=population, generations=generations)
-    each = SWARMS[method] * population
-    assert sum(asked) == front.evaluations == each * generations
-    expected = [each * (k + 1) for k in range(generations)]
-    assert [entry.evaluations for entry in front.history] == expected
 
 
 def _hypervolume(front):
@@ -114,69 +91,3 @@ def test_ctrl_c_keeps_what_was_found(tmp_path, method, stop):
     loaded = Front.load(tmp_path / "front.json")
     assert loaded == front
     assert not loaded.complete
-
-
-@METHODS
-def test_an_interrupt_before_anything_was_found_gives_an_empty_front(monkeypatch, method):
-    def interrupted(self, coefficients):
-        if len(coefficients):
-            raise KeyboardInterrupt
-        return evaluate(self, coefficients)
-
-    evaluate = PopulationObjective.__call__
-    monkeypatch.setattr(PopulationObjective, "__call__", interrupted)
-    front = run(method)
-    assert (front.points, front.history, front.complete) == ((), (), False)
-
-
-@METHODS
-@pytest.mark.parametrize("times", [1, 2])
-def test_ctrl_c_while_the_front_is_worked_out_loses_nothing(tmp_path, monkeypatch, method, times):
-    evaluate, interrupted = PopulationObjective.__call__, []
-
-    def interrupting(self, coefficients):
-        if self.steps != CANDIDATE_STEPS:
-            interrupted.append(1)
-            for _ in range(times):
-                signal.raise_signal(signal.SIGINT)
-        return evaluate(self, coefficients)
-
-    path = tmp_path / "checkpoint"
-    with monkeypatch.context() as patch:
-        patch.setattr(PopulationObjective, "__call__", interrupting)
-        front = run(method, checkpoint=path)
-    assert interrupted
-    assert not front.complete  # the caller is told, as by a Ctrl-C in the last generation
-    assert front.points == found(method).points
-    assert front.history == found(method).history
-    assert exactly(run(method, resume=path)) == exactly(found(method))
-
-
-@METHODS
-@pytest.mark.parametrize("moment", range(4))
-@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="Ctrl-C is sent as a signal")
-def test_ctrl_c_at_any_moment(method, moment):
-    delay = np.random.default_rng(moment).uniform(0.001, 0.1)
-    main = threading.main_thread().ident
-    timer = threading.Timer(delay, lambda: signal.pthread_kill(main, signal.SIGINT))
-
-    def begin(progress):
-        if progress.generation == 1:
-            timer.start()
-        if progress.seconds > 300:
-            raise RuntimeError("the search went on after Ctrl-C")
-
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        front = run(method, generations=100_000, report=begin)
-        timer.join()
-    finally:
-        timer.cancel()
-        signal.signal(signal.SIGINT, before)
-    assert not front.complete
-    assert 1 <= len(front.history) < 100_000
-    assert len(front.points) > 0
-    assert_is_a_front(front)
-    for point in front.points[:3]:
-        motion = rollout(front.task, front.profile, point.coefficients).motion
-        assert point.energy == pytest.approx(motion.energy, rel=1e-12)

@@ -1,6 +1,5 @@
 """Searches that are broken off, killed and resumed."""
 
-import json
 import os
 import signal
 import subprocess
@@ -9,8 +8,7 @@ import time
 
 import pytest
 from quietarm.metaheuristics import PRESETS
-from quietarm.ocp import FileFormatError, Front
-from quietarm.ocp.answers.documents import plain
+from quietarm.ocp import FileFormatError
 from small_searches import HALF, IMPOSSIBLE, LIMITED, METHODS, SIXTH, exactly, found, run
 
 
@@ -197,9 +195,3 @@ def test_a_run_that_was_killed_ends_bit_for_bit_as_one_that_was_not(tmp_path):
             if int(line) >= 6:
                 process.send_signal(signal.SIGKILL)
     assert exactly(run("vepso", resume=kept)) == exactly(found("vepso"))
-
-
-def test_a_resumed_front_comes_back_from_its_file(checkpoints, tmp_path):
-    front = run("nsga2", resume=checkpoints / "nsga2")
-    front.save(tmp_path / "front.json")
-    assert json.dumps(plain(Front.load(tmp_path / "front.json"))) == json.dumps(plain(front))

@@ -1,17 +1,12 @@
 """Searches: what they find, what a front is, and what is refused."""
 
-import dataclasses
 import math
-import random
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
-from quietarm.metaheuristics import CONSTRICTION, search
-from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, resimulate, rollout
+from quietarm.metaheuristics import search
+from quietarm.ocp import CycloidPolynomial, PointToPoint, resimulate, rollout
 from small_searches import (
     BOUNDS,
     HALF,
@@ -71,59 +66,6 @@ def test_provenance(method):
     assert {"quietarm", "casadi", "numpy", "python", "pymoo"} <= front.versions.keys()
 
 
-def test_the_operators_of_nsga2_are_in_the_front():
-    # docs/physics.md, 'NSGA-II settings'
-    stated = found("nsga2").settings
-    assert stated["crossover"] == "SBX(prob=0.8, prob_var=0.5, eta=15)"
-    assert stated["mutation"] == "PM(prob=1, prob_var=0.01, eta=20)"
-    assert {"sampling", "selection", "survival", "duplicates"} <= stated.keys()
-
-
-def test_the_constants_of_vepso_are_in_the_front():
-    stated = dict(found("vepso").settings)
-    assert dataclasses.asdict(CONSTRICTION).items() <= stated.items()
-    assert (stated["boundary"], stated["velocity_limit"]) == ("clip", 1.0)
-
-
-@METHODS
-def test_a_front_cannot_be_changed(method):
-    front = found(method)
-    before = exactly(front)
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        front.points = ()
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        front.points[0].energy = 0.0
-    with pytest.raises(TypeError):
-        front.points[0] = front.points[1]
-    with pytest.raises(TypeError):
-        front.points[0].coefficients[0] = 0.0
-    for array in (front.residuals, front.energies):
-        array[:] = 0.0  # a copy
-    assert exactly(front) == before
-
-
-@METHODS
-def test_a_front_comes_back_from_its_file(tmp_path, method):
-    found(method).save(tmp_path / "front.json")
-    loaded = Front.load(tmp_path / "front.json")
-    assert loaded == found(method)
-    assert exactly(loaded) == exactly(found(method))
-
-
-@METHODS
-def test_numpys_integers_are_taken_and_saved(tmp_path, method):
-    front = run(
-        method,
-        seed=np.int64(3),
-        population=np.int64(8),
-        generations=np.int64(3),
-        bound=np.float64(BOUNDS[method]),
-    )
-    assert exactly(front) == exactly(run(method, seed=3, population=8, generations=3))
-    front.save(tmp_path / "front.json")
-    assert Front.load(tmp_path / "front.json") == front
-
-
 # -- seeds --
 
 
@@ -144,60 +86,10 @@ def test_two_threads_find_the_same(method):
     assert exactly(one) == exactly(two)
 
 
-@METHODS
-def test_numpys_own_generator_does_not_matter(method):
-    np.random.seed(1)  # noqa: NPY002
-    random.seed(1)
-    assert exactly(run(method)) == exactly(found(method))
-
-
 # -- selecting --
 
 
-@METHODS
-def test_selecting(method):
-    front = found(method)
-    points = front.points
-    assert front.stillest() is min(points, key=lambda p: p.residual)
-    assert front.cheapest() is min(points, key=lambda p: p.energy)
-    middle = points[len(points) // 2]
-    assert front.cheapest(middle.residual) is middle
-    assert front.cheapest(math.nextafter(middle.residual, 0)) is points[len(points) // 2 - 1]
-    with pytest.raises(ValueError, match="at least that of the stillest") as caught:
-        front.cheapest(points[0].residual / 2)
-    assert f"{points[0].residual:.3g} m" in str(caught.value)
-    one_line(caught)
-    # farthest from the straight line between the ends, both objectives scaled to [0, 1]
-    F = np.column_stack([front.residuals, front.energies])
-    scaled = (F - F.min(axis=0)) / np.ptp(F, axis=0)
-    assert front.knee() is points[int(np.argmin(scaled.sum(axis=1)))]
-    assert scaled[points.index(front.knee())].sum() < 1
-
-
 # -- memory --
-
-LARGE = """
-import math
-from quietarm.metaheuristics import search
-from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import PointToPoint
-
-task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
-front = search(task, "nsga2", bound=0.5, population=10_000, generations=1)
-# not ru_maxrss, which over fork and exec starts from the peak of the parent
-(peak,) = [line for line in open("/proc/self/status") if line.startswith("VmHWM")]
-print(front.evaluations, peak.split()[1])
-"""
-
-
-@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="peaks are read from /proc")
-def test_a_population_of_ten_thousand_needs_little_memory():
-    # pymoo's duplicate elimination held 10,000 x 10,000 distances: 1.8 GB. Measured: 0.14 GB.
-    command = [sys.executable, "-c", LARGE]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
-    evaluations, kilobytes = map(int, done.stdout.split())
-    assert evaluations == 10_000
-    assert kilobytes < 400_000
 
 
 # -- bad input --
@@ -261,30 +153,11 @@ def test_a_population_of_one_is_too_small(method):
     one_line(caught)
 
 
-def test_an_unknown_method_is_named_with_the_known_ones():
-    with pytest.raises(ValueError, match=r"'pso'.*vepso.*nsga2"):
-        search(HALF, "pso", bound=0.5)
-
-
-@pytest.mark.parametrize("algorithm", [NSGA2, None, 3])
-def test_what_is_no_algorithm_is_named(algorithm):
-    words = r"algorithm is .*; give vepso, nsga2, .* or an instance of one of pymoo's"
-    with pytest.raises(ValueError, match=words) as caught:
-        search(HALF, algorithm, bound=0.5, generations=3)
-    one_line(caught)
-
-
 def test_an_algorithm_of_your_own_needs_generations_and_has_its_population():
     with pytest.raises(ValueError, match="number of generations for NSGA2"):
         search(HALF, NSGA2(pop_size=10), bound=0.5)
     with pytest.raises(ValueError, match="population is set in the algorithm"):
         search(HALF, NSGA2(pop_size=10), bound=0.5, generations=3, population=10)
-
-
-@METHODS
-def test_a_profile_without_coefficients_is_refused(method):
-    with pytest.raises(ValueError, match="0 terms has nothing to choose"):
-        run(method, profile=CycloidPolynomial(0))
 
 
 @pytest.mark.parametrize(("method", "terms"), [("vepso", 1), ("nsga2", 8)])

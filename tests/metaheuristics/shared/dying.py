@@ -1,6 +1,5 @@
 """Profiles whose process dies or has no memory left; processes of their own import them."""
 
-import multiprocessing
 import os
 import signal
 from dataclasses import dataclass
@@ -31,17 +30,4 @@ class Dying(CycloidPolynomial):
             except FileNotFoundError:  # another process was first
                 return super().size
             os.kill(os.getpid(), signal.SIGKILL)
-        return super().size
-
-
-@dataclass(frozen=True)
-class Hungry(CycloidPolynomial):
-    """Finds no memory in any process but the first."""
-
-    name: ClassVar[str] = "hungry"
-
-    @property
-    def size(self):
-        if multiprocessing.parent_process() is not None:
-            raise MemoryError
         return super().size

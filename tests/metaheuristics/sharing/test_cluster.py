@@ -8,15 +8,12 @@ import math
 import multiprocessing
 import os
 import signal
-import socket
 import subprocess
 import sys
 from functools import partial
 
 import dying
 import pytest
-import quietarm.metaheuristics.sharing.cluster as cluster
-import quietarm.metaheuristics.sharing.workers as workers_module
 import small_pieces
 from quietarm.metaheuristics import search, search_many
 from quietarm.metaheuristics.ensemble import LostSeedsError, one_seed
@@ -75,12 +72,6 @@ def address(scheduler, order, tmp_path_factory):
         yield address
 
 
-def test_a_scheduler_without_workers_is_refused(scheduler):
-    _, address = scheduler
-    with pytest.raises(QuietarmError, match=f"{address} has no workers; start some with `dask wor"):
-        search_many(TASK, "vepso", 2, scheduler=address, **SMALL)
-
-
 def test_its_workers_find_the_fronts_of_single_searches(address):
     done, heard = [], set()
     fronts = search_many(
@@ -90,22 +81,6 @@ def test_its_workers_find_the_fronts_of_single_searches(address):
     assert fronts == [search(TASK, "vepso", seed=seed, **SMALL) for seed in (0, 1, 2)]
     assert sorted(front.seed for front in done) == [0, 1, 2]
     assert heard == {0, 1, 2}
-
-
-def test_a_wrong_setting_is_refused_as_by_one_search(address):
-    with pytest.raises(ValueError, match="generations is 0"):
-        search_many(TASK, "vepso", 3, scheduler=address, **{**SMALL, "generations": 0})
-
-
-def test_a_worker_without_memory_costs_its_own_seed_only(address):
-    settings = {**SMALL, "profile": dying.Hungry(2)}
-    with pytest.raises(LostSeedsError) as caught:
-        search_many(TASK, "nsga2", 2, scheduler=address, **settings)
-    assert str(caught.value) == (
-        "lost seed 0 (out of memory), seed 1 (out of memory); 0 of 2 seeds are done; where memory "
-        "ran short, give fewer workers or a smaller population"
-    )
-    assert caught.value.fronts == []
 
 
 def test_what_casadi_needs_is_built_once_a_worker(address):
@@ -195,32 +170,6 @@ def test_a_scheduler_that_goes_leaves_what_was_found(address, scheduler):
     assert str(error) == f"{done.stopped}; 1 of 2 seeds are done; 1 in part"
 
 
-def test_where_no_scheduler_answers_it_is_said(monkeypatch):
-    monkeypatch.setattr(cluster, "_CONNECT_SECONDS", 0.1)
-    with socket.socket() as silent:  # keeps its port, but does not listen
-        silent.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
-        with pytest.raises(ValueError, match=rf"no scheduler answers at {address} \(") as caught:
-            search_many(TASK, "vepso", 2, scheduler=address, **SMALL)
-    assert "\n" not in str(caught.value)
-
-
-def test_what_listens_and_is_no_scheduler_is_told(monkeypatch):
-    monkeypatch.setattr(cluster, "_CONNECT_SECONDS", 0.5)
-    with socket.create_server(("127.0.0.1", 0)) as silent:
-        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
-        message = rf"no scheduler answers at {address} \(it says nothing\); start one"
-        with pytest.raises(ValueError, match=message):
-            search_many(TASK, "vepso", 2, scheduler=address, **SMALL)
-
-
-@pytest.mark.parametrize("address", ["localhost", "tcp://localhost", "127.0.0.1:8786", ""])
-def test_what_is_no_address_is_said_before_there_is_a_client(monkeypatch, address):
-    monkeypatch.setattr(cluster, "Client", None)  # one that cannot begin takes 20 s to end
-    with pytest.raises(ValueError, match=f"scheduler is '{address}'; give it as tcp://host:8786"):
-        search_many(TASK, "vepso", 2, scheduler=address, **SMALL)
-
-
 @SIGKILL
 def test_a_piece_that_kills_its_worker_three_times_is_reported(tmp_path):
     deaths = tmp_path / "deaths"
@@ -233,19 +182,6 @@ def test_a_piece_that_kills_its_worker_three_times_is_reported(tmp_path):
     assert str(done.failures["killing"]) == "its worker died 3 times"
     assert deaths.read_text() == "xxx"
     assert multiprocessing.active_children() == []
-
-
-def test_without_dask_it_is_said_what_to_install(monkeypatch):
-    monkeypatch.setattr(workers_module, "find_spec", lambda name: None)
-    assert Workers().here
-    for asked in ({"workers": 2}, {"scheduler": "tcp://127.0.0.1:8786"}):
-        with pytest.raises(ValueError, match=r"needs dask: pip install 'quietarm\[cluster\]'"):
-            search_many(TASK, "vepso", 2, **asked, **SMALL)
-
-
-def test_workers_of_two_kinds_are_refused():
-    with pytest.raises(ValueError, match="workers is 2 and the scheduler tcp://a:1 has its own"):
-        Workers(2, "tcp://a:1")
 
 
 @pytest.mark.parametrize("name", ["checkpoint", "resume"])

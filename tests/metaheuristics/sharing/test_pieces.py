@@ -85,14 +85,3 @@ def test_ctrl_c_ends_the_work_and_keeps_what_was_done(work, answers, parts, note
 
 def test_without_ctrl_c_nothing_is_interrupted():
     assert run_pieces(WORK[:1]).stopped == ""
-
-
-def test_a_piece_is_told_of_those_it_comes_after_alone():
-    seen = []
-
-    def look(known, say):
-        seen.append((known.answers, known.failures))
-
-    run_pieces([*WORK[:2], Piece("d", "last", look, after=("b",))], note=QuietarmError)
-    ((answers, failures),) = seen
-    assert (answers, list(failures)) == ({}, ["b"])

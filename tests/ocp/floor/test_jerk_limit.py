@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Floor, InfeasibleTaskError, PointToPoint, energy_floor, plan_move
+from quietarm.ocp.floor import search
 
 # A joint beside a link that nothing excites.
 RIGID = SingleLinkManipulator(alpha1=0.02, alpha2=0.0, beta1=0.0, c=0.03)
@@ -38,7 +39,8 @@ def test_it_saves_and_loads_equal(floor, tmp_path):
     assert Floor.load(tmp_path / "floor.json") == floor
 
 
-def test_the_least_jerk_of_a_rigid_joint_is_its_closed_form():
+def test_the_least_jerk_of_a_rigid_joint_is_its_closed_form(monkeypatch):
+    monkeypatch.setattr(search, "FIRST_INTERVALS", 80)  # whatever other tests have begun with
     # From rest to rest with a continuous acceleration, at rest too: +J, -J, +J for T/4, T/2, T/4
     # goes J T^3/32. Less than that is not feasible; on a grid, only a little more is.
     least = 32 * 1.5 / 1.0**3

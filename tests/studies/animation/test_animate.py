@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import PointToPoint, QuietarmError, evaluate_coefficients
+from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.studies.animation import animate
 from quietarm.studies.animation.cast import cast_of
 from quietarm.studies.animation.clock import Clock, end_of
@@ -109,32 +109,6 @@ def test_settings_that_cannot_be_are_refused(plan, settings, message):
         animate([Line(plan, "plan")], **settings)
 
 
-def test_as_many_motions_as_can_be_seen(plan):
-    with pytest.raises(ValueError, match="7 motions are given, where 6 are the most"):
-        animate([Line(plan, str(i)) for i in range(7)])
-    with pytest.raises(ValueError, match="give one motion or more"):
-        animate([])
-
-
-def test_a_notebook_shows_it_without_a_server(film):
-    shown = film._repr_html_()
-    assert shown.startswith('<img src="data:image/gif;base64,R0lGODlh')  # GIF89a
-    assert len(repr(film)) < 100
-
-
-def test_it_is_saved_under_a_name_of_its_format(film, tmp_path):
-    film.save(tmp_path / "move.GIF")
-    assert (tmp_path / "move.GIF").read_bytes() == film.content
-    with pytest.raises(ValueError, match=r"move.mp4 is not named .gif, as this animation is"):
-        film.save(tmp_path / "move.mp4")
-    with pytest.raises(ValueError, match=r"end its name in .gif or .mp4"):
-        film.save(tmp_path / "move.png")
-
-
-def test_labels_are_shown_as_they_are(plan):
-    animate([Line(plan, "$half of \x1b[2J a $formula^ " * 9)], width=240, frames_per_second=1)
-
-
 # -- MP4 --
 
 FAKE = """#!{python}
@@ -172,15 +146,3 @@ def test_ffmpeg_is_given_every_pixel(plan, ffmpeg):
     # 1.8 s at 4 frames a second, and the first frame for half a second more
     assert int(count) == (8 + 2) * width * height * 3
     assert film._repr_html_().startswith('<video controls loop src="data:video/mp4;base64,')
-
-
-def test_what_ffmpeg_complains_of_is_told(plan, ffmpeg):
-    ffmpeg(status=1, read=1)
-    with pytest.raises(QuietarmError, match="ffmpeg could not make the MP4: could not; end"):
-        animate([Line(plan, "plan")], format="mp4", width=240, frames_per_second=2)
-
-
-def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch):
-    monkeypatch.setenv("PATH", "")
-    with pytest.raises(ValueError, match="needs the program ffmpeg, which is not found here"):
-        animate([Line(plan, "plan")], format="mp4")

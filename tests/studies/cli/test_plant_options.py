@@ -105,71 +105,6 @@ def test_a_parameter_of_a_plant_of_quietarms_own_is_set(call):
     assert Plan.load("plan.json").task.plant == SingleLinkManipulator(omega=9.0, zeta=0.01)
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        ("--set omga=9", "crane has no parameter 'omga'; did you mean 'omega'?"),
-        ("--set omega=9rad", "parameter omega is '9rad'; give a number in rad/s"),
-        ("--set omega=", "'omega=' sets nothing; give a parameter and its value, as omega=9"),
-        ("--set omega", "'omega' sets nothing"),
-        ("--set =9", "'=9' sets nothing"),
-        ("--set omega=inf", "parameter omega is inf; give a finite number"),
-        ("--set omega=1e400", "parameter omega is inf; give a finite number"),
-        ("--set omega=nan", "parameter omega is nan; give a finite number"),
-        ("--set omega=1 --set omega=2", "omega is set twice; set it once"),
-        ("--set coupling=1e308", "parameter coupling is 1e+308; give a finite number"),
-    ],
-)
-def test_a_setting_that_is_none_is_refused_in_one_line(call, words, told):
-    code, out, err = call(f"evaluate {MOVE} {GIVEN} --plant-file crane.py {words}")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert told in err
-
-
-def test_a_parameter_that_makes_the_plant_unstable_is_refused(call):
-    code, _, err = call(f"evaluate single-link {MOVE} {GIVEN} --set zeta=-0.1")
-    assert code == 2
-    assert "'single-link' has an unstable mode" in err
-
-
-def test_a_parameter_without_a_default_is_asked_for(call, crane_file):
-    text = crane_file.read_text().replace(' = parameter(3.0, "rad/s", "measured")', "")
-    crane_file.write_text(text)
-    line = f"evaluate {MOVE} {GIVEN} --plant-file crane.py"
-    code, _, err = call(line)
-    assert code == 2
-    assert "crane has no value for omega; give --set omega=" in err
-    assert call(f"{line} --set omega=3")[0] == 0
-
-
-def test_of_several_plants_one_is_named(call, crane_file):
-    text = crane_file.read_text()
-    crane_file.write_text(text + text.replace("Crane", "Hoist").replace('"crane"', '"hoist"'))
-    line = f"evaluate {MOVE} {GIVEN} --plant-file crane.py"
-    code, _, err = call(line)
-    assert code == 2
-    assert "the plant file defines crane and hoist; name one as PLANT" in err
-    code, out, _ = call(f"{line} hoist")
-    assert code == 0
-    assert "hoist, 0" in out
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        ("", "missing argument PLANT; give one, as single-link, or a file by --plant-file"),
-        ("crane", "unknown plant 'crane'"),
-        ("single-link --plant-file crane.py", "defines crane, not single-link; leave"),
-        ("--plant-file ''", "the name is empty"),
-        ("--plant-file none.py", "plant file none.py cannot be read: no such file"),
-    ],
-)
-def test_a_plant_that_is_not_there_is_told(call, words, told):
-    code, out, err = call(f"evaluate {MOVE} {GIVEN} {words}")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert told in err
-
-
 def test_a_broken_plant_of_a_file_is_told_in_one_line(call, crane_file):
     text = crane_file.read_text().replace("return self.inertia", "return math.sin(joint.angle)")
     crane_file.write_text("import math\n" + text)
@@ -177,12 +112,6 @@ def test_a_broken_plant_of_a_file_is_told_in_one_line(call, crane_file):
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert "'crane': torque fails at line" in err
     assert "of crane.py" in err
-
-
-def test_settings_without_a_plant_are_refused_by_a_study(call):
-    code, _, err = call("study --set omega=3")
-    assert code == 2
-    assert "--set is for a task of your own" in err
 
 
 def test_a_name_is_not_known_before_its_file_is_given():
@@ -199,11 +128,3 @@ def test_speeds_and_accelerations_take_degrees(call):
     assert limits == pytest.approx(
         {"speed": math.pi / 3, "acceleration": math.pi / 2, "jerk": 2 * math.pi}, rel=1e-15
     )
-
-
-@pytest.mark.parametrize("option", ["--speed-limit 60deg/s^2", "--acceleration-limit 1deg/s"])
-def test_a_rate_of_another_kind_is_refused(call, option):
-    code, _, err = call(f"evaluate single-link {MOVE} {GIVEN} {option}")
-    assert code == 2
-    assert option.split()[1] in err
-    assert "60deg" in err

@@ -1,7 +1,6 @@
 """Angles, lengths, times and coefficients as people write them."""
 
 import math
-import re
 
 import pytest
 from hypothesis import given
@@ -11,7 +10,6 @@ from quietarm.studies.cli.quantities import (
     parse_angle,
     parse_coefficients,
     parse_length,
-    parse_number,
     parse_rate,
     parse_time,
     parse_weights,
@@ -70,12 +68,6 @@ def test_rates_as_people_write_them(text, order, rate):
     assert parse_rate(text, order) == pytest.approx(rate, rel=1e-15)
 
 
-@pytest.mark.parametrize(("text", "order"), [("2/s^2", 1), ("2 m/s", 1), ("fast", 2), ("", 1)])
-def test_what_is_no_rate_is_refused_with_the_unit(text, order):
-    with pytest.raises(ValueError, match=rf"'{re.escape(text)}' is not a number in rad/s.*60deg"):
-        parse_rate(text, order)
-
-
 @pytest.mark.parametrize(
     ("text", "metres"),
     [("0.001", 1e-3), ("1mm", 1e-3), ("2 cm", 0.02), ("0.5m", 0.5), ("3um", 3e-6), ("3µm", 3e-6)],
@@ -131,22 +123,6 @@ def test_what_is_no_angle_is_refused_with_examples(text):
     assert "30deg" in str(refused.value)
 
 
-@pytest.mark.parametrize("text", ["", "mm", "1 inch", "1km", "1s", "1deg", "1m m", "one"])
-def test_what_is_no_length_is_refused_with_examples(text):
-    with pytest.raises(ValueError, match="give metres") as refused:
-        parse_length(text)
-    assert str(refused.value).startswith(f"{text!r} is not a length; ")
-    assert "1mm" in str(refused.value)
-
-
-@pytest.mark.parametrize("text", ["", "ms", "1min", "1 h", "1m", "1:30", "soon"])
-def test_what_is_no_time_is_refused_with_examples(text):
-    with pytest.raises(ValueError, match="give seconds") as refused:
-        parse_time(text)
-    assert str(refused.value).startswith(f"{text!r} is not a time; ")
-    assert "800ms" in str(refused.value)
-
-
 @given(st.text())
 @pytest.mark.parametrize("parse", [parse_angle, parse_length, parse_time])
 def test_any_text_is_a_number_or_a_value_error(parse, text):
@@ -173,27 +149,6 @@ def test_coefficients_may_have_spaces():
     assert parse_coefficients("-0.0019, -0.14 ,1e-2") == [-0.0019, -0.14, 0.01]
 
 
-@pytest.mark.parametrize(
-    ("text", "position", "entry"),
-    [
-        ("", 1, ""),
-        ("0.1,", 2, ""),
-        (",0.1", 1, ""),
-        ("0.1,x,0.2", 2, "x"),
-        ("nan", 1, "nan"),
-        ("0.1,0.2,inf", 3, "inf"),
-        ("0.1,-inf", 2, "-inf"),
-        ("1e999", 1, "1e999"),
-        ("0.1 0.2", 1, "0.1 0.2"),
-        ("0.1;0.2", 1, "0.1;0.2"),
-    ],
-)
-def test_a_bad_coefficient_is_named_with_its_place(text, position, entry):
-    with pytest.raises(ValueError, match="give finite numbers separated by commas") as refused:
-        parse_coefficients(text)
-    assert str(refused.value).startswith(f"coefficient {position} is {entry!r}; ")
-
-
 def test_weights_are_a_pair():
     assert parse_weights("1:3") == (1.0, 3.0)
     assert parse_weights(" 0.5 : 2e1") == (0.5, 20.0)
@@ -209,20 +164,3 @@ def test_whole_numbers_as_people_write_them(text, number):
     for read in (parse_whole, literal):
         found = read(text)
         assert (found, type(found)) == (number, int)
-
-
-@pytest.mark.parametrize("text", ["two", "", "2.5", "1e-3", "nan", "inf", "0x10"])
-def test_what_is_no_whole_number_is_refused(text):
-    with pytest.raises(ValueError, match=rf"'{re.escape(text)}' is no whole number; give one, as"):
-        parse_whole(text)
-
-
-def test_a_whole_number_beyond_any_count_is_refused():
-    with pytest.raises(ValueError, match=r"'1e300' is more than any count here; give at most 1e"):
-        parse_whole("1e300")
-
-
-def test_what_is_no_number_is_refused():
-    assert parse_number("-1e3") == -1000.0
-    with pytest.raises(ValueError, match=r"'a lot' is no number; give one, as 0\.2"):
-        parse_number("a lot")

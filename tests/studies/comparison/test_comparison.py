@@ -3,7 +3,6 @@
 import dataclasses
 import math
 from functools import partial
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,15 +12,11 @@ from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
-    UncertainPlant,
     epsilon_front,
     evaluate_coefficients,
 )
 from quietarm.studies.comparison.measures import FILL
 from quietarm.studies.comparison.staircase import evenly_spaced, filled
-from quietarm.studies.comparison.tables import units
-from quietarm.studies.reports.comparison import with_floor
-from rich.console import Console
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
 compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)
@@ -57,15 +52,6 @@ def test_igd_plus_and_epsilon_in_units_of_the_best_fronts_extent(measured, good)
     misses = [math.hypot(0.25, 0.25), math.hypot(0.25, 0.25), 0.5]
     assert worse.igd_plus == pytest.approx(np.mean(misses))
     assert worse.epsilon == pytest.approx(0.5)
-
-
-def test_a_named_reference_front_takes_the_place_of_the_best(good, poor, front_of):
-    reference = front_of([(0, 0.7), (5, 0.2)], "other")
-    comparison = compare([good, poor], reference=reference, reference_name="ref.json")
-    assert comparison.reference == "ref.json"
-    assert comparison.extent == pytest.approx((5e-3, 0.5))
-    # good's stillest misses (0, .7) by 0.1 J of 0.5, its second (5, .2) by 0.3 J.
-    assert comparison.groups[0].runs[0].epsilon == pytest.approx(min(0.3 / 0.5, 3 / 5))
 
 
 def test_a_crowd_of_points_does_not_decide_what_the_others_miss(front_of):
@@ -174,12 +160,6 @@ def test_a_task_in_degrees_is_the_one_in_radians_but_for_rounding(good, front_of
     assert compare([good, front_of([(1, 0.5)], task=degrees)]).task == task
 
 
-@pytest.mark.parametrize("count", [0, 1])
-def test_one_front_is_no_comparison(count, good, poor):
-    with pytest.raises(ValueError, match=f"takes two fronts or more; {count} given"):
-        compare([good, poor][:count])
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -200,36 +180,6 @@ def test_arguments_out_of_range_are_refused_in_a_line(good, poor, arguments, wor
     with pytest.raises(ValueError, match=words) as refused:
         compare([good, poor], **arguments)
     assert "\n" not in str(refused.value)
-
-
-def test_an_empty_front_is_refused_by_name(good, front_of):
-    with pytest.raises(ValueError, match=r"^b.json has no finite point; leave it out"):
-        compare([good, front_of([(math.nan, 1.0)])], ["a.json", "b.json"])
-
-
-def test_a_front_given_twice_is_refused(good):
-    with pytest.raises(ValueError, match=r"b.json is the same front as a.json"):
-        compare([good, good], ["a.json", "b.json"])
-    with pytest.raises(ValueError, match=r"a.json is given twice"):
-        compare([good, good], ["a.json", "a.json"])
-
-
-def test_what_was_measured_cannot_be_changed(measured):
-    comparison, *_ = measured
-    for array in (comparison.coverage, comparison.groups[0].median):
-        with pytest.raises(ValueError, match=r"read-only"):
-            array[0] = 0
-
-
-def test_the_floor_is_kept(good, poor):
-    assert compare([good, poor], floor=0.3).floor == 0.3
-    assert compare([good, poor]).floor is None
-
-
-def test_a_plant_without_a_name_in_the_paper_is_no_obstacle(two_links, front_of):
-    task = PointToPoint(two_links, 1.5, 0.9)
-    fronts = [front_of([(1, 0.5)], task=task), front_of([(2, 0.4)], "vepso", task=task)]
-    assert len(compare(fronts).groups) == 2
 
 
 # Real fronts: what lies between their points
@@ -280,26 +230,3 @@ def test_motions_between_that_break_a_limit_do_not_count(real):
 
 def test_a_front_of_one_point_has_nothing_between(front_of):
     np.testing.assert_array_equal(filled(front_of([(1, 0.5)]), FILL), [[1e-3, 0.5]])
-
-
-@pytest.mark.parametrize("uncertain", [False, True])
-def test_the_floor_is_the_assumed_plants_and_says_so(good, poor, uncertain, monkeypatch):
-    asked = []
-
-    def floor_of(task):
-        asked.append(task)
-        return SimpleNamespace(complete=True, energy=0.3)
-
-    monkeypatch.setattr(quietarm.studies.reports.comparison, "energy_floor", floor_of)
-    comparison, task = compare([good, poor]), good.task
-    if uncertain:
-        uncertain_task = dataclasses.replace(
-            task, plant=UncertainPlant(task.plant, {"frequency": 0.1})
-        )
-        comparison = dataclasses.replace(comparison, task=uncertain_task)
-    comparison = with_floor(comparison, Console())
-    assert asked == [task]
-    said = "at rest on the assumed plant" if uncertain else "at rest"
-    (line,) = [line for line in units(comparison) if line.startswith("Floor")]
-    assert f"over all joint motions that arrive {said}, not of" in line
-    assert comparison.of_floor == said

@@ -1,13 +1,10 @@
 """`quietarm contest`: what it writes and refuses, and how it goes on after a stop."""
 
-import os
 import shutil
-from pathlib import Path
 
 import pytest
 import quietarm.studies.contest.work as work
 from quietarm.metaheuristics.budget.run import search_within
-from quietarm.studies.contest.store import Store
 from small_contest import LINE, METHODS, NAME, found, rows_of
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
@@ -72,17 +69,6 @@ def test_a_contest_goes_on_after_a_stop_to_the_same_runs(call, folder, held, mon
     assert found(folder / "part") == found(held)
 
 
-def test_a_stop_before_the_first_run_says_so(call, folder, monkeypatch):
-    def interrupted(*given, **settings):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(work, "search_within", interrupted)
-    code, out, err = call(f"{LINE} --output part")
-    assert (code, out) == (1, "")
-    assert "interrupted: 0 of 4 pieces of work are done" in err
-    assert list((folder / "part").iterdir()) == [folder / "part/exact"]
-
-
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -100,43 +86,3 @@ def test_bad_input_is_refused_before_any_work(call, folder, line, words, searche
     assert (code, out, err.count("\n"), searches) == (2, "", 1, [])
     assert words in err
     assert list(folder.iterdir()) == []
-
-
-@pytest.mark.parametrize(
-    "place",
-    ["runs", f"runs/{NAME}", f"runs/{NAME}/vepso", "exact", "tables", "figures", "contest.html"],
-)
-@pytest.mark.parametrize("make", [os.mkfifo, Path.touch, lambda path: path.symlink_to("nowhere")])
-def test_what_is_in_the_way_of_a_file_is_found_before_any_work(call, folder, searches, place, make):
-    where = folder / "new" / place
-    where.parent.mkdir(parents=True)
-    make(where)
-    if place == "contest.html" and make is not os.mkfifo:  # it may be replaced
-        return
-    code, out, err = call(f"{LINE} --output new")
-    assert (code, out, err.count("\n"), searches) == (2, "", 1, [])
-    assert f"new/{place} is " in err
-    assert "give" in err
-
-
-@pytest.mark.parametrize("content", ["", "{", "[]", '{"format": "quietarm-front", "version": 3}'])
-def test_a_broken_run_is_named_with_the_remedy(call, copy, content):
-    path = copy / f"runs/{NAME}/vepso/seed1.json"
-    path.write_text(content)
-    code, out, err = call(f"{LINE} --output {copy}")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert str(path) in err
-    assert "remove it to have it made again" in err
-
-
-def test_a_run_in_another_ones_place_is_refused(call, copy):
-    shutil.copy(copy / f"runs/{NAME}/vepso/seed1.json", copy / f"runs/{NAME}/vepso/seed7.json")
-    code, _, err = call(f"{LINE} --output {copy}")
-    assert code == 2
-    assert "seed7.json holds what belongs to" in err
-
-
-def test_a_run_loads_to_what_was_saved(held, tmp_path):
-    runs = Store(held).runs
-    Store(tmp_path).keep(next(iter(runs.values())))
-    assert Store(tmp_path).runs == dict([next(iter(runs.items()))])

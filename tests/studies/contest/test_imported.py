@@ -9,7 +9,6 @@ from html import unescape
 import numpy as np
 import pytest
 from quietarm.studies.contest.measures import arenas_of
-from quietarm.studies.contest.report import files
 from quietarm.studies.contest.report.citations import bibtex
 from quietarm.studies.contest.report.paragraph import methods_paragraph
 from quietarm.studies.contest.statistics import pairs_on
@@ -64,18 +63,6 @@ def test_files_of_a_folder_are_runs_whose_ends_are_measured_alike(call, copy, re
         assert {row["seconds"], row["evaluations_to_0.01"]} == {""}
     assert len(rows) == 2
     assert {row["method"] for row in rows_of(copy, "anytime")} == {"nsga2", "vepso"}
-
-
-def test_the_page_says_that_only_the_ends_are_known(call, copy, results, monkeypatch):
-    monkeypatch.undo()
-    monkeypatch.chdir(copy.parent)
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
-    assert call(f"{LINE} --import 'my swarm=results' --output held")[0] == 0
-    text = (copy / "contest.html").read_text()
-    assert "Of my swarm only the end is known, so that there are no curves." in text
-    assert f"my swarm on {NAME} (2 runs, evaluations not known)" in text
-    assert "evaluations are not known, those of the others 130" in text
-    assert "% my swarm: results from elsewhere" in (copy / "references.bib").read_text()
 
 
 @pytest.mark.parametrize(
@@ -176,13 +163,3 @@ def test_files_that_do_not_fit_are_refused_before_any_work(call, folder, results
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert words in err
     assert not (folder / "new").exists()
-
-
-def test_another_file_of_a_known_name_is_refused(call, copy, results):
-    line = f"{LINE} --import=results --output held"
-    assert call(line)[0] == 0
-    save(results / "run1.csv", X[2::6])
-    code, out, err = call(line)
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "held has another run of results from a file run1.csv; rename one of them" in err
-    assert f"remove the folder's imports/{NAME}/results/run1.csv.json" in err

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from quietarm.ocp import evaluate_coefficients, plan_move
 from quietarm.studies.contest import landscape
 from quietarm.studies.contest.landscape import LEVEL, _correlation, _different, landscape_of
-from small_contest import NAME, TINY, documents
+from small_contest import TINY
 
 
 @pytest.fixture(scope="module")
@@ -44,20 +43,3 @@ def test_minima_and_their_correlation_by_hand():
     steps = np.column_stack([energies - 1, np.zeros(4)])
     assert _correlation(energies, steps) == pytest.approx(1.0)
     assert _correlation(np.array([1.0, 2.0, 3.0]), np.array([[0], [2], [1]])) == pytest.approx(0.5)
-
-
-def test_explain_adds_the_landscape_once(call, copy, monkeypatch):
-    from quietarm.studies.contest.report import files, page
-    from small_contest import LINE
-
-    monkeypatch.setattr(landscape, "STARTS", 3)
-    monkeypatch.setattr(landscape, "BOXES", (2.0,))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
-    for name in ("anytime_figure", "attainment_figure"):
-        monkeypatch.setattr(page, name, lambda *given: Figure())
-    assert call(f"{LINE} --explain --output {copy}")[0] == 0
-    written = (copy / f"landscape/{NAME}.json").read_bytes()
-    assert "Of 3 random starts in the box" in (copy / "contest.html").read_text()
-    assert call(f"{LINE} --explain --output {copy}")[0] == 0
-    assert (copy / f"landscape/{NAME}.json").read_bytes() == written
-    assert len(documents(copy)) == 4

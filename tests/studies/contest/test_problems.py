@@ -26,13 +26,6 @@ def test_the_yardstick_is_the_front_that_comes_with_the_problem(held):
     assert found == Yardstick.of(PROBLEMS[NAME])
 
 
-def test_a_third_objective_is_refused(call, folder):
-    code, out, err = call(f"contest {NAME} {THIRD} --output new")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert f"{THIRD} has a third objective, and a contest compares residual and energy" in err
-    assert list(folder.iterdir()) == []
-
-
 def test_a_method_without_limits_is_left_out_where_there_are_some(call, folder):
     line = LINE.replace("vepso", "moead").replace("--runs 2", "--runs 1")
     code, out, err = call(f"{line.replace(NAME, f'{NAME} {LIMITS}')} --output held")
@@ -45,11 +38,3 @@ def test_a_method_without_limits_is_left_out_where_there_are_some(call, folder):
     assert [(row["problem"], row["method"]) for row in rows_of(folder / "held", "runs")] == [
         (NAME, "moead"), (NAME, "nsga2"), (LIMITS, "nsga2"),
     ]  # fmt: skip
-
-
-def test_where_no_method_can_search_it_is_refused(call, folder):
-    code, out, err = call(f"contest {LIMITS} --methods moead --output new")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert f"moead cannot search {LIMITS}, which has limits" in err
-    assert "give another method or problem" in err
-    assert list(folder.iterdir()) == []

@@ -7,13 +7,10 @@ from html import unescape
 
 import pytest
 from quietarm.studies.contest.measures import Arena, Field, arenas_of
-from quietarm.studies.contest.report import page
-from quietarm.studies.contest.report.figures import draw_ranks, ranks_figure
 from quietarm.studies.contest.report.files import report_files
 from quietarm.studies.contest.report.page import contest_document
 from quietarm.studies.contest.statistics import ranking_over
 from quietarm.studies.contest.store import Store
-from quietarm.studies.report.document import Section
 from quietarm.studies.report.page import page as page_of
 from small_contest import NAME, rows_of
 
@@ -31,7 +28,6 @@ CRITICAL = 2.343 * math.sqrt(3 * 4 / (6 * 5))
 """Nemenyi's, with Demsar's quantile for three (Journal of Machine Learning Research 7 (2006))."""
 APART = 3 * 2 / math.comb(10, 5)
 """Mann and Whitney's p of five that are all below five, by Holm for the first of three pairs."""
-RANKED = ["NSGA-II (1.00)", "GDE3 (2.00)", "VEPSO (3.00)"]
 
 
 @pytest.fixture(scope="module")
@@ -110,17 +106,6 @@ def test_pictures_are_those_of_every_problem_and_of_all(arenas, folder):
     assert {"ranks-all-problems.png", "ranks-all-problems.pdf"} < names
 
 
-def test_the_picture_joins_what_is_not_told_apart(arenas):
-    found = ranking_over(arenas)
-    ax = draw_ranks(found)
-    said = [text.get_text().strip() for text in ax.texts]
-    assert said == [*RANKED, f"critical difference {CRITICAL:.2f}"]
-    bars = [line.get_xdata() for line in ax.lines if line.get_linewidth() > 3]
-    # ranks one apart are within the critical difference, those two apart are not
-    assert [[round(float(x)) for x in bar] for bar in bars] == [[1, 2], [2, 3]]
-    assert ranks_figure(found, "all problems").get_suptitle() == "all problems"
-
-
 def test_the_page_says_it_for_a_problem(arena, quick_pictures):
     text = unescape(page_of(contest_document([arena])))
     assert "Over 5 seeds. Friedman's test" in text
@@ -133,10 +118,3 @@ def test_the_page_says_it_for_a_problem(arena, quick_pictures):
     assert "Differences are tested at 5 %: by Friedman" in text
     for author in ("Friedman, Milton", "Mann, Henry B.", "Holm, Sture", "Vargha"):
         assert author in text
-
-
-def test_the_page_says_it_for_all_problems(arenas, monkeypatch, quick_pictures):
-    monkeypatch.setattr(page, "_section", lambda arena, methods: Section(arena.problem, []))
-    text = unescape(page_of(contest_document(arenas)))
-    assert "Over 5 problems, by medians. Friedman" in text
-    assert text.count("<img") == text.count('src="data:image') == 1

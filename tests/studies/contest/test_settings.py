@@ -7,7 +7,6 @@ import quietarm.studies.contest.work as work
 from quietarm.metaheuristics.budget.run import search_within
 from quietarm.metaheuristics.problems.catalogue import problem_of
 from quietarm.studies.contest.asked import Contest
-from quietarm.studies.contest.names import label_of, name_of
 from small_contest import LINE, METHODS, NAME, OTHER, documents
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
@@ -36,16 +35,6 @@ def test_one_seed_is_run_on_all_problems_before_the_next():
         for problem in (NAME, OTHER)
         for method in METHODS
     ]
-
-
-def test_names_and_labels():
-    assert name_of("gde3", {"jitter": 1e-4, "variant": "DE/best/1/bin"}) == (
-        "gde3(jitter=0.0001, variant=DE/best/1/bin)"
-    )
-    assert name_of("omni", {"objective_crowding": False}) == "omni(objective_crowding=false)"
-    assert label_of(SET) == "NSGA-II (crossover=0.5, population=16)"
-    assert label_of("nsga2+polish(crossover=0.5)") == "NSGA-II, then polished (crossover=0.5)"
-    assert label_of("my tool (v2)") == "my tool (v2)"
 
 
 def test_it_takes_part_beside_the_same_method_without(call, copy):

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from quietarm.studies.contest import statistics
 from quietarm.studies.contest.statistics import (
     LEAST_RUNS,
     holm,
@@ -107,10 +106,3 @@ def test_with_fewer_than_five_runs_statistics_are_left_out_and_it_is_said():
     assert ranking_on(Arena(a=few, b=enough, c=enough)) is None
     assert ranking_on(Arena(a=enough, b=enough, c=enough)) is not None
     assert "one method alone" in why_none([Arena(a=enough)])
-
-
-def test_without_scipy_a_line_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(statistics, "find_spec", lambda name: None)
-    assert why_none([Arena(a=[1] * 5, b=[2] * 5)]) == (
-        "statistics need scipy: pip install 'quietarm[contest]'; they are left out"
-    )

@@ -1,7 +1,5 @@
 """The tables and the picture of a comparison."""
 
-import csv
-import dataclasses
 from functools import partial
 
 import numpy as np
@@ -9,18 +7,12 @@ import pytest
 import quietarm.studies.comparison.measures
 import quietarm.studies.reading.saved
 import quietarm.studies.reports.comparison
-from matplotlib.colors import to_rgba
-from matplotlib.figure import Figure
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import PointToPoint
-from quietarm.studies.comparison.tables import runs_table, tables
-from quietarm.studies.display.words import title_of
+from quietarm.studies.comparison.tables import tables
 from quietarm.studies.figures.comparison import (
     BANDS,
-    PANELS,
     comparison_figure,
-    looks,
-    panel_figure,
 )
 from quietarm.studies.paper.points import paper_points
 from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
@@ -62,16 +54,6 @@ def test_tables_show_the_figures_of_the_comparison(comparison):
     assert energies["above the best at 1 mm [%]"] == ["0.00", "20.00"]
 
 
-def test_a_run_a_row_with_every_digit(comparison):
-    rows = list(csv.DictReader(runs_table(comparison).csv().splitlines()))
-    assert [row["seed"] for row in rows] == ["", "0", "1", "2"]
-    for row, run in zip(rows, comparison.runs, strict=True):
-        assert float(row["igd_plus"]) == run.igd_plus
-        assert float(row["gap_at_1mm"]) == run.gaps[1]
-        assert row["complete"] == "yes"
-    assert rows[1]["energy_J_at_0.1mm"] == ""
-
-
 # Pictures
 
 
@@ -94,13 +76,6 @@ def test_the_picture_holds_the_fronts_as_staircases(comparison):
     assert (heights.min(), heights.max()) == (0.75, 0.97)
     assert still.get_xscale() == gaps.get_xscale() == "log"
     assert picture.axes[3].get_legend().get_title().get_text() == BANDS
-
-
-def test_of_two_seeds_the_picture_shows_what_the_better_reaches_and_says_so(good, seeds):
-    two = compare([good, *seeds[:2]])
-    np.testing.assert_allclose(drawn(comparison_figure(two).axes[0], "NSGA-II")[0], [1, 0.95])
-    assert cells(tables(two)["energies"])["energy at 1 mm [J]"][1] == "0.96"  # the middle
-    assert "of two, the better one" in BANDS
 
 
 def test_points_are_held_against_the_best_within_their_residual(comparison):
@@ -140,31 +115,6 @@ def test_where_the_paper_prints_no_coefficients_its_energy_is_known(task):
     assert condition_of(task).label == "0 to pi/6, 0.8 s"
 
 
-def test_a_task_is_named_with_its_limits(task):
-    assert title_of(task) == "single-link, 0 to 30 deg in 0.8 s"
-    limited = dataclasses.replace(task, torque_limit=0.2, duration=1.5)
-    assert title_of(limited) == "single-link, 0 to 30 deg in 1.5 s, torque within 0.2 N m"
-
-
-def test_every_group_has_a_look_of_its_own(front_of):
-    methods = ["epsilon", "nsga2", "vepso", "weighted", "nsga2, polished", "other", "another"]
-    fronts = [front_of([(1, 0.5)], method) for method in methods]
-    fronts += [front_of([(2, 0.5)], "nsga2", bound=bound) for bound in (0.3, 0.4, 0.5)]
-    found = list(looks(compare(fronts)).values())
-    assert len({(look.colour, look.dash) for look in found}) == 10  # in the panels of lines
-    assert len({(look.colour, look.mark) for look in found}) == 10  # and in that of points
-    of_eight = looks(compare(fronts[:8])).values()
-    assert len({to_rgba(look.colour) for look in of_eight}) == 8
-
-
-@pytest.mark.parametrize("panel", PANELS)
-def test_a_panel_stands_alone_with_its_legend(comparison, panel):
-    figure = panel_figure(comparison, panel)
-    assert len(figure.axes) == 1
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels[:2] == ["epsilon constraint", "NSGA-II"]
-
-
 def heights_within(axis):
     """The heights of what a panel shows, where it shows it."""
     (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
@@ -174,40 +124,9 @@ def heights_within(axis):
     return table[inside & (low <= table[:, 1]) & (table[:, 1] <= high), 1]
 
 
-def test_a_panel_that_there_is_not_is_refused(comparison):
-    with pytest.raises(ValueError, match=r"unknown panel 'x' \(known: whole"):
-        panel_figure(comparison, "x")
-
-
 def test_the_still_end_is_shown_where_a_search_is_cheap_because_it_rings(good, front_of):
     """A tight limit: the search begins at 6 mm, with less than half the still motion's energy."""
     whole, still, _ = comparison_figure(compare([good, front_of([(6, 0.3), (9, 0.2)])])).axes[:3]
     for axis in (whole, still):
         assert axis.get_ylim()[1] > 0.8  # of `good` at rest
         assert 0.5 in heights_within(axis)  # of `good` at 4 mm
-
-
-def test_the_still_end_is_where_the_stillest_are(front_of):
-    """Nothing arrives within 5 mm, the largest of the residuals that energies are compared at."""
-    fronts = [front_of([(16, 0.5), (40, 0.2)], "epsilon"), front_of([(20, 0.4)])]
-    _, still, gaps, _ = comparison_figure(compare(fronts)).axes
-    assert {0.5, 0.4} <= set(heights_within(still))
-    assert still.get_xlim()[0] == gaps.get_xlim()[0] == pytest.approx(0.9 * 16)
-    still.figure.draw_without_rendering()
-    labels = [label for label in still.get_xticklabels() if label.get_text()]
-    low, high = still.get_xlim()
-    assert sum(low <= label.get_position()[0] <= high for label in labels) >= 1
-
-
-@pytest.mark.parametrize("draw", PANELS.values())
-def test_a_panel_is_drawn_on_the_axes_that_are_given_or_on_new_ones(comparison, draw):
-    given = Figure().subplots()
-    assert draw(comparison, ax=given) is given
-    assert given.get_lines()
-    assert draw(comparison).figure is not given.figure
-
-
-def test_a_single_point_is_drawn_as_well(front_of):
-    fronts = [front_of([(0, 0.5)]), front_of([(0, 0.6)], "vepso")]
-    figure = comparison_figure(compare(fronts))
-    figure.draw_without_rendering()

@@ -4,10 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from quietarm.ocp import Generation
-from quietarm.studies.display.pictures import save_figure
-from quietarm.studies.figures import draw_fronts, draw_hypervolume, draw_seed_energies, front_figure
+from quietarm.studies.figures import front_figure
 
 
 def history(*shares):
@@ -85,14 +83,6 @@ def test_where_no_seed_is_still_it_says_so(front_of):
     assert [line.get_marker() for line in panel.lines] == ["x", "x"]
 
 
-def test_one_seed_has_no_spread(fronts):
-    figure = front_figure(fronts[:1], "title")
-    front, volume = figure.axes
-    assert front.get_legend() is None
-    assert volume.get_title() == "hypervolume: 0.5000"
-    assert figure.get_suptitle() == "title"
-
-
 def test_interrupted_searches_are_drawn_but_counted_in_no_quartile(front_of, fronts):
     partial = front_of(
         [(0.1, 0.9)], "vepso", seed=9, history=history(0.1), complete=False
@@ -133,47 +123,3 @@ def test_labels_of_the_residual_stay_apart(front_of, residuals, scale):
     assert len(boxes) >= 2
     boxes.sort(key=lambda box: box.x0)
     assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
-
-
-def test_an_empty_front_is_drawn_as_one(front_of, tmp_path):
-    figure = front_figure([front_of([])])
-    assert [text.get_text() for text in figure.axes[0].texts] == ["no point"]
-    save_figure(figure, tmp_path / "front.png")
-
-
-def test_one_generation_is_a_mark_and_not_an_empty_panel(front_of):
-    one = front_of([(1, 0.2)], history=history(0.5))
-    (median,) = draw_hypervolume([one]).lines
-    assert (list(median.get_xdata()), list(median.get_ydata())) == ([10], [0.5])
-    assert median.get_marker() not in {"", "None", None}
-    three = [front_of([(1, 0.2)], seed=s, history=history(h)) for s, h in enumerate((0.5, 0.6, 1))]
-    panel = draw_hypervolume(three)
-    assert panel.lines[0].get_marker() not in {"", "None", None}
-    assert panel.collections  # the quartiles
-
-
-def test_a_search_without_a_generation_says_so(front_of):
-    panel = draw_hypervolume([front_of([(1, 0.2)])])
-    assert [text.get_text() for text in panel.texts] == ["no generation"]
-
-
-def test_the_box_of_the_hypervolume_is_stated(front_of):
-    panel = draw_hypervolume([front_of([(1, 0.2)], history=history(0.5), reference=(0.077, 0.5))])
-    assert panel.get_ylabel() == "share of the box up to 77 mm and 0.5 J"
-
-
-@pytest.mark.parametrize("draw", [draw_fronts, draw_hypervolume, draw_seed_energies])
-def test_a_panel_is_drawn_on_the_axes_that_are_given_or_on_new_ones(fronts, draw):
-    given = Figure().subplots()
-    assert draw(fronts, given) is given
-    assert given.lines
-    assert draw(fronts).figure is not given.figure
-
-
-def test_fronts_of_several_methods_are_named_by_them(fronts, good):
-    labels = [line.get_label() for line in draw_fronts([*fronts[:2], good]).lines]
-    assert labels == ["VEPSO, seed 5", "VEPSO, seed 6", "epsilon constraint"]
-
-
-def test_the_title_is_method_and_task_where_none_is_given(fronts):
-    assert front_figure(fronts).get_suptitle() == "VEPSO: single-link, 0 to 30 deg in 0.8 s"

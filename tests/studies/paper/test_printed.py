@@ -108,12 +108,3 @@ def test_conditions_are_tasks_without_limits():
     for condition in {row.condition for row in ROWS}:
         assert condition.task.limits == {}
         assert condition.task.residual_window == 1.0  # eqs (11) and (16): TE <= t <= TE + 1 s
-
-
-def test_labels_say_the_condition():
-    names = {
-        0.0: "0", PI / 6: "pi/6", PI / 4: "pi/4", PI / 2: "pi/2", -PI / 2: "-pi/2"
-    }  # fmt: skip
-    for condition in {row.condition for row in ROWS}:
-        start, target = names[condition.task.start], names[condition.task.target]
-        assert condition.label == f"{start} to {target}, {condition.task.duration} s"

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import math
 
 import pytest
 from hypothesis import given
@@ -53,21 +52,6 @@ def test_screen_fits_a_narrow_terminal_without_cutting_a_figure():
     assert "0.06297" in text
 
 
-def test_a_narrow_terminal_keeps_a_number_and_its_unit_on_one_line():
-    names = [["one"], ["other"], ["third"]]
-    rows = [[*name, 9.211, "5 of 31", 35.25] for name in names]
-    percent = "{:.3g} %".format
-    columns = [Column("method"), Column("hypervolume missing", percent),
-               Column("runs with at most 1 % missing"), Column("energy", percent)]  # fmt: skip
-    console = Console(width=50, file=io.StringIO())
-    show_table(console, Table("What they ended with", columns, rows))
-    lines = console.file.getvalue().splitlines()
-    assert max(map(len, lines)) <= 50
-    assert sum(line.count("9.21 %") for line in lines) == 3
-    assert sum(line.count("5 of 31") for line in lines) == 3
-    assert sum(line.count("35.2 %") for line in lines) == 3
-
-
 def test_csv_has_a_row_a_line_and_every_digit():
     rows = list(csv.reader(io.StringIO(TABLE.csv())))
     assert rows == [
@@ -84,25 +68,6 @@ def test_csv_numbers_come_back_exactly(numbers):
     assert [float(cell) for cell in row] == numbers
 
 
-@pytest.mark.parametrize(
-    ("cell", "text"),
-    [(None, "-"), (3, "3"), ("N = 6", "N = 6"), (math.pi, "3.142"), (1e-9, "1e-09"), (0.0, "0")],
-)
-def test_cells_for_people(cell, text):
-    assert Column("x").text(cell) == text
-
-
-def test_a_column_may_write_its_numbers_its_own_way_and_leaves_counts_alone():
-    column = Column("time [s]", "{:.1f}".format)
-    assert (column.text(2.0), column.text(2)) == ("2.0", "2")
-
-
-def test_csv_may_have_shorter_names():
-    table = Table("t", [Column("move", key="move"), Column("F2 [J]", key="energy_J")], [["a", 1.0]])
-    assert table.csv() == "move,energy_J\na,1.0\n"
-    assert "| F2 [J] | 1 |" in table_in_markdown(table)
-
-
 def test_a_quantity_that_no_row_has_is_left_out_for_people_and_kept_in_csv():
     table = Table("t", [Column("move"), Column("F2 [J]"), Column("x")], [["a", None, 1], ["b"] * 3])
     assert "F2 [J]" in table_in_markdown(table)
@@ -110,16 +75,6 @@ def test_a_quantity_that_no_row_has_is_left_out_for_people_and_kept_in_csv():
     assert "F2 [J]" not in table_in_markdown(table)
     assert "F2 [J]" not in on_screen(table)
     assert table.csv() == "move,F2 [J],x\na,,1\nb,,2\n"
-
-
-def test_a_unit_in_brackets_is_no_markup():
-    table = Table("t", [Column("move"), Column("power [bold]")], [["a [red]", 2]])
-    assert "power [bold]" in on_screen(table)
-    assert "a [red]" in on_screen(table)
-
-
-def test_a_table_without_rows_still_names_its_columns():
-    assert Table("none", TABLE.columns, []).csv() == "move,terms N,F2 [J],time [s]\n"
 
 
 @pytest.mark.parametrize("width", [60, 80, 200])

@@ -3,15 +3,10 @@
 import csv
 import dataclasses
 import io
-import re
 
-import numpy as np
 import pytest
-from quietarm.studies.display.words import move_of
-from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
+from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS
 from quietarm.studies.report.markdown import table_in_markdown
-from quietarm.studies.report.terminal import show
-from quietarm.studies.reproduction.claims import claims
 from quietarm.studies.reproduction.floor_dots import floor_dots
 from quietarm.studies.reproduction.floor_table import (
     FREE,
@@ -19,12 +14,9 @@ from quietarm.studies.reproduction.floor_table import (
     PAPER,
     finding,
     floor_table,
-    floor_tables,
     multiples,
 )
 from quietarm.studies.reproduction.pieces import SEARCHES
-from quietarm.studies.reproduction.report import reproduction_document
-from rich.console import Console
 
 TERMS = (2, 4, 6, 8, 10)
 
@@ -95,19 +87,6 @@ def test_the_table_has_a_row_a_condition_and_csv_all_of_it(reproduction):
         assert bool(row["paper_2_terms_over_floor"]) == ((PAPER, 2) in found)
 
 
-def test_a_table_a_plant_for_the_screen(reproduction):
-    single, arm = floor_tables(reproduction)
-    assert [row[1] for row in single.rows] == [c.label for c in CONDITIONS[:3]]
-    assert [row[1] for row in arm.rows] == [c.label for c in CONDITIONS[3:]]
-    console = Console(file=io.StringIO(), width=80)
-    show(console, reproduction_document(reproduction, claims(reproduction)))
-    text = console.file.getvalue()
-    for condition in CONDITIONS:
-        for m in multiples(reproduction, condition):
-            assert re.search(rf"\s{m.median:.3f}\s".replace(".", r"\."), text)
-    assert " ".join(finding(reproduction).split()) in " ".join(text.split())
-
-
 def test_the_finding_follows_from_the_multiples(reproduction):
     paper = [
         row.energy / reproduction.floors[row.condition].energy for row in ROWS
@@ -150,19 +129,3 @@ def test_the_dots_stand_where_the_multiples_are(reproduction):
     low, high = axis.get_xlim()
     assert low < min(dots)
     assert max(dots) < high
-
-
-def test_conditions_stand_beside_their_dots(reproduction):
-    axis = floor_dots(reproduction).axes[0]
-    labels = [label.get_text() for label in axis.get_yticklabels()]
-    for label, condition in zip(labels, CONDITIONS, strict=True):
-        assert move_of(condition.task) in label
-        assert f"floor {reproduction.floors[condition].energy:.4g} J" in label
-    heights = np.array(axis.get_yticks())
-    found = multiples(reproduction, SINGLE_LINK_SIXTH)
-    of_first = [
-        line.get_ydata()[0]
-        for line in axis.get_lines()
-        if line.get_marker() == "o" and abs(line.get_ydata()[0] - heights[0]) < 3
-    ]
-    assert len(of_first) == len(found)

@@ -3,25 +3,14 @@
 import re
 from dataclasses import replace
 
-import numpy as np
 import pytest
-import quietarm.studies.study.findings as findings_module
 from quietarm.studies.comparison.measures import compare_fronts
-from quietarm.studies.study.findings import case_findings, findings, percent, percents
+from quietarm.studies.study.findings import case_findings, findings
 from quietarm.studies.study.page import method_lines
 from quietarm.studies.study.pieces import StudySettings
 from small_study import FLOOR, QUICK
 
 # What it says
-
-
-def test_shares_in_words():
-    assert percent(0.1234) == "12 %"
-    assert percent(0.0012) == "0.12 %"
-    assert percent(1.199) == "120 %"
-    assert percent(1e-6) == "less than 0.01 %"
-    assert percents([0.001, 0.02]) == "0.1 to 2 %"
-    assert percents([0.02, 0.02]) == "2 %"
 
 
 def test_findings_are_those_of_the_fronts(small):
@@ -48,16 +37,6 @@ def test_the_summary_speaks_of_every_method(small):
                  "NSGA-II never comes within 1 mm.", "VEPSO takes", "Polished by the gradient",
                  "times the floor", "Median time of a front: epsilon constraint"):  # fmt: skip
         assert part in words
-
-
-@pytest.mark.parametrize(("share", "words"), [(np.nan, "never so still"), (0.5, "50 %")])
-def test_the_summary_says_what_the_points_reach_without_motions_between(
-    small, monkeypatch, share, words
-):
-    shares = {"gaps": share, "gaps_between": 0.25}
-    monkeypatch.setattr(findings_module, "gap", lambda *given, name="gaps_between": shares[name])
-    said = " ".join(findings(small))
-    assert re.search(rf"NSGA-II takes 25 % more energy .*?; {words} with the points of its", said)
 
 
 def test_the_findings_name_the_holes_of_the_weighted_sum(small):

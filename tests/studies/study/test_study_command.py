@@ -98,20 +98,3 @@ def test_bad_input_is_refused_in_a_line_before_any_work(call, folder, monkeypatc
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert words in err
     assert list(folder.iterdir()) == []
-
-
-def test_a_folder_for_the_fronts_that_cannot_be_made_is_refused_first(call, folder, no_place):
-    code, out, err = call(f"{MOVE} --fronts fronts")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "fronts cannot be written: no such file or directory; choose another place" in err
-    assert list(folder.iterdir()) == []
-
-
-def test_an_interrupt_leaves_no_file(call, folder, monkeypatch):
-    def interrupted(*given):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(study_module, "run_study", interrupted)
-    code, _, err = call(f"{MOVE} --quiet")
-    assert (code, err.strip()) == (1, "quietarm: interrupted; what was written until then is kept")
-    assert list(folder.iterdir()) == []

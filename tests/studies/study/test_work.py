@@ -1,28 +1,23 @@
 """The headline study: every method runs, what fails is left out, Ctrl-C keeps what was found."""
 
-import signal
 from dataclasses import replace
 
 import pytest
 import quietarm.metaheuristics.ensemble as ensemble
 import quietarm.studies.study.pieces as study_pieces
-import quietarm.studies.study.work as study_module
 from quietarm.metaheuristics import search
-from quietarm.metaheuristics.sharing.pieces import INTERRUPTED, Done
 from quietarm.ocp import (
     CycloidPolynomial,
     InfeasibleTaskError,
     PointToPoint,
-    QuietarmError,
     SolverFailedError,
 )
 from quietarm.studies.comparison.measures import compare_fronts
 from quietarm.studies.paper.case import Case
-from quietarm.studies.paper.printed import CONDITIONS
 from quietarm.studies.report.page import page as page_of
 from quietarm.studies.study.findings import case_findings
 from quietarm.studies.study.page import study_document
-from quietarm.studies.study.pieces import FLOOR, Key, StudySettings
+from quietarm.studies.study.pieces import StudySettings
 from quietarm.studies.study.work import Study, amount_of_work, run_study
 from small_study import CASES, METHODS, QUICK
 from small_study import FLOOR as FLOOR_FOUND
@@ -54,11 +49,6 @@ def test_polish_never_makes_worse_what_it_starts_from(small):
             gained = polished.runs[0].hypervolume_found - first.hypervolume_found
             assert gained > -1e-5  # the two integrators differ by that much
             assert len(found.polishes[method].gains) == len(first.front.points)
-
-
-def test_the_papers_six_conditions_are_the_default():
-    assert len(CONDITIONS) == 6
-    assert {case.bound for case in CONDITIONS} == {0.2, 0.5}  # eqs (12) and (17)
 
 
 def test_a_plant_of_ones_own_needs_a_bound(two_links):
@@ -123,45 +113,6 @@ def test_the_gradient_is_not_asked_twice_for_an_infeasible_task(let_sweep, known
     )
 
 
-def test_without_a_front_to_start_from_there_is_no_polish(monkeypatch, known):
-    def fail(method):
-        raise SolverFailedError("it would not")
-
-    searches_that_find(monkeypatch, fail)
-    begun = []
-    (case,) = run_study(CASES[:1], QUICK, begun.append).cases
-    assert case.failures == (
-        "nsga2 (2 of 2 seeds): it would not",
-        "nsga2, polished: not tried, as nsga2 found no front to start from",
-        "vepso (2 of 2 seeds): it would not",
-        "vepso, polished: not tried, as vepso found no front to start from",
-    )
-    assert case.polishes == {}
-    assert len(begun) == amount_of_work(CASES[:1], QUICK)
-
-
-def test_the_first_front_that_has_points_is_polished(monkeypatch, known):
-    fronts = {front.method: front for front in known}
-
-    def first_empty(method):
-        return [replace(fronts[method], points=()), fronts[method]]
-
-    def polish(front):
-        polished.append(front)
-        return at_once(front)
-
-    searches_that_find(monkeypatch, first_empty)
-    at_once, polished = study_pieces.polish_front, []
-    monkeypatch.setattr(study_pieces, "polish_front", polish)
-    (case,) = run_study(CASES[:1], QUICK).cases
-    assert case.failures == (
-        "nsga2 (1 of 2 seeds): found no point",
-        "vepso (1 of 2 seeds): found no point",
-    )
-    assert polished == [fronts["nsga2"], fronts["vepso"]]
-    assert case.polishes.keys() == {"nsga2", "vepso"}
-
-
 @pytest.mark.usefixtures("no_pictures")
 def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(monkeypatch, known):
     cut = replace(known[2], complete=False)
@@ -183,18 +134,6 @@ def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(
     assert "not done before the interruption" in study_page(found)
 
 
-def test_ctrl_c_while_the_last_task_is_put_together_loses_nothing(monkeypatch, known):
-    compared = study_module.compare_fronts
-
-    def interrupted(*given, **settings):
-        signal.raise_signal(signal.SIGINT)
-        return compared(*given, **settings)
-
-    monkeypatch.setattr(study_module, "compare_fronts", interrupted)
-    (case,) = run_study(CASES[:1], QUICK).cases
-    assert len(case.comparison.runs) == len(known)
-
-
 def test_a_study_of_which_one_front_was_found_is_a_page(small):
     (case, _) = small.cases
     alone = compare_fronts([case.comparison.runs[0].front], least=1)
@@ -209,18 +148,6 @@ def test_a_study_that_found_nothing_before_ctrl_c_is_none(let_sweep):
     let_sweep("epsilon", stopped)
     with pytest.raises(KeyboardInterrupt):
         run_study(CASES[:1], QUICK)
-
-
-@pytest.mark.parametrize(
-    ("stopped", "error"), [(INTERRUPTED, "interrupted"), ("", "no two fronts")]
-)
-def test_a_floor_is_told_where_no_front_was_found(monkeypatch, stopped, error):
-    # as where workers share the work, and the floor is done first
-    case, found = CASES[0], FLOOR_FOUND
-    done = Done({Key(case, FLOOR): found}, stopped=stopped)
-    monkeypatch.setattr(study_module, "run_pieces", lambda *given, **settings: done)
-    with pytest.raises(QuietarmError, match=f"{error}.*; .*floor of .*: {found.energy:.6g} J"):
-        run_study([case], QUICK)
 
 
 def test_epsilon_has_a_point_at_every_residual_that_energies_are_compared_at(small):

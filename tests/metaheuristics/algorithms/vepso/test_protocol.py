@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from pymoo.core.evaluator import Evaluator
 from pymoo.core.population import Population
-from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
 from quietarm.metaheuristics.algorithms.velocity import (
@@ -57,24 +56,12 @@ def test_of_the_constants_only_the_constriction_may_not_be_zero():
         VelocityRule(1.0, 1.0, 0.0, 2.0, 2.0)
 
 
-def test_misspelt_option_is_not_ignored():
-    with pytest.raises(TypeError, match="VEPSO has no option particels"):
-        VEPSO(particels=10)
-
-
 def test_presets_are_the_published_constants():
     assert dataclasses.astuple(INERTIA_2002) == (1.0, 0.4, 1.0, 0.5, 0.5)
     assert dataclasses.astuple(CONSTRICTION) == (1.0, 1.0, 0.729, 2.05, 2.05)
     assert dataclasses.astuple(PAPER_GROUP) == (1.0, 1.0, 0.73, 2.05, 2.05)
     with pytest.raises(dataclasses.FrozenInstanceError):
         CONSTRICTION.social = 1.0
-
-
-def test_problem_without_bounds_is_refused():
-    with pytest.raises(ValueError, match="no finite bounds; give its xl and xu"):
-        VEPSO().setup(Problem(n_var=2, n_obj=2))
-    with pytest.raises(ValueError, match="no finite bounds"):
-        VEPSO().setup(Problem(n_var=2, n_obj=2, xl=0.0, xu=np.inf))
 
 
 # -- first positions --
@@ -103,13 +90,6 @@ def test_sampling_as_array_or_population_is_used_and_evaluated():
         assert result.algorithm.evaluator.n_eval == 36
 
 
-def test_wrong_sampling_is_refused():
-    for sampling in (np.zeros((11, 3)), np.full((12, 3), 2.5), np.full((12, 3), np.nan)):
-        algorithm = VEPSO(6, sampling=sampling).setup(Targets())
-        with pytest.raises(ValueError, match=r"give \(12, 3\), within the bounds"):
-            algorithm.ask()
-
-
 # -- pymoo's protocol --
 
 
@@ -120,23 +100,6 @@ def test_exactly_swarms_times_particles_evaluations(n_obj):
     assert [len(X) for X in problem.X] == [n_obj * 7] * 9
     assert result.algorithm.evaluator.n_eval == n_obj * 7 * 9
     assert len(result.pop) == n_obj * 7
-
-
-def test_default_is_the_size_of_the_paper():
-    problem = Targets()
-    minimize(problem, VEPSO(), ("n_gen", 2), seed=1)
-    assert [len(X) for X in problem.X] == [200, 200]
-
-
-def test_terminations_are_honoured():
-    for termination, iterations in ((("n_gen", 4), 4), (("n_eval", 100), 5), (("n_eval", 101), 6)):
-        problem = Targets()
-        minimize(problem, VEPSO(10), termination, seed=1)
-        assert len(problem.X) == iterations
-    problem = Targets()
-    VEPSO(10, termination=("n_gen", 3), seed=1).setup(problem).run()  # as the constructor's
-    assert len(problem.X) == 3
-    assert minimize(Targets(), VEPSO(10), seed=1).algorithm.n_iter < 1000  # pymoo's tolerances
 
 
 def test_seed_decides_everything():
@@ -157,39 +120,3 @@ def test_ask_and_tell_equals_minimize():
         algorithm.tell(infills=candidates)
     assert np.array_equal(algorithm.result().X, expected.X)
     assert np.array_equal(algorithm.result().F, expected.F)
-
-
-def test_tell_refuses_what_was_not_asked_for():
-    problem = Targets()
-    algorithm = VEPSO(5).setup(problem, seed=1)
-    candidates = algorithm.ask()
-    with pytest.raises(
-        ValueError,
-        match=r"evaluate all candidates that ask\(\) gave, and pass them to tell\(\) once",
-    ):
-        algorithm.tell(infills=candidates)
-    Evaluator().eval(problem, candidates)
-    with pytest.raises(
-        ValueError,
-        match=r"evaluate all candidates that ask\(\) gave, and pass them to tell\(\) once",
-    ):
-        algorithm.tell(infills=candidates[:-1])
-    algorithm.tell(infills=candidates)
-    with pytest.raises(
-        ValueError,
-        match=r"evaluate all candidates that ask\(\) gave, and pass them to tell\(\) once",
-    ):
-        algorithm.tell(infills=candidates)
-
-
-def test_display_history_and_copies_work(capsys):
-    result = minimize(
-        get_problem("zdt1", n_var=4),
-        VEPSO(5),
-        ("n_gen", 4),
-        seed=1,
-        verbose=True,
-        save_history=True,
-    )
-    assert "n_nds" in capsys.readouterr().out
-    assert [entry.iteration for entry in result.history] == [1, 2, 3, 4]

@@ -51,25 +51,6 @@ def test_the_help_of_a_command_loads_no_other(tmp_path):
     ]
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        f"plan {MOVE} --terms 2 --starts 1 --output plan.json --csv move.csv",
-        f"evaluate {MOVE} --coefficients=0,0",
-        f"floor {MOVE} --acceleration-limit 200 --starts 1 --tolerance 0.5",
-    ],
-)
-def test_the_gradient_loads_no_metaheuristic_and_no_picture(tmp_path, line):
-    assert of_gradient(loaded(line, tmp_path))
-
-
-def test_a_window_system_that_matplotlib_does_not_know_spoils_no_picture(tmp_path, monkeypatch):
-    monkeypatch.setenv("MPLBACKEND", "nonsense")
-    found = loaded(f"evaluate {MOVE} --coefficients=0,0 --figure move.png", tmp_path)
-    assert (tmp_path / "move.png").exists()
-    assert "matplotlib" in found  # the tests above look for the right name
-
-
 def test_what_is_asked_for_is_loaded(tmp_path):
     """The tests above look for the right name: here it is."""
     ran = subprocess.run(

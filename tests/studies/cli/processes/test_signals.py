@@ -6,11 +6,8 @@ import shlex
 import signal
 import subprocess
 import sys
-from importlib import import_module
 
 import pytest
-import quietarm.studies.cli
-import quietarm.studies.reports.comparison
 from lines import MOVE
 from quietarm.ocp import Front
 
@@ -105,36 +102,6 @@ def test_the_end_of_a_batch_job_keeps_what_its_processes_found(at_a_terminal, fo
         assert front.points
         assert len(front.history) < 100_000
         assert front.evaluations == 20 * len(front.history)
-
-
-def test_ctrl_c_while_the_floor_is_looked_for_keeps_the_comparison(call, folder, monkeypatch):
-    line = f"front {MOVE} --terms 2 --bound 0.3 --points 3 --quiet --method"
-    assert call(f"{line} epsilon --output a.json")[0] == 0
-    assert call(f"{line} weighted --output b.json")[0] == 0
-    monkeypatch.setattr(
-        quietarm.studies.reports.comparison,
-        "energy_floor",
-        lambda task: signal.raise_signal(signal.SIGINT),
-    )
-    code, out, err = call("compare a.json b.json --output compared")
-    assert (code, err) == (1, "quietarm: interrupted; the comparison is kept, without the floor\n")
-    assert out.splitlines()[-1] == "wrote compared/fronts.png"
-
-
-def test_ctrl_c_while_the_plan_beside_it_is_looked_for_keeps_the_floor(call, folder, monkeypatch):
-    command = import_module("quietarm.studies.cli.commands.floor")
-    beside = command.plan_beside
-
-    def interrupted(floor):
-        signal.raise_signal(signal.SIGINT)
-        return beside(floor)
-
-    monkeypatch.setattr(command, "plan_beside", interrupted)
-    code, out, err = call(
-        f"floor {MOVE} --acceleration-limit 200 --starts 1 --tolerance 0.1 --output f.json"
-    )
-    assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
-    assert out.splitlines()[-1] == "wrote f.json"
 
 
 def test_ctrl_c_while_files_are_written_waits_until_they_are_there(call, folder, monkeypatch):

@@ -2,17 +2,11 @@
 
 import json
 import math
-import os
-import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from lines import MOVE
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front
-from quietarm.ocp.base import files
 
 
 @pytest.fixture(scope="module")
@@ -84,53 +78,3 @@ def test_a_front_that_its_plant_does_not_bear_out_is_refused(call, folder, line,
 
 
 # Lines given to the command one after another; the statuses with which they end.
-ONE_AFTER_ANOTHER = """
-import sys
-from quietarm.studies.cli import main
-
-for line in sys.argv[1:]:
-    try:
-        main(line.split())
-    except SystemExit as ended:
-        print(ended.code)
-"""
-
-
-def test_a_pipe_or_a_device_is_refused_at_once():
-    os.mkfifo("pipe")
-    resume = f"front {MOVE} --method nsga2 --bound 0.2 --quiet --resume {{}}"
-    names = ["pipe", "/dev/zero", "/dev/stdin"]
-    # In a process that can be given up: reading any of these would wait forever.
-    done = subprocess.run(
-        [sys.executable, "-c", ONE_AFTER_ANOTHER,
-         *(line.format(name) for name in names
-           for line in ("polish {} --quiet", "compare f.json {} --quiet", resume))],
-        stdin=subprocess.PIPE, capture_output=True, text=True, timeout=240, check=False,
-    )  # fmt: skip
-    assert done.stdout.split() == ["2"] * 9
-    assert done.stderr.splitlines() == [
-        f"quietarm: {name} is no ordinary file; save it as one and give its name"
-        for name in names
-        for _ in range(3)
-    ]
-
-
-def test_a_file_larger_than_any_of_quietarm_is_refused(call, monkeypatch):
-    monkeypatch.setattr(files, "MOST_BYTES", 100)
-    code, out, err = call("polish f.json")
-    assert (code, out) == (2, "")
-    assert "f.json is larger than 0.0001 MB, as no file of quietarm is; give another" in err
-
-
-def test_verified_is_said_only_where_the_integrators_agree(call):
-    def row(coefficients):
-        code, out, _ = call(f"evaluate {MOVE} --coefficients={coefficients}")
-        assert code == 0
-        (line,) = re.findall("^.*verified.*$", out, re.MULTILINE)
-        return line.strip()
-
-    differ = r"by CVODES.* \d+ fixed steps differ by \de{}\d+ in energy and \S+ mm in residual"
-    assert re.fullmatch("verified +" + differ.format("-"), row("0.01,-0.1"))
-    far = differ.format(r"\+")
-    beyond = ", where 0.001 of each is agreement; give smaller coefficients"
-    assert re.fullmatch("not verified +the figures are " + far + beyond, row("100"))

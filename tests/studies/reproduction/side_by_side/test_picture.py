@@ -31,18 +31,3 @@ def test_energies_are_multiples_of_the_floor_and_residuals_shares_of_the_cycloid
     share = 100 * cycloid.wrong_residual / cycloid.motion.residual
     assert first == pytest.approx([cycloid.energy / floor.energy, 100, share, 1])
     assert min(dot.get_xdata()[0] for dot in dots(energy)) > 0.99
-
-
-def test_a_row_says_on_how_many_moves_there_is_nothing(figure):
-    labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
-    # docs/physics.md, 'What shapers leave of the moves here': two moves are too short
-    assert labels[:4] == ["plain cycloid", "ZV", "ZVD\n(5 of 7 moves)", "EI\n(5 of 7 moves)"]
-    assert labels[4] == "paper\n(6 of 7 moves)"
-    assert labels[-1] == "floor"
-
-
-def test_each_move_has_a_look_of_its_own(reproduction, figure):
-    (legend,) = figure.legends
-    shown = [handle for handle in legend.legend_handles if handle.get_marker() != "|"]
-    looks = {(handle.get_color(), handle.get_marker()) for handle in shown}
-    assert len(looks) == len(shown) == len(reproduction.systems)

@@ -2,7 +2,6 @@
 
 import csv
 import dataclasses
-import math
 import re
 
 import pytest
@@ -10,8 +9,7 @@ import quietarm.studies.comparison.measures
 import quietarm.studies.reading.saved
 import quietarm.studies.reports.comparison
 from quietarm.metaheuristics.objective.claims import check_figures
-from quietarm.ocp import FrontPoint, SolverFailedError, evaluate_coefficients
-from quietarm.studies.paper.printed import ARM_HALF
+from quietarm.ocp import FrontPoint, evaluate_coefficients
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
 FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
@@ -60,12 +58,6 @@ def test_compare_fills_a_folder(call, files, good, poor):
     ]  # fmt: skip
 
 
-def test_compare_measures_against_a_named_front(call, files, good):
-    code, out, _ = call("compare good.json poor.json --as-found --no-floor --reference good.json")
-    assert code == 0
-    assert "epsilon are measured against good.json" in " ".join(out.split())
-
-
 def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     class Found:
         energy, complete = 0.1234, True
@@ -74,24 +66,6 @@ def test_the_floor_is_found_and_shown(call, files, monkeypatch):
     code, out, _ = call("compare good.json poor.json --as-found")
     assert code == 0
     assert "arrive at rest, not of polynomials only, is 0.1234 J" in " ".join(out.split())
-
-
-def test_a_floor_that_is_not_found_is_no_obstacle(call, files, monkeypatch):
-    def fail(task):
-        raise SolverFailedError("no start ended at an optimum")
-
-    monkeypatch.setattr(quietarm.studies.reports.comparison, "energy_floor", fail)
-    code, out, err = call("compare good.json poor.json --as-found")
-    assert (code, err) == (0, "no floor: no start ended at an optimum\n")
-    assert "Floor" not in out
-
-
-def test_other_tasks_are_refused_in_a_line(call, files, front_of):
-    front_of([(1, 0.5)], task=ARM_HALF.task).save("arm.json")
-    code, out, err = call("compare good.json arm.json --output compared")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "arm.json is of another task than good.json: its plant is arm-on-flexible-link" in err
-    assert not (files / "compared").exists()
 
 
 @pytest.mark.parametrize(
@@ -124,19 +98,6 @@ def test_one_file_is_no_comparison(call, files, line):
     code, out, err = call(line)
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert "two fronts or more" in err
-
-
-def test_an_empty_front_is_refused_by_its_file(call, files, front_of):
-    front_of([(math.nan, 1.0)]).save("empty.json")
-    code, _, err = call("compare good.json empty.json")
-    assert (code, err.count("\n")) == (2, 1)
-    assert "empty.json: the front has no point" in err
-
-
-def test_a_folder_that_cannot_be_made_is_refused_before_the_work(call, files, no_place):
-    code, out, err = call("compare good.json missing.json --output compared")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "compared cannot be written: no such file or directory; choose another place" in err
 
 
 @pytest.fixture

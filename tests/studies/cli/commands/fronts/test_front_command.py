@@ -5,13 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import quietarm.studies.cli.commands.front
 from quietarm.metaheuristics import search
-from quietarm.metaheuristics.ensemble import LostSeedsError
-from quietarm.metaheuristics.sharing.pieces import Done, LostPieceError
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint
-from quietarm.studies.display.search_progress import SearchDisplay
 
 MOVE = "single-link --target 30deg --duration 0.8 --bound 0.2 --terms 2"
 SMALL = f"front {MOVE} --method vepso --population 8 --generations 4"
@@ -43,13 +39,6 @@ def test_one_search_is_shown_and_written(call):
     assert "generation 4/4, residual " in err
 
 
-def test_quiet_shows_the_result_alone(call):
-    code, out, err = call(f"{SMALL} --quiet")
-    assert (code, err) == (0, "")
-    assert "stillest" in out
-    assert "wrote" not in out
-
-
 def test_a_search_that_finds_nothing_says_why(call, folder):
     code, out, err = call(f"{SMALL} --torque-limit 0.001 --quiet --output f.json")
     assert (code, out) == (1, "")
@@ -57,16 +46,6 @@ def test_a_search_that_finds_nothing_says_why(call, folder):
         "quietarm: vepso: the front has no point; 64 of 64 candidates break the limits (torque "
         "0.001); widen them or the bound, or search longer\n"
     )
-    assert list(folder.iterdir()) == []
-
-
-@pytest.mark.parametrize("several", ["", "--runs 2 --workers 2"])
-def test_a_population_beyond_the_memory_is_refused_in_one_line(call, folder, several):
-    # 10 million million individuals: 160 TB, more than a process can address
-    code, out, err = call(f"{SMALL} --population 10000000000000 {several} --output f.json")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "population" in err
-    assert "10000000000000" in err
     assert list(folder.iterdir()) == []
 
 
@@ -118,28 +97,6 @@ def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
     assert not Path("f.json").exists()
 
 
-def test_the_seeds_that_arrive_still_are_counted(call, monkeypatch, front_of):
-    fronts = [
-        front_of([(0.5, energy), (5, 0.1)] if energy else [(5, 0.1)], seed=seed)
-        for seed, energy in enumerate((0.25, None, 0.75))
-    ]
-    monkeypatch.setattr(quietarm.studies.cli.commands.front, "search_many", lambda *_, **__: fronts)
-    _, out, _ = call(f"{SMALL} --runs 3")
-    assert out.splitlines()[-1] == (
-        "energy at 1 mm: median 0.5 J, quartiles 0.375 to 0.625 J; 2 of 3 seeds reach 1 mm"
-    )
-    monkeypatch.setattr(
-        quietarm.studies.cli.commands.front, "search_many", lambda *_, **__: [fronts[1]] * 3
-    )
-    _, out, _ = call(f"{SMALL} --runs 3")
-    assert out.splitlines()[-1] == "energy at 1 mm: none; 0 of 3 seeds reach 1 mm"
-
-
-def test_help_says_how_the_files_of_several_seeds_are_named(call):
-    out = " ".join(call("front --help")[1].split())
-    assert "front.json gives front-seed0.json, front-seed1.json" in out
-
-
 def test_ctrl_c_keeps_the_seeds_that_are_done(call, interrupted_at):
     interrupted_at(2, of=1)
     code, out, err = call(f"{SMALL} --runs 3 --quiet --output f.json")
@@ -151,41 +108,6 @@ def test_ctrl_c_keeps_the_seeds_that_are_done(call, interrupted_at):
     assert not Front.load("f-seed1.json").complete
     assert out.splitlines()[-2:] == ["wrote f-seed0.json", "wrote f-seed1.json"]
     assert "median" not in out  # of one seed
-
-
-def test_what_is_found_beside_a_process_that_died_is_written(call, monkeypatch, front_of):
-    def lose(*arguments, **settings):
-        fronts = {0: front_of([(1, 0.2)], seed=0)}
-        lost = Done(answers=fronts, failures={1: LostPieceError("its worker died 3 times")})
-        raise LostSeedsError(lost, [fronts[0]], 2)
-
-    monkeypatch.setattr(quietarm.studies.cli.commands.front, "search_many", lose)
-    code, out, err = call(f"{SMALL} --runs 2 --workers 2 --output f.json")
-    assert (code, out.splitlines()[-1]) == (1, "wrote f-seed0.json")
-    assert err == (
-        "quietarm: lost seed 1 (its worker died 3 times); 1 of 2 seeds are done; where memory ran "
-        "short, give fewer workers or a smaller population\n"
-    )
-    assert Front.load("f-seed0.json").seed == 0
-
-
-def test_a_checkpoint_that_is_lost_on_the_way_is_told_at_the_end(call, folder, monkeypatch):
-    (folder / "lost").mkdir()
-    shown = SearchDisplay.__call__
-
-    def remove(self, progress, seed=None):
-        if progress.generation == 2:
-            (folder / "lost").rmdir()
-        shown(self, progress, seed)
-
-    monkeypatch.setattr(SearchDisplay, "__call__", remove)
-    code, out, err = call(f"{SMALL} --quiet --checkpoint lost/state --output f.json")
-    assert (code, out.splitlines()[-1]) == (1, "wrote f.json")
-    assert err == (
-        "quietarm: the end of the search is in no checkpoint: folder lost does not exist; make it "
-        "first\n"
-    )
-    assert Front.load("f.json") == directly()
 
 
 # What is refused

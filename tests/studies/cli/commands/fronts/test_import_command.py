@@ -140,18 +140,6 @@ def test_motions_that_others_beat_or_that_break_limits_are_left_out(call, folder
     assert set(kept.points) < set(front.points)
 
 
-def test_the_front_is_compared_and_polished_like_any_other(call, folder):
-    written("f.csv", table(["a_1", "a_2"], X.tolist()))
-    assert call(f"import f.csv {IMPORT} --output f.json")[0] == 0
-    EXACT.save("exact.json")
-    code, out, err = call("compare f.json exact.json --no-floor --quiet")
-    assert (code, err) == (0, "")
-    assert "epsilon" in out
-    code, _, err = call("polish f.json --points 2 --quiet --output p.json")
-    assert (code, err) == (0, "")
-    assert Front.load("p.json").method == "f, polished"
-
-
 BAD = [
     ("a_1,a_2\n0.1\n", "line 2 has 1 columns, the first 2"),
     ("a_1,a_2\n0.1,x\n", "line 2: could not convert"),
@@ -177,42 +165,6 @@ def test_a_file_that_does_not_fit_is_refused_in_one_line(call, folder, content, 
     assert words in err
     assert "\x1b" not in err
     assert not (folder / "f.json").exists()
-
-
-def test_coefficients_that_do_not_fit_the_profile_are_refused(call, folder):
-    written("f.csv", table(["a_1", "a_2"], X.tolist()))
-    _, _, err = call(f"import f.csv {IMPORT} --terms 6")
-    assert err == (
-        "quietarm: f.csv has 2 coefficients a motion, and polynomial of 6 terms takes 6; "
-        "leave --terms out\n"
-    )
-    written("f.npy", numpy_file(np.zeros((6, 4))))
-    _, _, err = call(f"import f.npy {IMPORT} --terms 6")
-    assert "takes 6; leave --terms out, or transpose it" in err
-    _, _, err = call(f"import f.csv {IMPORT} --profile network")
-    assert "f.csv: got 2 coefficients; cycloid-network has one and three for each unit" in err
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "words"),
-    [
-        ("f.npy", numpy_file(np.array([{}, 1], dtype=object)), "no whole .npy file of numbers"),
-        ("f.npy", numpy_file(X)[:-9], "no whole .npy file of numbers"),
-        ("f.npy", numpy_file(X).replace(b"(", b"9"), "no whole .npy file of numbers"),
-        ("f.npy", numpy_file(np.zeros(4)), "has shape (4,); give (motions, coefficients)"),
-        ("f.npy", numpy_file(X * 1j), "is no array of real numbers; save it as numbers"),
-        ("f.npz", b"PK", "no whole .npz file of numbers"),
-        ("f.npz", numpy_file(None, np.savez, one=X, two=X), "name the matrix of coefficients X"),
-        ("f.mat", b"MATLAB 7.3 MAT-file", "no whole .mat file"),
-        ("f.mat", matlab(X="words"), "X is no array of real numbers"),
-        ("f.mat", matlab(note=1), "name the matrix of coefficients X (its variables: note)"),
-    ],
-)
-def test_arrays_that_are_no_coefficients_are_refused(call, folder, name, content, words):
-    written(name, content)
-    code, out, err = call(f"import {name} {IMPORT}")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert words in err
 
 
 def test_a_pipe_is_not_waited_for(call, folder):

@@ -15,7 +15,6 @@ import quietarm.studies.reading.saved
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     CycloidPolynomial,
-    FailedPoint,
     Front,
     Gain,
     PointToPoint,
@@ -23,7 +22,6 @@ from quietarm.ocp import (
     epsilon_front,
     polish_front,
 )
-from quietarm.studies.cli.commands.polish import thinned
 from quietarm.studies.figures.sweep import polish_figure
 
 
@@ -72,16 +70,6 @@ def test_a_front_is_polished_shown_and_written(call, rough):
     assert out.splitlines()[-3:] == ["wrote p.json", "wrote p.csv", "wrote p.svg"]
 
 
-def test_a_front_is_thinned_evenly_and_that_is_told(call, rough):
-    code, out, err = call("polish f.json --points 4 --quiet --csv p.csv")
-    assert (code, err) == (0, "")
-    assert "4 of its 12 points, spread along it" in out
-    with open("p.csv") as file:
-        residuals = [float(row["residual_m"]) for row in csv.DictReader(file)]
-    assert residuals == [rough.residuals[i] for i in (0, 4, 7, 11)]
-    assert thinned(rough, 12) == thinned(rough, 500) == rough
-
-
 def test_ctrl_c_keeps_what_was_polished(call, monkeypatch):
     def interrupted(front, report, **rest):
         def hear(done, total):
@@ -98,29 +86,6 @@ def test_ctrl_c_keeps_what_was_polished(call, monkeypatch):
     assert len(rows(out)) == 3
     assert len(Path("p.csv").read_text().splitlines()) == 1 + 3
     assert not Front.load("p.json").complete
-
-
-def test_points_that_fail_or_are_beaten_are_told(call, monkeypatch, front_of):
-    before = front_of([(0, 0.8), (4, 0.5), (8, 0.4)])
-    after = replace(
-        front_of([(0, 0.8), (4, 0.3)], "nsga2, polished"),
-        failures=(FailedPoint({"residual_limit": 0.0}, "no optimum"),),
-    )
-    gains = (Gain(0, 0.8, 0.8), Gain(4e-3, 0.5, 0.3), Gain(8e-3, 0.4, 0.4))
-    monkeypatch.setattr(
-        quietarm.studies.cli.commands.polish, "polish_front", lambda *_, **__: Polish(after, gains)
-    )
-    monkeypatch.setattr(
-        quietarm.studies.reading.saved, "check_figures", lambda front, name: None
-    )  # invented
-    before.save("f.json")
-    _, out, _ = call("polish f.json")
-    assert out.splitlines()[-4:] == [
-        "saved: median 0.00%, least 0.00%, most 40.00%",
-        "1 point is dominated by another now, and left out",
-        "1 of 3 points could not be found:",
-        "  residual <= 0 mm: no optimum",
-    ]
 
 
 def test_the_picture_shows_both_fronts_and_the_gains(rough):
@@ -160,12 +125,3 @@ def test_bad_input_is_refused_in_one_line(call, folder, content, line, words):
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert words in err
     assert sorted(path.name for path in folder.iterdir()) == ["bad.json", "f.json"]
-
-
-def test_a_file_that_is_not_there_is_told(call):
-    code, out, err = call("polish nowhere.json")
-    assert (code, out) == (2, "")
-    assert (
-        err
-        == "quietarm: nowhere.json cannot be read: no such file or directory; give another file\n"
-    )

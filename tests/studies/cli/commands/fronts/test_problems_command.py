@@ -2,7 +2,6 @@
 
 import pytest
 from quietarm.metaheuristics import PROBLEMS, problem_of
-from quietarm.metaheuristics.problems import catalogue
 from quietarm.ocp import Front
 
 SMALL = "single-link-30deg-0.8s-2-terms"
@@ -32,32 +31,6 @@ def test_exact_fronts_are_written_to_a_folder(call, folder):
 
 def front_of(name):
     return problem_of(name).fronts()[0]
-
-
-def test_exact_fronts_are_found_again(call, folder, monkeypatch):
-    monkeypatch.setattr(catalogue, "exact_front", lambda *task: front_of(SMALL))
-    code, out, err = call(f"problems {SMALL} --again --output fronts")
-    assert (code, err) == (0, f"[1/1] {SMALL}\n")
-    assert out.endswith("wrote 1 front to fronts\n")
-    assert Front.load(folder / "fronts" / f"{SMALL}.json") == front_of(SMALL)
-
-
-def test_an_interruption_keeps_the_fronts_that_are_whole(call, folder, monkeypatch):
-    answers = iter([front_of(SMALL)])
-
-    def stopped(*task):
-        try:
-            return next(answers)
-        except StopIteration:
-            raise KeyboardInterrupt from None
-
-    monkeypatch.setattr(catalogue, "exact_front", stopped)
-    code, _, err = call(f"problems {SMALL} {THIRD} --again --output fronts --quiet")
-    assert (code, err) == (1, "quietarm: interrupted; what was found until then is kept\n")
-    assert [path.name for path in (folder / "fronts").iterdir()] == [f"{SMALL}.json"]
-    code, _, err = call(f"problems {SMALL} --again --output others --quiet")
-    assert (code, err.strip()) == (1, "quietarm: interrupted; what was written until then is kept")
-    assert not (folder / "others").exists()
 
 
 @pytest.mark.parametrize(

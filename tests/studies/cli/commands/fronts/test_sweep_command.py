@@ -90,14 +90,6 @@ def test_the_other_solver_finds_the_front(call):
     assert Front.load("f.json").settings["solver"] == "ipopt"
 
 
-def test_what_no_weight_reaches_is_told_in_words(call, answer, good):
-    answer(replace(good, method="weighted", gaps=((0.0, 4e-3),)))
-    _, out, _ = call(f"front {MOVE} --method weighted")
-    assert out.splitlines()[-1] == (
-        "no weight reaches residuals from 0 mm to 4 mm: the front is not convex there"
-    )
-
-
 def test_a_front_of_its_ends_alone_has_no_knee(call, answer, front_of):
     answer(front_of([(0, 0.8), (8, 0.4)], "epsilon"))
     _, out, _ = call(f"front {MOVE} --method epsilon --points 2")
@@ -107,21 +99,6 @@ def test_a_front_of_its_ends_alone_has_no_knee(call, answer, front_of):
         "  within 0.1 mm  0.8 J",
         "  within 1 mm    0.8 J",
         "  within 5 mm    0.8 J",
-    ]
-
-
-def test_failed_points_are_told_with_their_reasons(call, answer, good):
-    failures = (
-        FailedPoint({"residual_limit": 2e-3}, "steps too long"),
-        FailedPoint({"residual_limit": 3e-3}, "steps too long"),
-        FailedPoint({"residual_weight": 0.5, "energy_weight": 1.0}, "no optimum"),
-    )
-    answer(replace(good, failures=failures))
-    _, out, _ = call(f"front {MOVE} --method epsilon --points 6")
-    assert out.splitlines()[-3:] == [
-        "3 of 6 points could not be found:",
-        "  residual <= 2 mm, residual <= 3 mm: steps too long",
-        "  0.5:1 (residual:energy): no optimum",
     ]
 
 

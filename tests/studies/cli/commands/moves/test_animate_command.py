@@ -1,10 +1,8 @@
 """`quietarm animate`: what it writes and says, what it refuses, Ctrl-C."""
 
 import math
-import signal
 
 import pytest
-import quietarm.studies.animation
 from PIL import Image
 from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.studies.animation import stage
@@ -28,22 +26,6 @@ def test_plans_of_different_plants_and_durations_share_a_picture(call, folder):
         assert (image.n_frames, image.width) == (8, 240)
     kilobytes = (folder / "move.gif").stat().st_size / 1e3
     assert out == f"8 frames, 2.5 s, {kilobytes:.0f} kB\nwrote move.gif\n"
-
-
-def test_a_plan_alone_stands_beside_the_plain_cycloid(call, monkeypatch):
-    drawn, animate = [], quietarm.studies.animation.animate
-
-    def note(motions, **settings):
-        drawn.append((motions, settings))
-        return animate(motions, **settings)
-
-    monkeypatch.setattr(quietarm.studies.animation, "animate", note)
-    line = "animate plan.json --speed 200% --deflection-scale 3 --output move.gif"
-    code, _, err = call(f"{line} --width 240 --frames-per-second 4")
-    assert (code, err.splitlines()[-1]) == (0, "4 of 4 frames")
-    [(motion, settings)] = drawn
-    assert motion.coefficients  # a plan, no list: `lines_of` adds the cycloid
-    assert (settings["speed"], settings["deflection_scale"]) == (2, 3)
 
 
 def test_a_plant_of_ones_own_is_drawn_from_its_file(call, crane_file):
@@ -76,38 +58,3 @@ def test_a_plant_of_ones_own_is_drawn_from_its_file(call, crane_file):
 def test_what_cannot_be_is_told_before_anything_is_drawn(refused, monkeypatch, line, message):
     monkeypatch.setattr(stage.Stage, "frames", lambda self: pytest.fail("a frame was drawn"))
     assert message in refused(f"animate {line}")
-
-
-def test_an_mp4_without_ffmpeg_is_refused_before_anything_is_drawn(refused, monkeypatch):
-    monkeypatch.setenv("PATH", "")
-    said = refused("animate plan.json --output m.mp4")
-    assert "needs the program ffmpeg, which is not found here; install it, or make a GIF" in said
-
-
-def test_what_is_no_plan_is_refused(refused, folder):
-    (folder / "text.json").write_text("no plan")
-    (folder / "odd.json").write_text((folder / "plan.json").read_text().replace("sqp", "\x1b[2J"))
-    for name in ("text.json", "odd.json"):
-        assert refused(f"animate {name} --output m.gif").strip().isprintable()
-
-
-def test_ctrl_c_leaves_nothing_behind(call, folder, monkeypatch):
-    drawn, draw = [], stage.Stage._set
-
-    def interrupted(self, number, time):
-        drawn.append(number)
-        if number == 3:
-            signal.raise_signal(signal.SIGINT)
-        draw(self, number, time)
-
-    monkeypatch.setattr(stage.Stage, "_set", interrupted)
-    before = set(folder.iterdir())
-    code, out, err = call(f"animate plan.json --output m.gif {SMALL}")
-    # click first ends the terminal's line of ^C
-    assert (code, out, err) == (
-        1,
-        "",
-        "\nquietarm: interrupted; what was written until then is kept\n",
-    )
-    assert drawn == [0, 1, 2, 3]
-    assert set(folder.iterdir()) == before

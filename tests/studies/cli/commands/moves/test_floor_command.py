@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import Floor, FloorSettings, PointToPoint, SolverFailedError, energy_floor
+from quietarm.ocp import Floor, FloorSettings, PointToPoint, energy_floor
 from quietarm.studies.figures.motion import PAPER_PANELS, Line, floor_figure, motion_figure
 from quietarm.studies.reports.floor import plan_beside
 
@@ -51,42 +51,6 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     assert shown["plan, 6 terms"].startswith(f"{plan.energy:.6g} J")
     assert f"{plan.energy / floor.energy:.3g} times the floor" in shown["plan, 6 terms"]
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_a_jerk_limit_is_kept_by_a_smooth_floor_and_refused_by_another(call, tmp_path):
-    line = f"floor {MOVE} --jerk-limit 5000 --starts 1 --tolerance 0.5 --quiet"
-    code, out, err = call(f"{line} --smooth --output {tmp_path / 'f.json'}")
-    assert (code, err) == (0, "")
-    shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
-    assert shown["limits"] == "jerk 5000 rad/s^3"
-    floor = Floor.load(tmp_path / "f.json")
-    assert shown["peak jerk"] == f"{floor.motion.peak_jerk:.4g} rad/s^3"
-    assert floor.smooth
-    assert "smooth" in out
-    code, out, err = call(line)
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "jerk limit is 5000 rad/s^3" in err
-    assert "--smooth" in err
-
-
-def test_the_help_shows_examples_that_are_read(call, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    code, out, _ = call("floor --help")
-    assert code == 0
-    lines = re.sub(r" \\\n +", " ", out.split("Examples:", 1)[1]).splitlines()
-    examples = [line.strip() for line in lines if line.strip().startswith("quietarm floor")]
-    asked = []
-
-    def note(task, **settings):
-        asked.append((task, settings))
-        raise SolverFailedError("enough is known")
-
-    monkeypatch.setattr("quietarm.studies.cli.commands.floor.energy_floor", note)
-    for example in examples:
-        assert call(example.removeprefix("quietarm "))[0] == 1
-    assert len(asked) == len(examples) == 2
-    assert asked[0][1] == {"smooth": False, "starts": 4, "seed": 0, "tolerance": 0.005}
-    assert asked[1][0].limits == {"acceleration": 80.0}
 
 
 def test_limits_without_any_plan_still_have_a_floor(call):
@@ -139,29 +103,6 @@ def test_a_plan_s_picture_leaves_nothing_out(plan):
     torque = figure.axes[3]
     assert torque.get_ylim()[1] > np.abs(plan.sampled([0.0, 0.1, 0.2]).torque).max()
     assert torque.get_title(loc="left") == "(d) joint torque [N m]"
-
-
-@pytest.mark.parametrize(
-    ("options", "named", "remedy"),
-    [
-        ("--starts 0", "starts is 0", "from 1 up"),
-        ("--seed -1", "seed is -1", "from 0 up"),
-        ("--tolerance 0", "tolerance is 0", "positive"),
-        ("--torque-limit -1", "torque limit is -1", "positive"),
-        ("--output a.png --figure a.png", "a.png", "two files"),
-        ("--figure a.txt", "a.txt", ".png"),
-    ],
-)
-def test_bad_input_is_one_line_before_any_solve(
-    call, monkeypatch, tmp_path, options, named, remedy
-):
-    monkeypatch.chdir(tmp_path)
-    code, out, err = call(f"floor {MOVE} {options}")
-    assert (code, out) == (2, "")
-    assert named in err
-    assert remedy in err
-    assert len(err.splitlines()) == 1
-    assert not list(tmp_path.iterdir())
 
 
 def test_limits_that_nothing_meets_end_with_status_1(call):

@@ -166,22 +166,6 @@ def test_every_limit_reaches_the_solver(monkeypatch, call):
     }  # fmt: skip
 
 
-def test_by_default_six_terms_at_rest_without_a_box_from_zero(monkeypatch, call):
-    asked = {}
-
-    def note(task, profile, **settings):
-        asked.update(task=task, profile=profile, settings=settings)
-        raise InfeasibleTaskError("enough is known")
-
-    monkeypatch.setattr(quietarm.studies.cli.commands.plan, "plan_move", note)
-    call(f"plan {MOVE}")
-    assert (asked["task"].start, asked["task"].limits) == (0.0, {})
-    assert asked["task"].residual_window == 1.0
-    assert asked["profile"].terms == 6
-    assert asked["settings"]["residual_limit"] is None  # which is at rest
-    assert asked["settings"]["bound"] is None
-
-
 # Solves that fail: status 1
 
 
@@ -203,14 +187,6 @@ def test_a_failed_solve_leaves_an_older_plan_alone(refused, folder):
     (folder / "plan.json").write_text("older")
     refused(f"{PLAN} --terms 1 --starts 1 --output plan.json", status=1)
     assert (folder / "plan.json").read_text() == "older"
-
-
-def test_a_reason_of_several_lines_is_put_on_one(refused, monkeypatch):
-    def end(*arguments, **settings):
-        raise InfeasibleTaskError("no way\n  at all")
-
-    monkeypatch.setattr(quietarm.studies.cli.commands.plan, "plan_move", end)
-    assert refused(f"{PLAN} {EVERY_FILE}", status=1) == "quietarm: no way at all\n"
 
 
 def test_a_full_disk_leaves_nothing_half_written(call, folder, monkeypatch):

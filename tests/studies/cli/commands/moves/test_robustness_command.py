@@ -6,11 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from quietarm.metaheuristics.objective import claims
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import (
     PointToPoint,
-    SolverFailedError,
     UncertainPlant,
     evaluate_coefficients,
     evaluate_robustness,
@@ -211,13 +209,6 @@ def test_a_plan_is_a_claim(call, folder, figure, told):
     assert "find the plan again" in err
 
 
-def test_a_file_that_looks_like_an_option_is_told_how_it_is_named(call, folder):
-    (folder / "ours.json").rename(folder / "-x.json")
-    code, _, err = call("--samples 100 -- -x.json")
-    assert (code, err) == (2, "quietarm: -x.json looks like an option; give ./-x.json\n")
-    assert call("--samples 100 --quiet ./-x.json")[0] == 0
-
-
 @pytest.mark.parametrize(
     ("entry", "value", "told"),
     [
@@ -236,16 +227,6 @@ def test_the_worst_of_a_plan_is_a_claim(call, plans, folder, entry, value, told)
     code, out, err = call("robust.json --samples 1 --quiet")
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert told in err
-
-
-def test_a_plan_that_no_integrator_follows_is_named(call, folder, monkeypatch):
-    def lost(*_):
-        raise SolverFailedError("CVODES could not follow this motion")
-
-    monkeypatch.setattr(claims, "resimulate", lost)
-    code, out, err = call("ours.json --quiet")
-    assert (code, out) == (1, "")
-    assert err == "quietarm: ours.json: CVODES could not follow this motion\n"
 
 
 def test_ctrl_c_keeps_the_plans_that_are_finished(call, folder, monkeypatch):

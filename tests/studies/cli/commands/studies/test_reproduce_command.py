@@ -10,9 +10,6 @@ import quietarm.studies.cli.commands.plan
 import quietarm.studies.reading.saved
 import quietarm.studies.reproduction.recompute
 import quietarm.studies.study.work
-from quietarm.metaheuristics.sharing import workers
-from quietarm.metaheuristics.sharing.workers import Workers
-from quietarm.ocp import QuietarmError
 from quietarm.studies.paper.printed import ROWS
 from quietarm.studies.report.files import document_files
 from quietarm.studies.reproduction.pieces import pieces_of_paper
@@ -49,10 +46,6 @@ def test_reproduce_writes_nothing_unless_asked_to(call, reproduced, folder):
     assert "wrote" not in out
 
 
-def test_reproduce_quiet_shows_no_progress(call, reproduced):
-    assert call("reproduce --quiet")[2] == ""
-
-
 def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(
     call, reproduced, folder, monkeypatch
 ):
@@ -72,32 +65,3 @@ def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(
         path.relative_to(folder) for path in (folder / "results").iterdir()
     }
     assert (folder / "results" / "notes.txt").read_text() == "mine"
-
-
-def test_reproduce_is_shared_by_as_many_workers_as_are_asked_for(call, reproduction, monkeypatch):
-    asked = []
-
-    def note(begin, seeds, workers):
-        asked.append((seeds, workers))
-        return reproduction
-
-    monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", note)
-    assert call("reproduce --quiet --workers 2 --seeds 5")[0] == 0
-    assert call("reproduce --quiet --workers 1")[0] == 0
-    assert asked == [(5, Workers(2)), (1, Workers())]
-
-
-@pytest.mark.parametrize("dask", [True, False])
-def test_by_default_it_takes_the_cores_at_hand(call, monkeypatch, dask):
-    asked = []
-
-    def note(begin, seeds, where):
-        asked.append(where)
-        raise QuietarmError("this is enough")
-
-    monkeypatch.setattr(quietarm.studies.reproduction.recompute, "recompute_paper", note)
-    monkeypatch.setattr(workers.os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
-    monkeypatch.setattr(workers.os, "cpu_count", lambda: 2)
-    monkeypatch.setattr(workers, "find_spec", lambda _: object() if dask else None)
-    assert "this is enough" in call("reproduce --quiet")[2]
-    assert asked == [Workers(2) if dask else Workers()]
