@@ -1,7 +1,6 @@
 """The tables and the picture of a comparison."""
 
 import csv
-import dataclasses
 from functools import partial
 
 import numpy as np
@@ -14,7 +13,6 @@ from matplotlib.figure import Figure
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import PointToPoint
 from quietarm.studies.comparison.tables import runs_table, tables
-from quietarm.studies.display.words import title_of
 from quietarm.studies.figures.comparison import (
     BANDS,
     PANELS,
@@ -96,13 +94,6 @@ def test_the_picture_holds_the_fronts_as_staircases(comparison):
     assert picture.axes[3].get_legend().get_title().get_text() == BANDS
 
 
-def test_of_two_seeds_the_picture_shows_what_the_better_reaches_and_says_so(good, seeds):
-    two = compare([good, *seeds[:2]])
-    np.testing.assert_allclose(drawn(comparison_figure(two).axes[0], "NSGA-II")[0], [1, 0.95])
-    assert cells(tables(two)["energies"])["energy at 1 mm [J]"][1] == "0.96"  # the middle
-    assert "of two, the better one" in BANDS
-
-
 def test_points_are_held_against_the_best_within_their_residual(comparison):
     axis = comparison_figure(comparison).axes[2]
     np.testing.assert_allclose(
@@ -140,12 +131,6 @@ def test_where_the_paper_prints_no_coefficients_its_energy_is_known(task):
     assert condition_of(task).label == "0 to pi/6, 0.8 s"
 
 
-def test_a_task_is_named_with_its_limits(task):
-    assert title_of(task) == "single-link, 0 to 30 deg in 0.8 s"
-    limited = dataclasses.replace(task, torque_limit=0.2, duration=1.5)
-    assert title_of(limited) == "single-link, 0 to 30 deg in 1.5 s, torque within 0.2 N m"
-
-
 def test_every_group_has_a_look_of_its_own(front_of):
     methods = ["epsilon", "nsga2", "vepso", "weighted", "nsga2, polished", "other", "another"]
     fronts = [front_of([(1, 0.5)], method) for method in methods]
@@ -174,11 +159,6 @@ def heights_within(axis):
     return table[inside & (low <= table[:, 1]) & (table[:, 1] <= high), 1]
 
 
-def test_a_panel_that_there_is_not_is_refused(comparison):
-    with pytest.raises(ValueError, match=r"unknown panel 'x' \(known: whole"):
-        panel_figure(comparison, "x")
-
-
 def test_the_still_end_is_shown_where_a_search_is_cheap_because_it_rings(good, front_of):
     """A tight limit: the search begins at 6 mm, with less than half the still motion's energy."""
     whole, still, _ = comparison_figure(compare([good, front_of([(6, 0.3), (9, 0.2)])])).axes[:3]
@@ -205,9 +185,3 @@ def test_a_panel_is_drawn_on_the_axes_that_are_given_or_on_new_ones(comparison, 
     assert draw(comparison, ax=given) is given
     assert given.get_lines()
     assert draw(comparison).figure is not given.figure
-
-
-def test_a_single_point_is_drawn_as_well(front_of):
-    fronts = [front_of([(0, 0.5)]), front_of([(0, 0.6)], "vepso")]
-    figure = comparison_figure(compare(fronts))
-    figure.draw_without_rendering()

@@ -78,13 +78,6 @@ def test_seeds_that_agree_are_not_drawn_as_if_they_did_not(front_of):
     assert high - low == pytest.approx(0.01 * 0.200001, rel=1e-9)
 
 
-def test_where_no_seed_is_still_it_says_so(front_of):
-    fronts = [front_of([(5, 0.2)], seed=seed, history=history(0.5)) for seed in (0, 1)]
-    panel = front_figure(fronts).axes[2]
-    assert panel.get_title() == "energy at 1 mm\n0 of 2 seeds reach 1 mm"
-    assert [line.get_marker() for line in panel.lines] == ["x", "x"]
-
-
 def test_one_seed_has_no_spread(fronts):
     figure = front_figure(fronts[:1], "title")
     front, volume = figure.axes
@@ -152,16 +145,6 @@ def test_one_generation_is_a_mark_and_not_an_empty_panel(front_of):
     assert panel.collections  # the quartiles
 
 
-def test_a_search_without_a_generation_says_so(front_of):
-    panel = draw_hypervolume([front_of([(1, 0.2)])])
-    assert [text.get_text() for text in panel.texts] == ["no generation"]
-
-
-def test_the_box_of_the_hypervolume_is_stated(front_of):
-    panel = draw_hypervolume([front_of([(1, 0.2)], history=history(0.5), reference=(0.077, 0.5))])
-    assert panel.get_ylabel() == "share of the box up to 77 mm and 0.5 J"
-
-
 @pytest.mark.parametrize("draw", [draw_fronts, draw_hypervolume, draw_seed_energies])
 def test_a_panel_is_drawn_on_the_axes_that_are_given_or_on_new_ones(fronts, draw):
     given = Figure().subplots()
@@ -173,7 +156,3 @@ def test_a_panel_is_drawn_on_the_axes_that_are_given_or_on_new_ones(fronts, draw
 def test_fronts_of_several_methods_are_named_by_them(fronts, good):
     labels = [line.get_label() for line in draw_fronts([*fronts[:2], good]).lines]
     assert labels == ["VEPSO, seed 5", "VEPSO, seed 6", "epsilon constraint"]
-
-
-def test_the_title_is_method_and_task_where_none_is_given(fronts):
-    assert front_figure(fronts).get_suptitle() == "VEPSO: single-link, 0 to 30 deg in 0.8 s"
