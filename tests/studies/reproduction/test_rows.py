@@ -1,7 +1,7 @@
 """The paper recomputed: its rows, the gradient's answers, its own searches."""
 
 from collections import Counter
-from itertools import pairwise, product
+from itertools import pairwise
 
 import pytest
 from quietarm.ocp import CycloidPolynomial, SolveStatus, plan_move
@@ -10,15 +10,15 @@ from quietarm.studies.paper.printed import (
     ARM_THREE_QUARTERS,
     ARM_WHOLE,
     COEFFICIENTS,
-    CONDITIONS,
     MENDED,
     ROWS,
     SINGLE_LINK_HALF_1_0,
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
 )
-from quietarm.studies.reproduction.pieces import SEARCHES, pieces_of_paper
+from quietarm.studies.reproduction.pieces import pieces_of_paper
 from quietarm.studies.reproduction.recompute import recompute_paper
+from quietarm.studies.reproduction.systems import SEARCHES
 
 LAST_DIGIT = {2: 1e-4, 5: 1e-3}
 """The last digit that Tables 2 and 5 print [J]."""
@@ -251,17 +251,6 @@ def test_a_search_is_judged_at_the_residual_of_the_papers_own_coefficients(repro
     assert any(result.searched_by(result.own_search).count for result in reproduction.rows)
 
 
-@pytest.mark.parametrize("seeds", [0, -1])
-def test_a_reproduction_needs_a_seed(seeds):
-    with pytest.raises(ValueError, match=f"seeds is {seeds}; give a whole number from 1 up"):
-        recompute_paper(seeds=seeds)
-
-
-def test_every_row_is_found_by_its_condition_and_terms(reproduction):
-    for row in ROWS:
-        result = reproduction.result(row.condition, row.terms)
-        assert (result.row.condition, result.row.terms) == (row.condition, row.terms)
-    printed = {(row.condition, row.terms) for row in ROWS}
-    for absent in set(product(CONDITIONS, (2, 4, 6, 8))) - printed:
-        with pytest.raises(KeyError):
-            reproduction.result(*absent)
+def test_a_reproduction_needs_a_seed():
+    with pytest.raises(ValueError, match="seeds is 0; give a whole number from 1 up"):
+        recompute_paper(seeds=0)
