@@ -142,4 +142,4 @@ def _frame_times(end: float, speed: float, rate: float) -> NDArray[np.float64]:
             f"frames, where {_MOST_FRAMES} are the most that can be drawn and shown in reasonable "
             "time; give fewer frames per second or a higher speed"
         )
-    return np.arange(int(frames + _ROUNDING) + 1) * speed / rate
+    return np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate

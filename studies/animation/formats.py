@@ -44,15 +44,16 @@ def mp4(frames: Iterable[Picture], rate: float) -> bytes:
     """An MP4 in the colours that every player knows."""
     with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
         target = Path(folder) / "film.mp4"
+        height = width = 0
         with (Path(folder) / "frames").open("w+b") as raw:
             for frame in frames:
                 raw.write(frame.tobytes())
-                size = f"{frame.shape[1]}x{frame.shape[0]}"
+                height, width, _ = frame.shape
             raw.seek(0)
             ended = subprocess.run(
                 [
                     "ffmpeg", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
-                    "-s", size, "-r", f"{rate:.6g}", "-i", "-", "-vf", _FILTERS,
+                    "-s", f"{width}x{height}", "-r", f"{rate:.6g}", "-i", "-", "-vf", _FILTERS,
                     "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(target),
                 ],
                 stdin=raw, capture_output=True, check=False,

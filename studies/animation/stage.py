@@ -51,7 +51,7 @@ def frames_of(
     heights = [0.3 + rows * row, _PROFILES]
     figure = new_figure(inches, sum(heights))
     figure.set_dpi(width / inches)
-    above, below = figure.subfigures(2, 1, height_ratios=heights)
+    above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=heights).flat
     words = title_of(cast[0].line.plan.task) if same else "several moves on one clock"
     title = figure.suptitle(_short(words, 22 * columns + 44), x=0.01, ha="left", fontsize=11)
     clock = figure.text(0.99, 1.0, "", ha="right", va="top", fontsize=11, animated=True)
@@ -108,7 +108,7 @@ def _structure(ax: Axes, actor: Actor, corners: Array, same: bool) -> Moving:
     ax.add_artist(
         AnchoredSizeBar(ax.transData, length, f"{length:g} m", "lower right", frameon=False)
     )
-    dashed = {"color": "0.55", "linewidth": 1.0, "linestyle": "--"}
+    dashed: dict[str, Any] = {"color": "0.55", "linewidth": 1.0, "linestyle": "--"}
     moving: Moving = [
         (ax.plot([], [], **dashed)[0], [body.points.T for body in bodies])
         for bodies in zip(*actor.unbent, strict=True)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
+from typing import Any
 
 from quietarm.metaheuristics.ensemble import number_of_runs, one_seed
 from quietarm.metaheuristics.sharing.pieces import Done, Piece, Say, to_the_end
@@ -99,7 +100,7 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
 
 
 def _solved(
-    case: Case, profile: JointProfile, settings: Mapping[str, float], earlier: Done, say: Say
+    case: Case, profile: JointProfile, settings: Mapping[str, Any], earlier: Done, say: Say
 ) -> Plan:
     return to_the_end(plan_move(case.task, profile, **settings))
 
