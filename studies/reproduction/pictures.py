@@ -122,52 +122,55 @@ def systems_figure(systems: Systems) -> Figure:
     """A row for each system and a dot for each move; a panel for each figure of merit."""
     figure = new_figure(16, 7.4)
     panels = list(figure.subplots(1, len(_PANELS), sharey=True))
-    moves = [(case, {found.name: found for found in every}) for case, every in systems.items()]
-    names = list(dict.fromkeys(name for _, named in moves for name in named))
+    moves = [{found.name: found for found in every} for every in systems.values()]
     plants = list(dict.fromkeys(case.task.plant.name for case in systems))
-    handles: list[Line2D] = []
-    for case, _ in moves:  # a colour for each plant, and a mark for each of its moves
+    dots: list[Line2D] = []
+    for case in systems:  # a colour for each plant, and a mark for each of its moves
         colour = COLOURS[plants.index(case.task.plant.name)]
-        mark = _MARKS[sum(handle.get_color() == colour for handle in handles)]
-        handles.append(
-            Line2D([], [], linestyle="", marker=mark, color=colour, label=title_of(case.task))
-        )
+        mark = _MARKS[sum(dot.get_color() == colour for dot in dots)]
+        dots.append(Line2D([], [], ls="", marker=mark, color=colour, label=title_of(case.task)))
     for panel, ax in zip(_PANELS, panels, strict=True):
-        for row, name in enumerate(names):
-            if row % 2 == 0:
-                ax.axhspan(row - 0.5, row + 0.5, color=_SHADE, zorder=0)
-            drawn: list[float] = []
-            for lane, (_, named) in enumerate(moves):
-                value, unit = panel.of(named[name]), panel.unit(named[panel.of_system])
-                if value is None or not unit:
-                    continue
-                drawn.append(value / unit)
-                height = row + _SPREAD * (lane / max(1, len(moves) - 1) - 0.5)
-                ax.plot(
-                    value / unit, height, handles[lane].get_marker(),
-                    color=handles[lane].get_color(), markersize=5, zorder=3, clip_on=False,
-                )  # fmt: skip
-            if drawn:
-                middle, half = median(drawn), _SPREAD / 2 + 0.08
-                ax.plot([middle] * 2, [row - half, row + half], color="black", lw=2, zorder=2)
-        if panel.ticks[0] > 0:
-            ax.set_xscale("log")
-        else:
-            ax.set_xlim(left=-4)
-        _tick(ax, {tick: tick for tick in panel.ticks})
-        ax.set_title(panel.title, **TITLE)
-    having = {name: sum(named[name].energy is not None for _, named in moves) for name in names}
-    labels = [
-        name if number == len(moves) else f"{name}\n({number} of {len(moves)} moves)"
-        for name, number in having.items()
-    ]
-    panels[0].set_yticks(range(len(names)), labels)
-    panels[0].set_ylim(len(names) - 0.5, -0.5)
-    handles.append(Line2D([], [], linestyle="", marker="|", color="black", label="median",
-                          markersize=14, markeredgewidth=2))  # fmt: skip
-    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
+        _draw_panel(ax, panel, moves, dots)
+    labels: list[str] = []
+    for name in moves[0]:
+        having = sum(move[name].energy is not None for move in moves)
+        some = f"\n({having} of {len(moves)} moves)" if having < len(moves) else ""
+        labels.append(f"{name}{some}")
+    panels[0].set_yticks(range(len(labels)), labels)
+    panels[0].set_ylim(len(labels) - 0.5, -0.5)
+    middle = Line2D([], [], ls="", marker="|", color="black", label="median", ms=14, mew=2)
+    figure.legend(
+        handles=[*dots, middle], loc="outside lower center", ncols=4, frameon=False, fontsize=9
+    )
     figure.suptitle("Every system on the same moves: further left is better", fontsize=12)
     return figure
+
+
+def _draw_panel(
+    ax: Axes, panel: _Panel, moves: Sequence[Mapping[str, System]], dots: Sequence[Line2D]
+) -> None:
+    """The dots of every system in the looks of the moves, and a line at their median."""
+    for row, name in enumerate(moves[0]):
+        if row % 2 == 0:
+            ax.axhspan(row - 0.5, row + 0.5, color=_SHADE, zorder=0)
+        drawn: list[float] = []
+        for lane, (move, dot) in enumerate(zip(moves, dots, strict=True)):
+            value, unit = panel.of(move[name]), panel.unit(move[panel.of_system])
+            if value is None or not unit:
+                continue
+            drawn.append(value / unit)
+            height = row + _SPREAD * (lane / max(1, len(moves) - 1) - 0.5)
+            style = {"marker": dot.get_marker(), "color": dot.get_color(), "markersize": 5}
+            ax.plot(value / unit, height, zorder=3, clip_on=False, **style)
+        if drawn:
+            middle, half = median(drawn), _SPREAD / 2 + 0.08
+            ax.plot([middle] * 2, [row - half, row + half], color="black", lw=2, zorder=2)
+    if panel.ticks[0] > 0:
+        ax.set_xscale("log")
+    else:
+        ax.set_xlim(left=-4)
+    _tick(ax, {tick: tick for tick in panel.ticks})
+    ax.set_title(panel.title, **TITLE)
 
 
 # The floor

@@ -52,7 +52,7 @@ def animate(
       quietarm animate plan.json --deflection-scale 5 --width 1200 --output move.gif
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.studies.animation import animate as draw
-    from quietarm.studies.animation.formats import check_format, format_of
+    from quietarm.studies.animation.formats import format_of
     from quietarm.studies.display.progress import count
     from quietarm.studies.display.saving import finish
     from quietarm.studies.display.words import print_lines
@@ -61,7 +61,6 @@ def animate(
     from rich.console import Console
 
     kind = format_of(output)
-    check_format(kind)
     lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
     motions = lines if len(lines) > 1 else lines[0].plan
     with count(0, "frames", Console(stderr=True), quiet=quiet) as report:

@@ -4,10 +4,8 @@ import csv
 import dataclasses
 import io
 
-import numpy as np
 import pytest
-from quietarm.studies.display.words import move_of
-from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS, SINGLE_LINK_SIXTH
+from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS
 from quietarm.studies.report.markdown import table_in_markdown
 from quietarm.studies.reproduction.pictures import floor_dots
 from quietarm.studies.reproduction.systems import SEARCHES
@@ -138,19 +136,3 @@ def test_the_dots_stand_where_the_multiples_are(reproduction):
     low, high = axis.get_xlim()
     assert low < min(dots)
     assert max(dots) < high
-
-
-def test_conditions_stand_beside_their_dots(reproduction):
-    axis = floor_dots(reproduction).axes[0]
-    labels = [label.get_text() for label in axis.get_yticklabels()]
-    for label, condition in zip(labels, CONDITIONS, strict=True):
-        assert move_of(condition.task) in label
-        assert f"floor {reproduction.floors[condition].energy:.4g} J" in label
-    heights = np.array(axis.get_yticks())
-    found = multiples(reproduction, SINGLE_LINK_SIXTH)
-    of_first = [
-        line.get_ydata()[0]
-        for line in axis.get_lines()
-        if line.get_marker() == "o" and abs(line.get_ydata()[0] - heights[0]) < 3
-    ]
-    assert len(of_first) == len(found)

@@ -20,14 +20,10 @@ from quietarm.studies.paper.printed import (
     SINGLE_LINK_SIXTH,
 )
 from quietarm.studies.registry.methods import NSGA2, VEPSO
-from quietarm.studies.report.document import Document
-from quietarm.studies.report.markdown import markdown, table_in_markdown
-from quietarm.studies.report.terminal import show
+from quietarm.studies.report.markdown import table_in_markdown
 from quietarm.studies.reproduction.pictures import systems_figure
-from quietarm.studies.reproduction.report import systems_blocks
 from quietarm.studies.reproduction.systems import searched
-from quietarm.studies.reproduction.tables import all_systems, seconds_in_words, systems_table
-from rich.console import Console
+from quietarm.studies.reproduction.tables import all_systems, systems_table
 
 SYSTEMS = [
     "plain cycloid", "ZV", "ZVD", "EI", "paper", "network", "Gaussians", "spline", "VEPSO",
@@ -234,13 +230,6 @@ def test_a_row_says_on_how_many_moves_there_is_nothing(figure):
     assert labels[-1] == "floor"
 
 
-def test_each_move_has_a_look_of_its_own(reproduction, figure):
-    (legend,) = figure.legends
-    shown = [handle for handle in legend.legend_handles if handle.get_marker() != "|"]
-    looks = {(handle.get_color(), handle.get_marker()) for handle in shown}
-    assert len(looks) == len(shown) == len(reproduction.systems)
-
-
 # The tables
 
 WHOLE = ("plain cycloid", "ZV", "ZVD", "EI", "paper", "boxed gradient", "gradient")
@@ -252,38 +241,6 @@ def missing(systems):
 
 
 PAGES = Path(__file__).parents[3]
-
-
-@pytest.mark.parametrize(
-    ("seconds", "words"),
-    [(0.012, "0.01"), (0.346, "0.35"), (0.999, "1.0"), (9.97, "10"), (14.2, "14"), (123.4, "123")],
-)
-def test_seconds_take_little_room(seconds, words):
-    assert seconds_in_words(seconds) == words
-
-
-@pytest.mark.parametrize("width", [80, 120])
-def test_every_table_is_whole_on_the_screen(reproduction, width):
-    console = Console(file=io.StringIO(), width=width)
-    show(console, Document("", systems_blocks(reproduction.systems)))
-    text = console.file.getvalue()
-    assert max(map(len, text.splitlines())) <= width
-    for case, systems in reproduction.systems.items():
-        (title,) = [line for line in text.splitlines() if line.strip().endswith(case.name)]
-        below = text.split(title)[1].split("Side by side")[0]
-        for found in systems:  # a line each, in one piece
-            (line,) = [line for line in below.splitlines() if line.startswith(f"  {found.name}  ")]
-            assert line.split()[-1] == (
-                "-" if found.seconds is None else seconds_in_words(found.seconds)
-            )
-            if found.motion is not None:
-                assert f" {found.energy:.4f} " in line
-                assert f" {found.motion.residual * 1e3:.2f} " in line
-                assert f" {found.wrong_residual * 1e3:.2f} " in line
-    joined = " ".join(text.split())
-    for systems in reproduction.systems.values():
-        for why in missing(systems):
-            assert why in joined
 
 
 def test_csv_holds_everything_with_every_digit(reproduction):
@@ -304,14 +261,6 @@ def test_csv_holds_everything_with_every_digit(reproduction):
             ("seconds", found.seconds),
         ):
             assert (float(row[name]) if row[name] else None) == value
-
-
-def test_markdown_has_a_table_for_each_move_and_what_is_missing(reproduction):
-    text = markdown(Document("", systems_blocks(reproduction.systems)))
-    for case, systems in reproduction.systems.items():
-        assert table_in_markdown(systems_table(case, systems)) in text
-        for why in missing(systems):
-            assert f"\n- {why}\n" in text
 
 
 def test_the_page_of_systems_shows_what_is_computed(reproduction):
