@@ -80,22 +80,30 @@ def systems_of(case: Case, answers: Mapping[Hashable, Any], seeds: int) -> tuple
         for method in SEARCHES
     }
     return (
-        replace(_of_plan(CYCLOID, evaluate_coefficients(case.task, [])), seconds=None),
+        replace(_of(CYCLOID, evaluate_coefficients(case.task, [])), seconds=None),
         *(_shaped(case, shaper) for shaper in SHAPERS),
         _paper(case),
-        *(_of_plan(name, answers[case, name]) for name in OTHERS),
+        *(_of(name, answers[case, name]) for name in OTHERS),
         *(searched(case, method, its_fronts) for method, its_fronts in fronts.items()),
-        _of_plan(IN_BOX, answers[case, COMPARED_TERMS, True]),
-        _of_plan(FREE, answers[case, COMPARED_TERMS, False]),
+        _of(IN_BOX, answers[case, COMPARED_TERMS, True]),
+        _of(FREE, answers[case, COMPARED_TERMS, False]),
         _robust(case, answers[case, ROBUST]),
-        _floor(answers[case]),
+        _of(FLOOR, answers[case]),
     )
 
 
-def _of_plan(name: str, plan: Plan) -> System:
-    joint = PiecewiseMotion.of_profile(plan.task, plan.profile, plan.coefficients)
-    wrong = _wrong_residual(plan, joint)
-    return System(name, plan.profile.size, plan.motion, wrong, plan.provenance.seconds)
+def _of(name: str, answer: Plan | Floor) -> System:
+    task = answer.task
+    if isinstance(answer, Plan):
+        size = answer.profile.size
+        joint = PiecewiseMotion.of_profile(task, answer.profile, answer.coefficients)
+    else:
+        size, joint = None, PiecewiseMotion.of_free_motion(task, answer.free)
+    plants = (
+        with_errors(task.plant, {FREQUENCY: error}) for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
+    )
+    wrong = max(resimulated(replace(task, plant=plant), joint).residual for plant in plants)
+    return System(name, size, answer.motion, wrong, answer.provenance.seconds)
 
 
 def _robust(case: Case, plan: Plan | str) -> System:
@@ -103,22 +111,7 @@ def _robust(case: Case, plan: Plan | str) -> System:
     if isinstance(plan, str):
         return System(ROBUST, COMPARED_TERMS, why=plan)
     assumed = evaluate_coefficients(case.task, plan.coefficients, profile=plan.profile)
-    return replace(_of_plan(ROBUST, assumed), seconds=plan.provenance.seconds)
-
-
-def _floor(floor: Floor) -> System:
-    joint = PiecewiseMotion.of_free_motion(floor.task, floor.free)
-    wrong = _wrong_residual(floor, joint)
-    return System(FLOOR, None, floor.motion, wrong, floor.provenance.seconds)
-
-
-def _wrong_residual(answer: Plan | Floor, joint: PiecewiseMotion) -> float:
-    plant = answer.task.plant
-    wrong = [
-        replace(answer.task, plant=with_errors(plant, {FREQUENCY: error}))
-        for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
-    ]
-    return max(resimulated(task, joint).residual for task in wrong)
+    return replace(_of(ROBUST, assumed), seconds=plan.provenance.seconds)
 
 
 def _shaped(case: Case, shaper: str) -> System:
@@ -128,13 +121,13 @@ def _shaped(case: Case, shaper: str) -> System:
     except ValueError as too_short:
         return System(name, why=str(too_short))
     plan = evaluate_coefficients(case.task, [], profile=profile)
-    return replace(_of_plan(name, plan), seconds=None)
+    return replace(_of(name, plan), seconds=None)
 
 
 def _paper(case: Case) -> System:
     plan = paper_plan(case, COMPARED_TERMS)
     if plan is not None:
-        return replace(_of_plan(PAPER, plan), seconds=None)
+        return replace(_of(PAPER, plan), seconds=None)
     energies = [r.energy for r in ROWS if (r.condition, r.terms) == (case, COMPARED_TERMS)]
     if not energies:
         return System(PAPER, why="the paper has no such move")
@@ -152,4 +145,4 @@ def searched(case: Case, method: Method, fronts: Sequence[Front]) -> System:
     front = sorted(still, key=lambda front: energy_at(front, level))[(len(still) - 1) // 2]
     point = front.cheapest(level)
     plan = evaluate_coefficients(case.task, point.coefficients, profile=front.profile)
-    return replace(_of_plan(method.label, plan), seconds=front.seconds)
+    return replace(_of(method.label, plan), seconds=front.seconds)
