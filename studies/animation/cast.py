@@ -91,12 +91,12 @@ def cast_of(
 
 def _until(motion: Plan | Floor, end: float) -> Trajectory:
     """A motion from its start to the end of the animation."""
-    task = replace(motion.task, residual_window=end - motion.task.duration)
-    if task == motion.task:
+    task = motion.task
+    if task.duration + task.residual_window == end:
         return motion.trajectory
     if isinstance(motion, Plan):
-        times = np.linspace(0.0, end, _SAMPLES)
-        return motion.sampled(np.union1d(times, [motion.task.duration]))
+        return motion.sampled(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
+    task = replace(task, residual_window=end - task.duration)
     return resimulated(task, PiecewiseMotion.of_free_motion(task, motion.free)).trajectory
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.base.checks import positive, whole
 from quietarm.ocp.base.files import write_whole
 from quietarm.studies.animation.cast import cast_of
-from quietarm.studies.animation.formats import PAUSE, WRITERS, check_format, format_of
+from quietarm.studies.animation.formats import PAUSE, WRITERS, format_of
 from quietarm.studies.animation.stage import frames_of
 from quietarm.studies.figures.motion import Motions, lines_of
 
@@ -109,7 +109,8 @@ def animate(
     ValueError
         When there is no motion or too many, a number is out of range, or there is no ffmpeg.
     """
-    check_format(format)
+    if format not in WRITERS:
+        raise ValueError(f"format is {format!r}; give {' or '.join(map(repr, WRITERS))}")
     lines = lines_of(motions)
     if len(lines) > _MOST_MOTIONS:
         raise ValueError(

@@ -42,6 +42,10 @@ def gif(frames: Iterable[Picture], rate: float) -> bytes:
 
 def mp4(frames: Iterable[Picture], rate: float) -> bytes:
     """An MP4 in the colours that every player knows."""
+    if shutil.which("ffmpeg") is None:
+        raise ValueError(
+            "an MP4 needs the program ffmpeg, which is not found here; install it, or make a GIF"
+        )
     with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
         target = Path(folder) / "film.mp4"
         height = width = 0
@@ -77,13 +81,3 @@ def format_of(path: str | Path) -> str:
     if ending not in WRITERS:
         raise ValueError(f"{path} is no animation; end its name in .gif or .mp4")
     return ending
-
-
-def check_format(name: str) -> None:
-    """Make sure that a format is known and can be made here; ValueError otherwise."""
-    if name not in WRITERS:
-        raise ValueError(f"format is {name!r}; give {' or '.join(map(repr, WRITERS))}")
-    if name == "mp4" and shutil.which("ffmpeg") is None:
-        raise ValueError(
-            "an MP4 needs the program ffmpeg, which is not found here; install it, or make a GIF"
-        )
