@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -160,7 +160,11 @@ def _draw_panel(
                 continue
             drawn.append(value / unit)
             height = row + _SPREAD * (lane / max(1, len(moves) - 1) - 0.5)
-            style = {"marker": dot.get_marker(), "color": dot.get_color(), "markersize": 5}
+            style: dict[str, Any] = {
+                "marker": dot.get_marker(),
+                "color": dot.get_color(),
+                "markersize": 5,
+            }
             ax.plot(value / unit, height, zorder=3, clip_on=False, **style)
         if drawn:
             middle, half = median(drawn), _SPREAD / 2 + 0.08
