@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from quietarm.studies.display.words import title_of
-from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, SINGLE_LINK_SIXTH
+from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
 from quietarm.studies.report.document import Block, Bullets, Document, Picture, Section, Text
 from quietarm.studies.reproduction.claims import claims
 from quietarm.studies.reproduction.pictures import (
@@ -22,6 +22,7 @@ from quietarm.studies.reproduction.tables import (
     checks_table,
     finding,
     floor_table,
+    of_plants,
     paper_table,
     systems_table,
 )
@@ -77,7 +78,7 @@ _FIGURES = (
 def reproduction_document(result: Reproduction) -> Document:
     """The paper's tables and figures, all systems side by side, the floor, both solvers, claims."""
     paper = {f"table_{number}": paper_table(result, number) for number in TITLES}
-    plants = dict.fromkeys(condition.task.plant.name for condition in CONDITIONS)
+    floor = floor_table(result)
     figures = [
         Picture(
             f"figure_{number}.png",
@@ -96,7 +97,7 @@ def reproduction_document(result: Reproduction) -> Document:
                 "How far from the floor",
                 [
                     Text(finding(result)),
-                    *(floor_table(result, plant) for plant in plants),
+                    *of_plants(floor),
                     Text(_FLOOR, soft=True),
                     Picture("floor.png", partial(floor_dots, result), "Multiples of the floor"),
                     checks_table(result),
@@ -106,7 +107,7 @@ def reproduction_document(result: Reproduction) -> Document:
             Section("What the paper claims", claims(result)),
             Section("Figures", figures, screen=False),
         ],
-        {**paper, "systems": all_systems(result.systems), "floor": floor_table(result)},
+        {**paper, "systems": all_systems(result.systems), "floor": floor},
     )
 
 

@@ -206,22 +206,21 @@ def multiples(result: Reproduction, condition: Case) -> Multiples:
     }
 
 
-def floor_table(result: Reproduction, plant: str | None = None) -> Table:
-    """The multiples as a table, one row for each condition: all, or those of one plant."""
-    conditions = [c for c in CONDITIONS if plant in (None, c.task.plant.name)]
+def floor_table(result: Reproduction) -> Table:
+    """The multiples as a table, one row for each condition."""
     places = [
         (series, terms)
         for series in SERIES
         for terms in (TERMS if series in (_IN_BOX, _FREE) else (2, 4, 6))
     ]
-    found = {case: multiples(result, case) for case in conditions}
+    found = {case: multiples(result, case) for case in CONDITIONS}
     floors = result.floors
 
     def agreement(case: Case) -> str:
         return f"{floors[case].agreeing()} of {len(floors[case].starts)}"
 
     columns: _Columns = [
-        (Column("plant", key="plant"), lambda case: None if plant else case.task.plant.name),
+        (Column("plant", key="plant"), lambda case: case.task.plant.name),
         (Column("move", key="move"), lambda case: case.label),
         (Column("floor F2 [J]", _J, "floor_J"), lambda case: floors[case].energy),
         (Column("  left [J], about", "{:.1g}".format, "left_J"), lambda case: floors[case].left),
@@ -230,8 +229,19 @@ def floor_table(result: Reproduction, plant: str | None = None) -> Table:
     for place in places:
         column = Column(f"{place[0]}, N = {place[1]}", "{:.3f}".format, _key(*place))
         columns.append((column, lambda case, place=place: found[case].get(place, (None,))[0]))
-    title = "Energies as multiples of the floor, at rest on arrival"
-    return _table(f"{title}, {plant}" if plant else title, conditions, columns)
+    return _table("Energies as multiples of the floor, at rest on arrival", CONDITIONS, columns)
+
+
+def of_plants(table: Table) -> list[Table]:
+    """A table with the plant in its first column, as one table for each: narrower on a screen."""
+    return [
+        Table(
+            f"{table.title}, {plant}",
+            table.columns[1:],
+            [row[1:] for row in table.rows if row[0] == plant],
+        )
+        for plant in dict.fromkeys(row[0] for row in table.rows)
+    ]
 
 
 def _key(series: str, terms: int) -> str:

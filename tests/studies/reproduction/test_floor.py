@@ -9,7 +9,7 @@ from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS
 from quietarm.studies.report.markdown import table_in_markdown
 from quietarm.studies.reproduction.pictures import floor_dots
 from quietarm.studies.reproduction.systems import SEARCHES
-from quietarm.studies.reproduction.tables import finding, floor_table, multiples
+from quietarm.studies.reproduction.tables import finding, floor_table, multiples, of_plants
 
 TERMS = (2, 4, 6, 8, 10)
 PAPER, IN_BOX, FREE = "paper", "gradient, in the box", "gradient, no box"
@@ -82,13 +82,11 @@ def test_the_table_has_a_row_a_condition_and_csv_all_of_it(reproduction):
 
 
 def test_a_table_a_plant_for_the_screen(reproduction):
-    for plant, conditions in (
-        ("single-link", CONDITIONS[:3]),
-        ("arm-on-flexible-link", CONDITIONS[3:]),
-    ):
-        table = floor_table(reproduction, plant)
-        assert [row[1] for row in table.rows] == [c.label for c in conditions]
-        cells = {cell for line in table.lines for cell in line}
+    both = of_plants(floor_table(reproduction))
+    for table, conditions in zip(both, (CONDITIONS[:3], CONDITIONS[3:]), strict=True):
+        heading, *lines = table.lines
+        assert heading == ["move", *(c.label for c in conditions)]
+        cells = {cell for line in lines for cell in line}
         for condition in conditions:
             assert {f"{m:.3f}" for m in medians(reproduction, condition).values()} <= cells
 
