@@ -2,100 +2,104 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import Body, Plant
+from quietarm.models import Body
 from quietarm.ocp import Floor, Plan, Trajectory
-from quietarm.ocp.base.checks import positive
-from quietarm.studies.animation.clock import Clock
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.studies.figures import Line
 
 Array = NDArray[np.float64]
-Bodies = list[Body]
 
 _SCALES = (1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0)
 _BENT = 0.2
 """Share of a structure's size up to which deflections are drawn larger than they are."""
+_SAMPLES = 1500
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Actor:
     """One motion of an animation."""
 
     line: Line
     trajectory: Trajectory
-    scale: float
-    tips: Array
-    bodies: list[Bodies]
-    unbent: list[Bodies]
+    times: Array
+    scale: float = 1.0
 
     @cached_property
-    def paths(self) -> Array:
-        """Where the tips are drawn, shape (tips, frames, 2) [m]."""
-        drawn = [[body.points[-1] for body in bodies if body.tip] for bodies in self.bodies]
-        return np.array(drawn).reshape(len(drawn), -1, 2).transpose(1, 0, 2)
+    def tips(self) -> Array:
+        """Displacements of the tips at the frames [m]."""
+        return self._at_frames(self.trajectory.tips)
+
+    @cached_property
+    def bodies(self) -> list[list[Body]]:
+        """What is drawn at every frame."""
+        return self._structures(self.scale * self.tips)
+
+    @cached_property
+    def unbent(self) -> list[list[Body]]:
+        """The same without bending."""
+        return self._structures(0 * self.tips)
 
     @property
-    def extent(self) -> Array:
+    def paths(self) -> Array:
+        """Where the tips are drawn, shape (tips, frames, 2) [m]."""
+        ends = [[body.points[-1] for body in bodies if body.tip] for bodies in self.bodies]
+        return np.array(ends).reshape(len(ends), -1, 2).transpose(1, 0, 2)
+
+    @property
+    def corners(self) -> Array:
         """Least and largest coordinates of all that is drawn [m], shape (2, 2)."""
-        every = points_of(body for bodies in (*self.bodies, *self.unbent) for body in bodies)
-        return np.array([every.min(axis=0), every.max(axis=0)])
+        return _corners([body for bodies in (*self.bodies, *self.unbent) for body in bodies])
+
+    @property
+    def largest_share(self) -> float:
+        """The largest displacement of a tip as a share of the structure's size."""
+        size = np.ptp(_corners(self.unbent[0]), axis=0).max() or 1.0  # 1 m of a single point
+        return float(np.abs(self.tips).max() / size)
+
+    def _at_frames(self, columns: Array) -> Array:
+        sampled = [np.interp(self.times, self.trajectory.time, column) for column in columns.T]
+        return np.column_stack(sampled)
+
+    def _structures(self, tips: Array) -> list[list[Body]]:
+        plant = self.line.plan.task.plant
+        angles = self._at_frames(self.trajectory.joint[:, :1])[:, 0]
+        return [
+            list(plant.structure(float(angle), row.tolist()))
+            for angle, row in zip(angles, tips, strict=True)
+        ]
 
 
-def cast_of(lines: Sequence[Line], clock: Clock, scale: float | None = None) -> list[Actor]:
-    """Where the structures are at every frame."""
-    given = None if scale is None else positive("deflection scale", scale)
-    samples = [_until(line.plan, clock.end) for line in lines]
-    angles = [np.interp(clock.times, one.time, one.joint[:, 0]) for one in samples]
-    tips = [_at(clock.times, one.time, one.tips) for one in samples]
-    unbent = [
-        _structures(line.plan.task.plant, at, np.zeros_like(of))
-        for line, at, of in zip(lines, angles, tips, strict=True)
-    ]
-    names = [line.plan.task.plant.name for line in lines]
-    shares = [np.abs(of).max() / _size(bodies[0]) for of, bodies in zip(tips, unbent, strict=True)]
-    actors: list[Actor] = []
-    for i, line in enumerate(lines):
-        largest = max(s for s, name in zip(shares, names, strict=True) if name == names[i])
-        one = given or _fitting(largest)
-        bodies = _structures(line.plan.task.plant, angles[i], one * tips[i])
-        actors.append(Actor(line, samples[i], one, tips[i], bodies, unbent[i]))
-    return actors
+def cast_of(
+    lines: Sequence[Line], times: Array, end: float, scale: float | None = None
+) -> list[Actor]:
+    """The motions of lines at the times of frames; those of one plant have one scale."""
+    cast = [Actor(line, _until(line.plan, end), times) for line in lines]
 
+    def fitting(plant: str) -> float:
+        share = max(a.largest_share for a in cast if a.line.plan.task.plant.name == plant)
+        return max([s for s in _SCALES if s * share <= _BENT], default=1.0)
 
-def points_of(bodies: Iterable[Body]) -> Array:
-    """All points of bodies, shape (points, 2) [m]."""
-    return np.vstack([body.points for body in bodies])
+    return [replace(a, scale=scale or fitting(a.line.plan.task.plant.name)) for a in cast]
 
 
 def _until(motion: Plan | Floor, end: float) -> Trajectory:
-    """A motion from its start to the end of the clock."""
-    window = end - motion.task.duration
-    if window == motion.task.residual_window:
+    """A motion from its start to the end of the animation."""
+    task = motion.task
+    if task.duration + task.residual_window == end:
         return motion.trajectory
-    return replace(motion, task=replace(motion.task, residual_window=window)).trajectory
+    if isinstance(motion, Plan):
+        return motion.sampled(np.union1d(np.linspace(0.0, end, _SAMPLES), [task.duration]))
+    task = replace(task, residual_window=end - task.duration)
+    return resimulated(task, PiecewiseMotion.of_free_motion(task, motion.free)).trajectory
 
 
-def _at(times: Array, of: Array, columns: Array) -> Array:
-    return np.column_stack([np.interp(times, of, column) for column in columns.T])
-
-
-def _structures(plant: Plant, angles: Array, tips: Array) -> list[Bodies]:
-    return [
-        list(plant.structure(float(angle), row.tolist()))
-        for angle, row in zip(angles, tips, strict=True)
-    ]
-
-
-def _size(bodies: Bodies) -> float:
-    """The larger side of what is drawn [m]; 1 m of a single point."""
-    return float(np.ptp(points_of(bodies), axis=0).max()) or 1.0
-
-
-def _fitting(share: float) -> float:
-    """The scale for deflections that are this share of the structure's size."""
-    return max([s for s in _SCALES if s * share <= _BENT], default=1.0)
+def _corners(bodies: Sequence[Body]) -> Array:
+    points = np.vstack([body.points for body in bodies])
+    return np.array([points.min(axis=0), points.max(axis=0)])

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from quietarm.ocp.base.checks import whole
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.ocp.base.checks import positive, whole
 from quietarm.ocp.base.files import write_whole
 from quietarm.studies.animation.cast import cast_of
-from quietarm.studies.animation.clock import Clock, end_of
-from quietarm.studies.animation.formats import FORMATS, PAUSE, Picture, check_format, format_of
-from quietarm.studies.animation.stage import Stage
+from quietarm.studies.animation.formats import PAUSE, WRITERS, format_of
+from quietarm.studies.animation.stage import frames_of
 from quietarm.studies.figures.motion import Motions, lines_of
 
-MOST_MOTIONS = 6
+_MOST_MOTIONS = 6
+_MOST_FRAMES = 500
+"""More would take minutes, and make a file that is too large to be shown."""
+_LEAST_A_SECOND, _MOST_A_SECOND = 1, 50
+"""Fewer frames are no motion; browsers show no more of a GIF."""
 _LEAST_WIDTH, _MOST_WIDTH = 200, 2000
+_ROUNDING = 1e-6
+"""Of a frame: one that is this close to the end belongs to it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +59,9 @@ class Animation:
     def _repr_html_(self) -> str:
         """What a notebook shows: the file itself, so that it needs no server."""
         content = base64.b64encode(self.content).decode()
-        data = f"data:{FORMATS[self.format].media_type};base64,{content}"
         if self.format == "mp4":
-            return f'<video controls loop src="{data}"></video>'
-        return f'<img src="{data}">'
+            return f'<video controls loop src="data:video/mp4;base64,{content}"></video>'
+        return f'<img src="data:image/gif;base64,{content}">'
 
 
 def animate(
@@ -103,26 +109,38 @@ def animate(
     ValueError
         When there is no motion or too many, a number is out of range, or there is no ffmpeg.
     """
-    check_format(format)
+    if format not in WRITERS:
+        raise ValueError(f"format is {format!r}; give {' or '.join(map(repr, WRITERS))}")
     lines = lines_of(motions)
-    if len(lines) > MOST_MOTIONS:
+    if len(lines) > _MOST_MOTIONS:
         raise ValueError(
-            f"{len(lines)} motions are given, where {MOST_MOTIONS} are the most that can be seen "
+            f"{len(lines)} motions are given, where {_MOST_MOTIONS} are the most that can be seen "
             "side by side; give fewer"
         )
     width = whole("width", width, _LEAST_WIDTH, _MOST_WIDTH, "more pixels make a huge file")
-    clock = Clock(end_of(lines), speed, frames_per_second)
-    stage = Stage(cast_of(lines, clock, deflection_scale), clock, width)
-    pictures = _reported(stage.frames(), len(clock.times), report)
-    content = FORMATS[format].write(pictures, frames_per_second)
-    seconds = PAUSE + len(clock.times) / frames_per_second
-    return Animation(content, format, len(clock.times), seconds)
+    if deflection_scale is not None:
+        positive("deflection scale", deflection_scale)
+    end = max(line.plan.task.duration + line.plan.task.residual_window for line in lines)
+    times = _frame_times(end, speed, frames_per_second)
+
+    cast = cast_of(lines, times, end, deflection_scale)
+    content = WRITERS[format](frames_of(cast, end, speed, width, report), frames_per_second)
+    return Animation(content, format, len(times), PAUSE + len(times) / frames_per_second)
 
 
-def _reported(
-    frames: Iterator[Picture], total: int, report: Callable[[int, int], object] | None
-) -> Iterator[Picture]:
-    for done, frame in enumerate(frames, start=1):
-        if report is not None:
-            report(done, total)
-        yield frame
+def _frame_times(end: float, speed: float, rate: float) -> NDArray[np.float64]:
+    """When the frames are; ValueError where they are too many, or too few in a second."""
+    positive("speed", speed)
+    if not _LEAST_A_SECOND <= rate <= _MOST_A_SECOND:
+        raise ValueError(
+            f"frames per second is {rate:g}; give {_LEAST_A_SECOND} to {_MOST_A_SECOND}: browsers "
+            "show no more of a GIF, and slow motion is a lower speed"
+        )
+    frames = end * rate / speed
+    if frames > _MOST_FRAMES:
+        raise ValueError(
+            f"{end:g} s at {rate:g} frames per second and speed {speed:g} make {frames:.0f} "
+            f"frames, where {_MOST_FRAMES} are the most that can be drawn and shown in reasonable "
+            "time; give fewer frames per second or a higher speed"
+        )
+    return np.arange(float(int(frames + _ROUNDING) + 1)) * speed / rate

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from operator import attrgetter
 
 import moocore
 import numpy as np
@@ -63,12 +64,9 @@ class Group:
         return method_of(self.runs[0].front.method)
 
     def spread(self, figure: str, level: int | None = None) -> Spread:
-        """Quartiles over the runs of a figure of `Measured`, or of its front, by name."""
-        values: list[float] = []
-        for run in self.runs:
-            value = getattr(run if hasattr(run, figure) else run.front, figure)
-            values.append(float(value if level is None else value[level]))
-        return Spread.of(values)
+        """Quartiles over the runs of a figure of `Measured` by name, as `front.seconds`."""
+        values = [attrgetter(figure)(run) for run in self.runs]
+        return Spread.of([float(v if level is None else v[level]) for v in values])
 
     def reached(self, level: int) -> int:
         """How many runs have a motion within one of the residual levels, by its position."""

@@ -52,8 +52,10 @@ def _fronts(comparison: Comparison) -> Table:
             row += _quartiles(group.spread(figure), several)
             if figure == "hypervolume":
                 row.append(group.spread("hypervolume_found").median if filling else None)
-        row += [group.spread(figure).median or None for figure in ("evaluations", "iterations")]
-        row.append(group.spread("seconds").median)
+        row += [
+            group.spread(f"front.{work}").median or None for work in ("evaluations", "iterations")
+        ]
+        row.append(group.spread("front.seconds").median)
         rows.append(row)
     return Table("Fronts", columns, rows)
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+from numpy.typing import NDArray
 
-STAIRS = "steps-post"
-"""Line style of a front: between two points the stiller one is the best known motion."""
+Array = NDArray[np.float64]
+
 TITLE: dict[str, Any] = {"loc": "left", "fontsize": 10}
 """How the title of a panel is set."""
 _LOGARITHMIC_FROM = 5.0
@@ -40,6 +42,24 @@ def side_by_side(panels: int, title: str, width: float = 4.8) -> tuple[Figure, l
     if title:
         figure.suptitle(title, fontsize=11)
     return figure, list(figure.subplots(1, panels, squeeze=False).flat)
+
+
+def draw_stairs(ax: Axes, residuals: Array, energies: Array, **style: Any) -> None:
+    """Draw a front [m, J]: between two points the stiller one is the best known motion."""
+    ax.plot(residuals * 1e3, energies, linewidth=0.8, drawstyle="steps-post", **style)
+
+
+def letter(axes: Sequence[Axes]) -> None:
+    """Put (a), (b) ... before the titles of panels."""
+    for name, ax in zip("abcdefghi", axes, strict=False):
+        ax.set_title(f"({name}) {ax.get_title(loc='left')}", **TITLE)
+
+
+def legend_below(figure: Figure, axes: Sequence[Axes], columns: int, size: float) -> None:
+    """One legend for several panels, below them."""
+    figure.legend(
+        *legend_of(axes), loc="outside lower center", ncols=columns, fontsize=size, frameon=False
+    )
 
 
 def name_objectives(ax: Axes) -> None:

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import count, cycle
 from textwrap import fill
-from typing import Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
-from quietarm.ocp.base.names import unknown
-from quietarm.studies.comparison.measures import Comparison
+from quietarm.studies.comparison.measures import Comparison, Group
 from quietarm.studies.comparison.staircase import within
 from quietarm.studies.display.words import title_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
+    legend_below,
     legend_of,
+    letter,
     logarithmic_residuals,
     new_figure,
 )
@@ -51,16 +51,6 @@ BANDS = (
 )
 
 Array = NDArray[np.float64]
-
-
-class DrawPanel(Protocol):
-    """Draws one panel of a comparison."""
-
-    def __call__(
-        self, comparison: Comparison, paper: Sequence[PaperPoint] = (), ax: Axes | None = None
-    ) -> Axes:
-        """Draw it on these axes, or new ones, and return them."""
-        ...
 
 
 def looks(comparison: Comparison) -> dict[str, Look]:
@@ -103,9 +93,9 @@ def comparison_figure(
     """
     figure = new_figure(10, 7.4)
     axes: list[Axes] = list(figure.subplots(2, 2).flat)
-    for ax, draw, letter in zip(axes, PANELS.values(), "abc", strict=False):
+    for ax, draw in zip(axes, PANELS.values(), strict=False):
         draw(comparison, paper, ax)
-        ax.set_title(f"({letter}) {ax.get_title(loc='left')}", **TITLE)
+    letter(axes[:3])
     axes[3].axis("off")
     several = any(len(group.runs) > 1 for group in comparison.groups)
     handles, labels = legend_of(axes)
@@ -119,13 +109,9 @@ def comparison_figure(
 
 def panel_figure(comparison: Comparison, panel: str, paper: Sequence[PaperPoint] = ()) -> Figure:
     """Draw one of `PANELS` alone, small enough for a phone, with the legend below it."""
-    if panel not in PANELS:
-        raise ValueError(unknown("panel", panel, PANELS))
     figure = new_figure(4.8, 4.6)
     ax = PANELS[panel](comparison, paper, figure.subplots())
-    figure.legend(
-        *legend_of([ax]), loc="outside lower center", ncols=2, frameon=False, fontsize=8.5
-    )
+    legend_below(figure, [ax], 2, 8.5)
     return figure
 
 
@@ -187,14 +173,13 @@ def draw_gaps(
     points. Parameters, and what is returned, are those of `draw_whole`; the paper's points are not
     drawn.
     """
-    ax, shown = axes_or_new(ax), looks(comparison)
-    for place, group in enumerate(comparison.groups):
-        own = shown[group.label]
+    ax = axes_or_new(ax)
+    for group, own, wider in _drawn(comparison):
         residuals, energies = group.median.T
         gap = 100 * (energies / within(comparison.best_front, residuals) - 1)
         ax.plot(
             np.maximum(residuals, _left(comparison)) * 1e3, gap, own.mark, color=own.colour,
-            markersize=3.2 + 0.35 * _below(comparison, place), markeredgewidth=0,
+            markersize=3.2 + wider, markeredgewidth=0,
             label=group.label,
         )  # fmt: skip
     ax.set_yscale("symlog", linthresh=0.1, linscale=0.5)
@@ -206,25 +191,21 @@ def draw_gaps(
     return ax
 
 
-PANELS: dict[str, DrawPanel] = {
-    "whole": draw_whole,
-    "still": draw_still,
-    "gaps": draw_gaps,
-}
+PANELS = {"whole": draw_whole, "still": draw_still, "gaps": draw_gaps}
 
 
-def _below(comparison: Comparison, place: int) -> int:
-    """How many groups are drawn over this one; it is drawn wider, to be seen below them."""
-    return len(comparison.groups) - place - 1
+def _drawn(comparison: Comparison) -> Iterator[tuple[Group, Look, float]]:
+    """Every group, its look, and how much wider it is drawn, to be seen below the next ones."""
+    shown, last = looks(comparison), len(comparison.groups) - 1
+    for place, group in enumerate(comparison.groups):
+        yield group, shown[group.label], 0.35 * (last - place)
 
 
 def _draw_fronts(
     ax: Axes, comparison: Comparison, paper: Sequence[PaperPoint], right: float
 ) -> None:
     """Draw staircases up to a residual [m], the paper's points and the floor."""
-    shown = looks(comparison)
-    for place, group in enumerate(comparison.groups):
-        own = shown[group.label]
+    for group, own, wider in _drawn(comparison):
         stairs = np.concatenate([group.best[:, 0], group.median[:, 0], group.worst[:, 0], [right]])
         stairs = np.unique(stairs[stairs <= right])
         best, median, worst = (within(s, stairs) for s in (group.best, group.median, group.worst))
@@ -234,7 +215,7 @@ def _draw_fronts(
             )
         ax.plot(
             stairs * 1e3, median, color=own.colour, linestyle=own.dash,
-            linewidth=1.2 + 0.35 * _below(comparison, place), drawstyle="steps-post",
+            linewidth=1.2 + wider, drawstyle="steps-post",
             label=group.label,
         )  # fmt: skip
     marks = cycle("*Pv")

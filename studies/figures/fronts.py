@@ -12,8 +12,8 @@ from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energ
 from quietarm.ocp import Front
 from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.axes import (
-    STAIRS,
     axes_or_new,
+    draw_stairs,
     name_objectives,
     scale_residuals,
     side_by_side,
@@ -51,11 +51,10 @@ def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     names = _names(fronts)
     for i, front in enumerate(fronts):
         if front.points:
-            ax.plot(
-                front.residuals * 1e3, front.energies, color=look(i).colour, marker=look(i).mark,
-                linestyle="-" if front.complete else "--", markersize=3, linewidth=0.8,
-                alpha=0.8, drawstyle=STAIRS,
-                label=f"{names[i]}{'' if front.complete else ', interrupted'}",
+            style, words = ("-", "") if front.complete else ("--", ", interrupted")
+            draw_stairs(
+                ax, front.residuals, front.energies, color=look(i).colour, marker=look(i).mark,
+                linestyle=style, markersize=3, alpha=0.8, label=f"{names[i]}{words}",
             )  # fmt: skip
     scale_residuals(ax, [point.residual * 1e3 for front in fronts for point in front.points])
     ax.set_title("fronts" if len(fronts) > 1 else "front", fontsize=10)

@@ -10,11 +10,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from quietarm.ocp import Floor, Plan, Trajectory, evaluate_coefficients
+from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.task.quantities import QUANTITIES
 from quietarm.studies.display.words import error_words, title_of
-from quietarm.studies.figures.axes import TITLE, axes_or_new, legend_of, new_figure
+from quietarm.studies.figures.axes import (
+    TITLE,
+    axes_or_new,
+    legend_below,
+    legend_of,
+    letter,
+    new_figure,
+)
 from quietarm.studies.figures.looks import BLUE, GREY, RED, Dash, look
 
 _SHOWN, _ABOVE = 0.99, 1.15
@@ -24,12 +31,9 @@ _IN_SIGHT = 0.4
 
 
 _GIVE_MOTIONS = "give one motion or more, all of one duration"
-_ANGLE, _JERK = "angle", "jerk"
-_IN_MILLIMETRES = {"m": ("mm", 1e3)}
-"""Units that pictures replace by others, with the factor."""
-QUANTITIES_DRAWN = (_ANGLE, "speed", "acceleration", _JERK, "deflection", "torque")
+QUANTITIES_DRAWN = ("angle", "speed", "acceleration", "jerk", "deflection", "torque")
 """What can be drawn: the joint's angle, and the quantities that a task may limit."""
-PAPER_PANELS = (_ANGLE, "speed", "deflection", "torque")
+PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
 
@@ -85,15 +89,22 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
     if quantity not in QUANTITIES_DRAWN:
         known = ", ".join(QUANTITIES_DRAWN)
         raise ValueError(f"no quantity is called {quantity!r}; give one of {known}")
-    lines, (name, unit, scale) = _of_one_duration(motions), _name_and_unit(quantity)
-    ax = axes_or_new(ax)
+    lines, ax = _of_one_duration(motions), axes_or_new(ax)
+    drawn = QUANTITIES.get(quantity)  # the joint's angle is none of them
+    name, unit = (drawn.label, drawn.unit) if drawn else ("joint angle", "rad")
+    scale, unit = (1e3, "mm") if unit == "m" else (1.0, unit)
+    values: list[NDArray[np.float64]] = []
     for line in lines:
-        sampled = line.plan.trajectory
-        for i, column in enumerate(_values(quantity, sampled).T):
-            ax.plot(sampled.time, column, color=line.colour, **_looks(line, i))
+        at = line.plan.trajectory
+        columns = drawn.of(at.motion, list(at.tips.T), at.torque) if drawn else [at.joint[:, 0]]
+        values.append(scale * np.column_stack(columns))
+        for i, column in enumerate(values[-1].T):
+            ax.plot(at.time, column, color=line.colour, **_looks(line, i))
     ax.axvline(lines[0].plan.task.duration, color="0.6", linewidth=0.8, linestyle="--")
-    words = [f"{name} [{unit}]", *_draw_limits(ax, quantity, scale, lines)]
-    words += _leave_out_jolts(ax, quantity, lines)
+    limits = [line.plan.task.limits.get(quantity) for line in lines]
+    words = [f"{name} [{unit}]"]
+    words += _draw_limits(ax, [scale * limit for limit in limits if limit is not None], values)
+    words += _leave_out_jolts(ax, lines, values)
     ax.set_title(", ".join(words), **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)
@@ -126,7 +137,9 @@ def motion_figure(
         As `draw_quantity`.
     """
     lines = _of_one_duration(motions)
-    quantities = _panels_of(lines) if quantities is None else quantities
+    if quantities is None:
+        jerk = any("jerk" in line.plan.task.limits for line in lines)
+        quantities = [name for name in QUANTITIES_DRAWN if jerk or name != "jerk"]
     if not quantities:
         raise ValueError("no quantity is given to draw; name some, as ['torque']")
     count = len(quantities)
@@ -134,13 +147,12 @@ def motion_figure(
     rows = -(-count // columns)
     figure = new_figure(1.0 + 4.4 * columns, 0.8 + 2.9 * rows)
     axes: list[Axes] = list(figure.subplots(rows, columns, sharex=True, squeeze=False).flat)
-    for i, quantity in enumerate(quantities):
-        ax = draw_quantity(lines, quantity, axes[i])
-        if count > 1:
-            ax.set_title(f"({'abcdefghi'[i]}) {ax.get_title(loc='left')}", **TITLE)
-        ax.tick_params(labelbottom=True)
-        if i + columns < count:  # another stands below it
-            ax.set_xlabel("")
+    for quantity, ax in zip(quantities, axes, strict=False):
+        draw_quantity(lines, quantity, ax).tick_params(labelbottom=True)
+    for ax in axes[: max(0, count - columns)]:  # another stands below it
+        ax.set_xlabel("")
+    if count > 1:
+        letter(axes[:count])
     spare = axes[count:]
     for ax in spare:
         ax.axis("off")
@@ -148,13 +160,7 @@ def motion_figure(
     if spare:
         spare[0].legend(*legend_of(axes[:count]), loc="center left", fontsize=10, frameon=False)
     else:
-        figure.legend(
-            *legend_of(axes),
-            loc="outside lower center",
-            ncols=min(3, len(lines)),
-            fontsize=9,
-            frameon=False,
-        )
+        legend_below(figure, axes, min(3, len(lines)), 9)
     title = title_of(lines[0].plan.task) if title is None else title
     if title:
         figure.suptitle(title, fontsize=12)
@@ -194,30 +200,6 @@ def _of_one_duration(motions: Motions) -> list[Line]:
     return lines
 
 
-def _panels_of(lines: Sequence[Line]) -> list[str]:
-    """What is drawn by default: all, but the jerk only where a task limits it."""
-    jerk = any(_JERK in line.plan.task.limits for line in lines)
-    return [name for name in QUANTITIES_DRAWN if jerk or name != _JERK]
-
-
-def _name_and_unit(quantity: str) -> tuple[str, str, float]:
-    """What a quantity is called, the unit it is drawn in, and that unit for one of SI."""
-    if quantity == _ANGLE:
-        return "joint angle", "rad", 1.0
-    drawn = QUANTITIES[quantity]
-    unit, scale = _IN_MILLIMETRES.get(drawn.unit, (drawn.unit, 1.0))
-    return drawn.label, unit, scale
-
-
-def _values(quantity: str, sampled: Trajectory) -> NDArray[np.float64]:
-    """A quantity of a motion as it is drawn, shape (samples, lines)."""
-    if quantity == _ANGLE:
-        return sampled.joint[:, :1]
-    columns = QUANTITIES[quantity].of(sampled.motion, list(sampled.tips.T), sampled.torque)
-    _, _, scale = _name_and_unit(quantity)
-    return scale * np.column_stack(columns)
-
-
 def _looks(line: Line, tip: int) -> dict[str, Any]:
     """Label and style of a tip: the line's own for its first one, thin for those of samples."""
     plant, others = line.plan.task.plant, [s for s in (":", "-.", "--") if s != line.style]
@@ -231,13 +213,14 @@ def _looks(line: Line, tip: int) -> dict[str, Any]:
     return {"label": f"{line.label}, tip {tip + 1}", "linestyle": style, "linewidth": 1.6}
 
 
-def _draw_limits(ax: Axes, quantity: str, scale: float, lines: Sequence[Line]) -> list[str]:
+def _draw_limits(
+    ax: Axes, limits: Sequence[float], values: Sequence[NDArray[np.float64]]
+) -> list[str]:
     """Draw the limits that a motion comes near; the others in words."""
-    values = np.concatenate([_values(quantity, line.plan.trajectory).ravel() for line in lines])
-    every = [line.plan.task.limits.get(quantity) for line in lines]
+    every = np.concatenate([one.ravel() for one in values])
     words, label = list[str](), "limit"
-    for limit in sorted({scale * limit for limit in every if limit is not None}):
-        sides = [side for side in (1, -1) if (side * values).max() >= _IN_SIGHT * limit]
+    for limit in sorted(set(limits)):
+        sides = [side for side in (1, -1) if (side * every).max() >= _IN_SIGHT * limit]
         for side in sides:
             ax.axhline(side * limit, color="black", linewidth=1.1, linestyle=":", label=label)
             label = "_"  # once in the legend
@@ -245,19 +228,23 @@ def _draw_limits(ax: Axes, quantity: str, scale: float, lines: Sequence[Line]) -
     return words
 
 
-def _leave_out_jolts(ax: Axes, quantity: str, lines: Sequence[Line]) -> list[str]:
+def _leave_out_jolts(
+    ax: Axes, lines: Sequence[Line], values: Sequence[NDArray[np.float64]]
+) -> list[str]:
     """Cut off a floor's jolts, a thousand times the rest for a moment, and say so in words."""
+    if not any(isinstance(line.plan, Floor) for line in lines):
+        return []
     peaks, usual = [0.0], [0.0]
-    for line in lines:
+    for line, drawn in zip(lines, values, strict=True):
         time = line.plan.trajectory.time
         moving = time <= line.plan.task.duration  # at rest afterwards, nothing is usual
-        sizes = np.abs(_values(quantity, line.plan.trajectory)).max(axis=1)[moving]
+        sizes = np.abs(drawn).max(axis=1)[moving]
         held, order = np.gradient(time)[moving], np.argsort(sizes)
         most_of_the_time = np.searchsorted(np.cumsum(held[order]), _SHOWN * held.sum())
         peaks.append(float(sizes.max()))
         usual.append(float(sizes[order][min(most_of_the_time, len(order) - 1)]))
     highest = _ABOVE * max(usual)
-    if max(peaks) <= highest or not any(isinstance(line.plan, Floor) for line in lines):
+    if max(peaks) <= highest:
         return []
     low, high = ax.get_ylim()
     ax.set_ylim(max(low, -highest), min(high, highest))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from quietarm.ocp import Robustness, Sweep
+from quietarm.ocp import Robustness
 from quietarm.ocp.base.names import has_no
 from quietarm.ocp.robustness.measures import TOLERATED
 from quietarm.studies.figures.axes import axes_or_new, legend_of, side_by_side
@@ -39,8 +39,10 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
     ax = axes_or_new(ax)
     limit = 100 * TOLERATED
     for number, (label, plan) in enumerate(plans.items()):
-        sweep = _sweep_of(label, plan, name)
-        how = look(number)
+        sweeps = {sweep.name: sweep for sweep in plan.sweeps}
+        if name not in sweeps:
+            raise ValueError(has_no(f"plan {label!r}", "sweep of", name, sweeps))
+        sweep, how = sweeps[name], look(number)
         per_cent = 100 / plan.cycloid if plan.cycloid > 0 else 0.0  # a joint that moves no mode
         ax.plot(
             100 * sweep.errors, per_cent * sweep.figures.residual, color=how.colour,
@@ -66,11 +68,3 @@ def robustness_figure(plans: Mapping[str, Robustness], title: str = "") -> Figur
         draw_robustness(plans, name, ax)
     figure.legend(*legend_of(axes), loc="outside lower center", ncols=3, fontsize=8)
     return figure
-
-
-def _sweep_of(label: str, plan: Robustness, name: str) -> Sweep:
-    """The sweep of one thing that is wrong; ValueError where there is none."""
-    sweeps = {sweep.name: sweep for sweep in plan.sweeps}
-    if name not in sweeps:
-        raise ValueError(has_no(f"plan {label!r}", "sweep of", name, sweeps))
-    return sweeps[name]

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT
 from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.axes import (
-    STAIRS,
     axes_or_new,
+    draw_stairs,
     name_objectives,
     scale_residuals,
     side_by_side,
@@ -37,10 +36,14 @@ def draw_sweep(front: Front, ax: Axes | None = None) -> Axes:
     """
     ax = axes_or_new(ax)
     label = method_of(front.method).label
-    _draw_gaps(ax, front)
-    ax.plot(
-        *_broken_at_gaps(front), ".-" if front.complete else ".--", color=BLUE, markersize=5,
-        linewidth=0.8, drawstyle=STAIRS,
+    for i, (begin, end) in enumerate(front.gaps):
+        words = "_" if i else "no weight reaches these"  # once in the legend
+        ax.axvspan(begin * 1e3, end * 1e3, color="0.5", alpha=0.15, linewidth=0, label=words)
+    middles = [(begin + end) / 2 for begin, end in front.gaps]
+    places = np.searchsorted(front.residuals, middles)  # no line crosses a gap
+    draw_stairs(
+        ax, np.insert(front.residuals, places, np.nan), np.insert(front.energies, places, np.nan),
+        color=BLUE, marker=".", markersize=5, linestyle="-" if front.complete else "--",
         label=label if front.complete else f"{label}, interrupted",
     )  # fmt: skip
     knee = front.knee()
@@ -76,9 +79,9 @@ def draw_polish(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     for label, front, colour, mark in (
         ("before", before, ORANGE, "^"), ("after", polish.front, BLUE, "o"),
     ):  # fmt: skip
-        ax.plot(
-            front.residuals * 1e3, front.energies, color=colour, marker=mark, markersize=3,
-            linewidth=0.8, drawstyle=STAIRS, label=label,
+        draw_stairs(
+            ax, front.residuals, front.energies,
+            color=colour, marker=mark, markersize=3, label=label,
         )  # fmt: skip
     _draw_failures(ax, polish.front)
     scale_residuals(ax, _residuals(before, polish))
@@ -129,22 +132,6 @@ def polish_figure(before: Front, polish: Polish) -> Figure:
 def _residuals(before: Front, polish: Polish) -> list[float]:
     """All that are drawn [mm]."""
     return (1e3 * np.concatenate([before.residuals, polish.front.residuals])).tolist()
-
-
-def _broken_at_gaps(front: Front) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Residuals [mm] and energies, with a NaN where a gap is."""
-    middles = [(begin + end) / 2 for begin, end in front.gaps]
-    places = np.searchsorted(front.residuals, middles)
-    return np.insert(front.residuals * 1e3, places, np.nan), np.insert(
-        front.energies, places, np.nan
-    )
-
-
-def _draw_gaps(ax: Axes, front: Front) -> None:
-    label = "no weight reaches these"
-    for begin, end in front.gaps:
-        ax.axvspan(begin * 1e3, end * 1e3, color="0.5", alpha=0.15, linewidth=0, label=label)
-        label = "_"  # once in the legend
 
 
 def _draw_failures(ax: Axes, front: Front) -> None:

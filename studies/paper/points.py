@@ -31,16 +31,14 @@ class PaperPoint:
 def paper_points(task: PointToPoint, terms: Collection[int]) -> list[PaperPoint]:
     """The paper's own points for a task."""
     condition = condition_of(task)
-    points: dict[int, PaperPoint] = {}
-    for row in ROWS:
-        if row.condition is not condition or row.terms not in terms or row.terms in points:
-            continue
-        plan = paper_plan(row.condition, row.terms)
-        if plan is None:
-            points[row.terms] = PaperPoint(row.terms, row.energy, None)
-        else:
-            points[row.terms] = PaperPoint(row.terms, plan.energy, plan.residual)
-    return list(points.values())
+    points: list[PaperPoint] = []
+    printed = {row.terms: row for row in ROWS if row.condition is condition}
+    for number, row in printed.items():
+        if number in terms:
+            plan = paper_plan(row.condition, number)
+            energy, residual = (row.energy, None) if plan is None else (plan.energy, plan.residual)
+            points.append(PaperPoint(number, energy, residual))
+    return points
 
 
 def paper_plan(case: Case, terms: int) -> Plan | None:

@@ -19,16 +19,14 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
         return f"plant is {one.plant.name}, not {other.plant.name}"
     mine, theirs = _quantities(one), _quantities(other)
     words: list[str] = []
-    for name, (value, unit) in mine.items():
-        wanted = theirs[name][0] if name in theirs else None
+    for name, (_, unit) in (mine | theirs).items():
+        value, wanted = (of.get(name, (None, ""))[0] for of in (mine, theirs))
         if value is None or wanted is None:
             same = value is wanted
         else:
             same = isclose(value, wanted, rel_tol=_SAME)
         if not same:
             words.append(f"{name} is {_words(value, unit)}, not {_words(wanted, unit)}")
-    others = [name for name in theirs if name not in mine]
-    words += [f"{name} is none, not {_words(*theirs[name])}" for name in others]
     if not words and _samples(one) != _samples(other):
         words.append("its samples within the errors are others")
     return ", ".join(words)

@@ -27,13 +27,11 @@ from quietarm.studies.reproduction.pieces import (
     CASES,
     CHECKED,
     PAPER_SOLVES,
-    SEARCHES,
     STUDIED,
     SYSTEMS,
     pieces_of_paper,
-    searches_of,
 )
-from quietarm.studies.reproduction.side_by_side.results import System
+from quietarm.studies.reproduction.systems import SEARCHES, System
 
 
 @dataclass(frozen=True)
@@ -63,11 +61,6 @@ class RowResult:
         """Quartiles over the seeds of the least energy [J] at the residual level."""
         return energies_at(self.fronts[method], self.residual_level)
 
-    @property
-    def search_seconds(self) -> float:
-        """Median time of the paper's own search [s]."""
-        return Spread.of([front.seconds for front in self.fronts[self.own_search]]).median
-
 
 @dataclass(frozen=True)
 class Reproduction:
@@ -81,11 +74,8 @@ class Reproduction:
     checks: dict[Case, CrossCheck]
 
     def result(self, condition: Case, terms: int) -> RowResult:
-        """The result of the first row for a condition and number of terms; KeyError if none."""
-        for result in self.rows:
-            if (result.row.condition, result.row.terms) == (condition, terms):
-                return result
-        raise KeyError((condition, terms))
+        """The first row of a condition and number of terms."""
+        return next(r for r in self.rows if (r.row.condition, r.row.terms) == (condition, terms))
 
 
 def recompute_paper(
@@ -107,25 +97,22 @@ def recompute_paper(
 
 
 def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
-    key = (row.condition, row.terms)
-    _, earlier = EARLIER[row.condition.task.plant.name]
+    key = case, terms = row.condition, row.terms
+    _, earlier = EARLIER[case.task.plant.name]
+    printed, mended = (
+        evaluate_coefficients(case.task, table[key]) if key in table else None
+        for table in (COEFFICIENTS, MENDED)
+    )
     return RowResult(
         row,
-        printed=_evaluated(COEFFICIENTS, *key),
-        mended=_evaluated(MENDED, *key),
-        in_box=done.answers[*key, True],
-        free=done.answers[*key, False],
-        earlier=None if row.earlier_energy is None else done.answers[row.condition, earlier],
+        printed,
+        mended,
+        in_box=done.answers[case, terms, True],
+        free=done.answers[case, terms, False],
+        earlier=None if row.earlier_energy is None else done.answers[case, earlier],
         fronts={
-            method: tuple(done.answers[found] for found in searches_of(method, *key, seeds))
+            method: tuple(done.answers[method, case, terms, seed] for seed in range(seeds))
             for method in SEARCHES
         },
-        residual_level=residual_level(*key),
+        residual_level=residual_level(case, terms),
     )
-
-
-def _evaluated(
-    table: dict[tuple[Case, int], tuple[float, ...]], condition: Case, terms: int
-) -> Plan | None:
-    coefficients = table.get((condition, terms))
-    return None if coefficients is None else evaluate_coefficients(condition.task, coefficients)

@@ -52,8 +52,7 @@ def animate(
       quietarm animate plan.json --deflection-scale 5 --width 1200 --output move.gif
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.studies.animation import animate as draw
-    from quietarm.studies.animation.clock import Clock, end_of
-    from quietarm.studies.animation.formats import check_format, format_of
+    from quietarm.studies.animation.formats import format_of
     from quietarm.studies.display.progress import count
     from quietarm.studies.display.saving import finish
     from quietarm.studies.display.words import print_lines
@@ -62,11 +61,9 @@ def animate(
     from rich.console import Console
 
     kind = format_of(output)
-    check_format(kind)
     lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
     motions = lines if len(lines) > 1 else lines[0].plan
-    frames = len(Clock(end_of(lines), speed, frames_per_second).times)
-    with count(frames, "frames", Console(stderr=True), quiet=quiet) as report:
+    with count(0, "frames", Console(stderr=True), quiet=quiet) as report:
         film = draw(
             motions, speed=speed, deflection_scale=deflection_scale, width=width,
             frames_per_second=frames_per_second, format=kind, report=report,

@@ -40,11 +40,10 @@ def reproduce(
     from quietarm.studies.display.words import print_lines
     from quietarm.studies.report.files import document_files
     from quietarm.studies.report.terminal import show
-    from quietarm.studies.reproduction.claims import claims
     from quietarm.studies.reproduction.pieces import pieces_of_paper
     from quietarm.studies.reproduction.recompute import recompute_paper
     from quietarm.studies.reproduction.report import reproduction_document
-    from quietarm.studies.reproduction.unfinished import FILE, unfinished_table
+    from quietarm.studies.reproduction.tables import unfinished_table
 
     if workers is None:
         workers = cores_at_hand() if scheduler is None else 1
@@ -62,14 +61,14 @@ def reproduce(
             raise
         table = unfinished_table(pieces, stop.part)
         finish(
-            [] if output is None else inside(output, {FILE: table.save_csv}),
+            [] if output is None else inside(output, {"unfinished.csv": table.save_csv}),
             lambda console: print_lines(console, table.csv().rstrip()),
             trouble=QuietarmError(
                 f"{stop.part.stopped}: {stop.part.number} of {len(pieces)} pieces of work are done"
             ),
         )
     else:
-        document = reproduction_document(result, claims(result))
+        document = reproduction_document(result)
         finish(
             [] if output is None else document_files(output, document),
             partial(show, document=document),

@@ -97,7 +97,7 @@ def test_seeds_are_taken_together_as_attainment_surfaces(good, front_of):
         np.testing.assert_allclose(surface, [[1e-3, energy], [5e-3, energy - 0.2]])
     spread = group.spread("energies", 1)  # at 1 mm
     assert (spread.lower, spread.median, spread.upper) == pytest.approx((0.55, 0.6, 0.65))
-    assert group.spread("evaluations").median == 100
+    assert group.spread("front.evaluations").median == 100
 
 
 def test_surfaces_cross_where_the_runs_do(good, front_of):

@@ -76,11 +76,12 @@ def test_seeds_that_agree_are_not_drawn_as_if_they_did_not(front_of):
     assert high - low == pytest.approx(0.01 * 0.200001, rel=1e-9)
 
 
-def test_where_no_seed_is_still_it_says_so(front_of):
-    fronts = [front_of([(5, 0.2)], seed=seed, history=history(0.5)) for seed in (0, 1)]
-    panel = front_figure(fronts).axes[2]
-    assert panel.get_title() == "energy at 1 mm\n0 of 2 seeds reach 1 mm"
-    assert [line.get_marker() for line in panel.lines] == ["x", "x"]
+def test_one_seed_has_no_spread(fronts):
+    figure = front_figure(fronts[:1], "title")
+    front, volume = figure.axes
+    assert front.get_legend() is None
+    assert volume.get_title() == "hypervolume: 0.5000"
+    assert figure.get_suptitle() == "title"
 
 
 def test_interrupted_searches_are_drawn_but_counted_in_no_quartile(front_of, fronts):
@@ -123,3 +124,33 @@ def test_labels_of_the_residual_stay_apart(front_of, residuals, scale):
     assert len(boxes) >= 2
     boxes.sort(key=lambda box: box.x0)
     assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
+
+
+def test_an_empty_front_is_drawn_as_one(front_of, tmp_path):
+    figure = front_figure([front_of([])])
+    assert [text.get_text() for text in figure.axes[0].texts] == ["no point"]
+    save_figure(figure, tmp_path / "front.png")
+
+
+def test_one_generation_is_a_mark_and_not_an_empty_panel(front_of):
+    one = front_of([(1, 0.2)], history=history(0.5))
+    (median,) = draw_hypervolume([one]).lines
+    assert (list(median.get_xdata()), list(median.get_ydata())) == ([10], [0.5])
+    assert median.get_marker() not in {"", "None", None}
+    three = [front_of([(1, 0.2)], seed=s, history=history(h)) for s, h in enumerate((0.5, 0.6, 1))]
+    panel = draw_hypervolume(three)
+    assert panel.lines[0].get_marker() not in {"", "None", None}
+    assert panel.collections  # the quartiles
+
+
+@pytest.mark.parametrize("draw", [draw_fronts, draw_hypervolume, draw_seed_energies])
+def test_a_panel_is_drawn_on_the_axes_that_are_given_or_on_new_ones(fronts, draw):
+    given = Figure().subplots()
+    assert draw(fronts, given) is given
+    assert given.lines
+    assert draw(fronts).figure is not given.figure
+
+
+def test_fronts_of_several_methods_are_named_by_them(fronts, good):
+    labels = [line.get_label() for line in draw_fronts([*fronts[:2], good]).lines]
+    assert labels == ["VEPSO, seed 5", "VEPSO, seed 6", "epsilon constraint"]

@@ -60,6 +60,23 @@ def test_panels_name_their_quantity_with_its_unit(figure):
     assert figure.get_suptitle() == "A title"
 
 
+def test_the_papers_panels_are_four_in_its_order(plan):
+    figure = motion_figure(plan, quantities=PAPER_PANELS)
+    # the order of the paper's Figs 2 and 5
+    assert [axis.get_title(loc="left") for axis in figure.axes] == [
+        f"({letter}) {TITLES[i]}" for letter, i in zip("abcd", (0, 1, 3, 4), strict=True)
+    ]
+
+
+def test_the_title_is_the_task_where_none_is_given(plan, task):
+    limited = dataclasses.replace(task, torque_limit=0.2)
+    words = "single-link, 0 to 30 deg in 0.8 s"
+    assert motion_figure(plan).get_suptitle() == words
+    figure = motion_figure([Line(evaluate_coefficients(limited, []), "cycloid")])
+    assert figure.get_suptitle() == f"{words}, torque within 0.2 N m"
+    assert motion_figure(plan, "").get_suptitle() == ""
+
+
 def test_a_plan_alone_is_drawn_over_the_plain_cycloid_of_its_task(figure, plan, cycloid):
     assert legend(figure) == ["plain cycloid", "this plan"]
     for axis in panels(figure):
@@ -104,11 +121,13 @@ def test_time_goes_on_through_the_residual_window(task, window):
     assert set(np.asarray(speed.get_ydata())[after]) == {0.0}
 
 
-def test_every_panel_marks_the_arrival(figure, plan):
+def test_lines_keep_their_label_colour_and_style(plan, cycloid):
+    figure = motion_figure([Line(cycloid, "first", "black"), Line(plan, "second", "tab:red", "--")])
+    assert legend(figure) == ["first", "second"]
     for axis in panels(figure):
-        (mark,) = [line for line in axis.get_lines() if len(line.get_xdata()) == 2]
-        assert list(mark.get_xdata()) == [plan.task.duration] * 2
-        assert mark.get_linestyle() == "--"
+        first, second = motions(axis)
+        assert (to_rgba(first.get_color()), first.get_linestyle()) == (to_rgba("black"), "-")
+        assert (to_rgba(second.get_color()), second.get_linestyle()) == (to_rgba("tab:red"), "--")
 
 
 def test_every_tip_of_a_plant_with_two_is_drawn_and_named(two_links):
@@ -183,3 +202,11 @@ def test_pictures_are_saved_whole(picture, tmp_path, suffix):
     assert content.startswith(HEADS[suffix])
     assert content.endswith(TAILS[suffix])
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("name", ["move.txt", "move"])
+def test_other_endings_are_refused_and_the_endings_named(picture, tmp_path, name):
+    with pytest.raises(ValueError, match=r"is no picture; .* \.png, \.pdf, \.svg") as refused:
+        save_figure(picture, tmp_path / name)
+    assert str(tmp_path / name) in str(refused.value)
+    assert list(tmp_path.iterdir()) == []

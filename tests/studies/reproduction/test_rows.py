@@ -16,6 +16,7 @@ from quietarm.studies.paper.printed import (
     SINGLE_LINK_SIXTH,
 )
 from quietarm.studies.reproduction.pieces import pieces_of_paper
+from quietarm.studies.reproduction.recompute import recompute_paper
 
 LAST_DIGIT = {2: 1e-4, 5: 1e-3}
 """The last digit that Tables 2 and 5 print [J]."""
@@ -121,11 +122,6 @@ def test_printed_coefficients_give_what_another_integrator_gives(reproduction, c
     assert plan.residual == pytest.approx(residual, rel=5e-3)  # printed there to three digits
 
 
-def test_the_plain_cycloid_of_fig_2_rings_by_77_mm(reproduction):
-    # The paper, 3.1: 'a large residual vibration with an amplitude of about 7.7 cm'.
-    assert reproduction.cycloids[SINGLE_LINK_SIXTH].residual == pytest.approx(0.077, abs=0.5e-3)
-
-
 # The gradient answer
 
 
@@ -153,13 +149,6 @@ def test_the_gradient_reaches_the_energies_asked_for(reproduction, condition):
     assert result.in_box.energy <= in_box
     assert result.free.energy <= free
     assert result.free.energy < result.in_box.energy
-
-
-def test_six_terms_at_rest_cost_less_than_is_printed(reproduction):
-    six = [result for result in reproduction.rows if result.row.terms == 6]
-    assert len(six) == 8
-    for result in six:
-        assert result.in_box.energy < result.row.energy
 
 
 @pytest.mark.parametrize(
@@ -235,3 +224,8 @@ def test_a_search_is_judged_at_the_residual_of_the_papers_own_coefficients(repro
             if energies:
                 assert spread.median == min(energies)
     assert any(result.searched_by(result.own_search).count for result in reproduction.rows)
+
+
+def test_a_reproduction_needs_a_seed():
+    with pytest.raises(ValueError, match="seeds is 0; give a whole number from 1 up"):
+        recompute_paper(seeds=0)

@@ -6,8 +6,9 @@ A new system is one entry of `systems_of`; what it has to solve is a piece of `p
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from quietarm.metaheuristics.ensemble import energy_at
 from quietarm.ocp import (
@@ -26,9 +27,12 @@ from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.studies.display.words import millimetres
 from quietarm.studies.paper.case import Case
 from quietarm.studies.paper.points import paper_plan, residual_level
-from quietarm.studies.paper.printed import ROWS
+from quietarm.studies.paper.printed import PAPER_SEARCH, ROWS
 from quietarm.studies.registry.methods import Method
+from quietarm.studies.registry.profiles import OTHERS
 
+SEARCHES = tuple(PAPER_SEARCH.values())
+"""The paper's two searches, in its order."""
 COMPARED_TERMS = 6
 """Terms of the polynomial: the paper's choice."""
 FREQUENCY_ERROR = 0.1
@@ -56,39 +60,50 @@ class System:
         return self.printed_energy if self.motion is None else self.motion.energy
 
 
-@dataclass(frozen=True)
-class Found:
-    """What was solved and searched for a move."""
-
-    in_box: Plan
-    free: Plan
-    robust: Plan | str
-    others: Mapping[str, Plan]
-    fronts: Mapping[Method, Sequence[Front]]
-    floor: Floor
+Systems = Mapping[Case, Sequence[System]]
 
 
-def systems_of(case: Case, found: Found) -> tuple[System, ...]:
+def residual(system: System) -> float | None:
+    """F1 [m] of a system's motion, where it has one."""
+    return system.motion and system.motion.residual
+
+
+def peak_acceleration(system: System) -> float | None:
+    """Largest acceleration of the joint [rad/s^2], where there is a motion."""
+    return system.motion and system.motion.peak_acceleration
+
+
+def systems_of(case: Case, answers: Mapping[Hashable, Any], seeds: int) -> tuple[System, ...]:
     """Every system on a move, always in the same order."""
+    fronts = {
+        method: [answers[method, case, COMPARED_TERMS, seed] for seed in range(seeds)]
+        for method in SEARCHES
+    }
     return (
-        _of_plan(CYCLOID, evaluate_coefficients(case.task, []), looked_for=False),
+        replace(_of(CYCLOID, evaluate_coefficients(case.task, [])), seconds=None),
         *(_shaped(case, shaper) for shaper in SHAPERS),
         _paper(case),
-        *(_of_plan(name, plan) for name, plan in found.others.items()),
-        *(searched(case, method, fronts) for method, fronts in found.fronts.items()),
-        _of_plan(IN_BOX, found.in_box),
-        _of_plan(FREE, found.free),
-        _robust(case, found.robust),
-        _floor(found.floor),
+        *(_of(name, answers[case, name]) for name in OTHERS),
+        *(searched(case, method, its_fronts) for method, its_fronts in fronts.items()),
+        _of(IN_BOX, answers[case, COMPARED_TERMS, True]),
+        _of(FREE, answers[case, COMPARED_TERMS, False]),
+        _robust(case, answers[case, ROBUST]),
+        _of(FLOOR, answers[case]),
     )
 
 
-def _of_plan(name: str, plan: Plan, *, looked_for: bool = True) -> System:
-    joint = PiecewiseMotion.of_profile(plan.task, plan.profile, plan.coefficients)
-    return System(
-        name, plan.profile.size, plan.motion, _wrong_residual(plan, joint),
-        plan.provenance.seconds if looked_for else None,
-    )  # fmt: skip
+def _of(name: str, answer: Plan | Floor) -> System:
+    task = answer.task
+    if isinstance(answer, Plan):
+        size = answer.profile.size
+        joint = PiecewiseMotion.of_profile(task, answer.profile, answer.coefficients)
+    else:
+        size, joint = None, PiecewiseMotion.of_free_motion(task, answer.free)
+    plants = (
+        with_errors(task.plant, {FREQUENCY: error}) for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
+    )
+    wrong = max(resimulated(replace(task, plant=plant), joint).residual for plant in plants)
+    return System(name, size, answer.motion, wrong, answer.provenance.seconds)
 
 
 def _robust(case: Case, plan: Plan | str) -> System:
@@ -96,22 +111,7 @@ def _robust(case: Case, plan: Plan | str) -> System:
     if isinstance(plan, str):
         return System(ROBUST, COMPARED_TERMS, why=plan)
     assumed = evaluate_coefficients(case.task, plan.coefficients, profile=plan.profile)
-    return replace(_of_plan(ROBUST, assumed), seconds=plan.provenance.seconds)
-
-
-def _floor(floor: Floor) -> System:
-    joint = PiecewiseMotion.of_free_motion(floor.task, floor.free)
-    wrong = _wrong_residual(floor, joint)
-    return System(FLOOR, None, floor.motion, wrong, floor.provenance.seconds)
-
-
-def _wrong_residual(answer: Plan | Floor, joint: PiecewiseMotion) -> float:
-    plant = answer.task.plant
-    wrong = [
-        replace(answer.task, plant=with_errors(plant, {FREQUENCY: error}))
-        for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
-    ]
-    return max(resimulated(task, joint).residual for task in wrong)
+    return replace(_of(ROBUST, assumed), seconds=plan.provenance.seconds)
 
 
 def _shaped(case: Case, shaper: str) -> System:
@@ -120,13 +120,14 @@ def _shaped(case: Case, shaper: str) -> System:
         profile = shaped_cycloid(case.task, shaper)
     except ValueError as too_short:
         return System(name, why=str(too_short))
-    return _of_plan(name, evaluate_coefficients(case.task, [], profile=profile), looked_for=False)
+    plan = evaluate_coefficients(case.task, [], profile=profile)
+    return replace(_of(name, plan), seconds=None)
 
 
 def _paper(case: Case) -> System:
     plan = paper_plan(case, COMPARED_TERMS)
     if plan is not None:
-        return _of_plan(PAPER, plan, looked_for=False)
+        return replace(_of(PAPER, plan), seconds=None)
     energies = [r.energy for r in ROWS if (r.condition, r.terms) == (case, COMPARED_TERMS)]
     if not energies:
         return System(PAPER, why="the paper has no such move")
@@ -135,7 +136,7 @@ def _paper(case: Case) -> System:
 
 
 def searched(case: Case, method: Method, fronts: Sequence[Front]) -> System:
-    """What a search found."""
+    """What a search found: of several seeds the middle one that came near enough."""
     level = residual_level(case, COMPARED_TERMS)
     still = [front for front in fronts if not math.isnan(energy_at(front, level))]
     if not still:
@@ -144,4 +145,4 @@ def searched(case: Case, method: Method, fronts: Sequence[Front]) -> System:
     front = sorted(still, key=lambda front: energy_at(front, level))[(len(still) - 1) // 2]
     point = front.cheapest(level)
     plan = evaluate_coefficients(case.task, point.coefficients, profile=front.profile)
-    return replace(_of_plan(method.label, plan), seconds=front.seconds)
+    return replace(_of(method.label, plan), seconds=front.seconds)

@@ -1,5 +1,9 @@
 """Every system on the same moves: figures of each, and why some are missing."""
 
+import csv
+import io
+from pathlib import Path
+
 import pytest
 from quietarm.ocp import evaluate_coefficients
 from quietarm.studies.paper.points import residual_level
@@ -16,7 +20,10 @@ from quietarm.studies.paper.printed import (
     SINGLE_LINK_SIXTH,
 )
 from quietarm.studies.registry.methods import NSGA2, VEPSO
-from quietarm.studies.reproduction.side_by_side.results import searched
+from quietarm.studies.report.markdown import table_in_markdown
+from quietarm.studies.reproduction.pictures import systems_figure
+from quietarm.studies.reproduction.systems import searched
+from quietarm.studies.reproduction.tables import all_systems, systems_table
 
 
 def on(reproduction, case):
@@ -157,3 +164,94 @@ def test_of_several_seeds_the_middle_one_counts(front_of):
     nothing = searched(SINGLE_LINK_SIXTH, NSGA2, [far])
     assert (nothing.motion, nothing.energy) == (None, None)
     assert nothing.why == f"no point of its front is within {level:.3g} mm"
+
+
+# The picture
+
+
+@pytest.fixture(scope="module")
+def figure(reproduction):
+    return systems_figure(reproduction.systems)
+
+
+def dots(ax):
+    return [line for line in ax.get_lines() if line.get_marker() not in ("None", "|", "")]
+
+
+def test_every_figure_that_is_known_is_a_dot(reproduction, figure):
+    every = [one for systems in reproduction.systems.values() for one in systems]
+    known = sum(one.motion is not None for one in every)
+    energies = sum(one.energy is not None for one in every)
+    timed = sum(one.seconds is not None for one in every)
+    assert [len(dots(ax)) for ax in figure.axes] == [energies, known, known, known, timed]
+
+
+def test_energies_are_multiples_of_the_floor_and_residuals_shares_of_the_cycloids(
+    reproduction, figure
+):
+    energy, residual, wrong, acceleration, _ = figure.axes
+    cycloid, *_, floor = reproduction.systems[SINGLE_LINK_SIXTH]
+    first = [dots(ax)[0].get_xdata()[0] for ax in (energy, residual, wrong, acceleration)]
+    share = 100 * cycloid.wrong_residual / cycloid.motion.residual
+    assert first == pytest.approx([cycloid.energy / floor.energy, 100, share, 1])
+    assert min(dot.get_xdata()[0] for dot in dots(energy)) > 0.99
+
+
+def test_a_row_says_on_how_many_moves_there_is_nothing(figure):
+    labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    # docs/physics.md, 'What shapers leave of the moves here': two moves are too short
+    assert labels[:4] == ["plain cycloid", "ZV", "ZVD\n(5 of 7 moves)", "EI\n(5 of 7 moves)"]
+    assert labels[4] == "paper\n(6 of 7 moves)"
+    assert labels[-1] == "floor"
+
+
+# The tables
+
+WHOLE = ("plain cycloid", "ZV", "ZVD", "EI", "paper", "boxed gradient", "gradient")
+"""Systems that are not cut short in these tests."""
+
+
+def missing(systems):
+    return [f"{found.name}: {found.why}" for found in systems if found.why]
+
+
+PAGES = Path(__file__).parents[3]
+
+
+def test_csv_holds_everything_with_every_digit(reproduction):
+    rows = list(csv.DictReader(io.StringIO(all_systems(reproduction.systems).csv())))
+    every = [(case, one) for case, systems in reproduction.systems.items() for one in systems]
+    assert len(rows) == len(every) == 7 * 14
+    for row, (case, found) in zip(rows, every, strict=True):
+        assert (row["plant"], row["move"]) == (case.task.plant.name, case.label)
+        assert (row["system"], row["why"]) == (found.name, found.why)
+        motion = found.motion
+        for name, value in (
+            ("parameters", found.parameters),
+            ("energy_J", found.energy),
+            ("residual_mm", motion and motion.residual * 1e3),
+            ("residual_frequency_wrong_mm", motion and found.wrong_residual * 1e3),
+            ("peak_torque_Nm", motion and motion.peak_torque),
+            ("peak_acceleration_rad_s2", motion and motion.peak_acceleration),
+            ("seconds", found.seconds),
+        ):
+            assert (float(row[name]) if row[name] else None) == value
+
+
+def test_the_page_of_systems_shows_what_is_computed(reproduction):
+    page = (PAGES / "docs" / "systems.md").read_text()
+    parts = {part.split("\n", 1)[0]: part for part in page.split("\n## ")[1:]}
+    assert list(parts) == [case.name for case in reproduction.systems]
+    for case, systems in reproduction.systems.items():
+        table = systems_table(case, systems)
+        heading, _, *lines = table_in_markdown(table).split("\n\n")[1].splitlines()
+        assert heading in parts[case.name]
+        for line in lines:
+            name, *_ = cells = [cell.strip() for cell in line.split("|")[1:-1]]
+            (shown,) = [one for one in parts[case.name].splitlines() if f"| {name} |" in one]
+            if name in WHOLE:  # without the time; the last digits are another machine's
+                for mine, theirs in zip(cells[1:-1], shown.split("|")[2:-2], strict=True):
+                    assert theirs.strip() == mine or float(theirs) == pytest.approx(
+                        float(mine), rel=0.01, abs=0.011
+                    )
+        assert all(f"- {why}\n" in page for why in missing(systems) if why.split(":")[0] in WHOLE)

@@ -7,22 +7,16 @@ import io
 import pytest
 from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS
 from quietarm.studies.report.markdown import table_in_markdown
-from quietarm.studies.reproduction.floor_dots import floor_dots
-from quietarm.studies.reproduction.floor_table import (
-    FREE,
-    IN_BOX,
-    PAPER,
-    finding,
-    floor_table,
-    multiples,
-)
-from quietarm.studies.reproduction.pieces import SEARCHES
+from quietarm.studies.reproduction.pictures import floor_dots
+from quietarm.studies.reproduction.systems import SEARCHES
+from quietarm.studies.reproduction.tables import finding, floor_table, multiples, of_plants
 
 TERMS = (2, 4, 6, 8, 10)
+PAPER, IN_BOX, FREE = "paper", "gradient, in the box", "gradient, no box"
 
 
-def by_place(reproduction, condition):
-    return {(m.series, m.terms): m for m in multiples(reproduction, condition)}
+def medians(reproduction, condition):
+    return {place: middle for place, (middle, _, _) in multiples(reproduction, condition).items()}
 
 
 def test_there_are_six_floors_at_rest(reproduction):
@@ -38,26 +32,26 @@ def test_there_are_six_floors_at_rest(reproduction):
 def test_nothing_is_below_the_floor(reproduction, condition):
     # Not the gradient, nor anything within the paper's residuals (which are nearly rest).
     found = multiples(reproduction, condition)
-    assert min(m.lower for m in found) > 1
-    gradient = [m.median for m in found if m.series == FREE]
+    assert min(lower for _, lower, _ in found.values()) > 1
+    gradient = [middle for (series, _), (middle, _, _) in found.items() if series == FREE]
     assert gradient[-1] < 1.3  # ten terms are near it: docs/physics.md, 'N = 8 and 10 go lower'
     assert gradient == sorted(gradient, reverse=True)
 
 
 def test_every_row_and_every_number_of_terms_has_its_multiple(reproduction):
     for row in ROWS:
-        found = by_place(reproduction, row.condition)
+        found = medians(reproduction, row.condition)
         floor = reproduction.floors[row.condition].energy
-        assert found[PAPER, row.terms].median == pytest.approx(row.energy / floor)
+        assert found[PAPER, row.terms] == pytest.approx(row.energy / floor)
         for terms in TERMS:
             for series, boxed in ((IN_BOX, True), (FREE, False)):
                 plan = reproduction.more_terms[row.condition, terms, boxed]
-                assert found[series, terms].median == pytest.approx(plan.energy / floor)
+                assert found[series, terms] == pytest.approx(plan.energy / floor)
 
 
 def test_each_search_is_judged_by_its_own_fronts(reproduction):
     for result in reproduction.rows:
-        found = by_place(reproduction, result.row.condition)
+        found = medians(reproduction, result.row.condition)
         for method in SEARCHES:
             (front,) = result.fronts[method]
             assert front.method == method.name
@@ -67,7 +61,7 @@ def test_each_search_is_judged_by_its_own_fronts(reproduction):
                 assert place not in found
                 continue
             floor = reproduction.floors[result.row.condition].energy
-            assert found[place].median == pytest.approx(min(energies) / floor)
+            assert found[place] == pytest.approx(min(energies) / floor)
 
 
 def test_the_table_has_a_row_a_condition_and_csv_all_of_it(reproduction):
@@ -81,10 +75,20 @@ def test_the_table_has_a_row_a_condition_and_csv_all_of_it(reproduction):
         assert float(row["floor_J"]) == floor.energy
         assert float(row["left_J"]) == floor.left
         assert row["starts_that_agree"] == f"{floor.agreeing()} of {len(floor.starts)}"
-        found = by_place(reproduction, condition)
-        assert float(row["gradient_no_box_10_terms_over_floor"]) == found[FREE, 10].median
-        assert float(row["paper_6_terms_over_floor"]) == found[PAPER, 6].median
+        found = medians(reproduction, condition)
+        assert float(row["gradient_no_box_10_terms_over_floor"]) == found[FREE, 10]
+        assert float(row["paper_6_terms_over_floor"]) == found[PAPER, 6]
         assert bool(row["paper_2_terms_over_floor"]) == ((PAPER, 2) in found)
+
+
+def test_a_table_a_plant_for_the_screen(reproduction):
+    both = of_plants(floor_table(reproduction))
+    for table, conditions in zip(both, (CONDITIONS[:3], CONDITIONS[3:]), strict=True):
+        heading, *lines = table.lines
+        assert heading == ["move", *(c.label for c in conditions)]
+        cells = {cell for line in lines for cell in line}
+        for condition in conditions:
+            assert {f"{m:.3f}" for m in medians(reproduction, condition).values()} <= cells
 
 
 def test_the_finding_follows_from_the_multiples(reproduction):
@@ -104,7 +108,7 @@ def _with_energy(floor, energy):
 def test_a_search_that_met_no_residual_is_left_out(reproduction):
     rows = tuple(dataclasses.replace(row, residual_level=1e-12) for row in reproduction.rows)
     without = dataclasses.replace(reproduction, rows=rows)
-    series = {m.series for m in multiples(without, ARM_HALF)}
+    series = {series for series, _ in multiples(without, ARM_HALF)}
     assert series == {PAPER, IN_BOX, FREE}
     assert "VEPSO" not in table_in_markdown(floor_table(without))
 
@@ -114,10 +118,11 @@ def test_the_dots_stand_where_the_multiples_are(reproduction):
     dots = sorted(
         float(line.get_xdata()[0]) for line in axis.get_lines() if line.get_marker() == "o"
     )
-    expected = sorted(m.median - 1 for c in CONDITIONS for m in multiples(reproduction, c))
+    found = [item for c in CONDITIONS for item in medians(reproduction, c).items()]
+    expected = sorted(middle - 1 for _, middle in found)
     assert dots == pytest.approx(expected)
     numbers = sorted(int(text.get_text()) for text in axis.texts)
-    assert numbers == sorted(m.terms for c in CONDITIONS for m in multiples(reproduction, c))
+    assert numbers == sorted(terms for (_, terms), _ in found)
     # The axis is marked in multiples: a tick that says 2 stands where the distance above is 1.
     ticks = {
         float(label.get_text()): place
