@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import PointToPoint, energy_floor, evaluate_coefficients
+from quietarm.ocp import PointToPoint, QuietarmError, energy_floor, evaluate_coefficients
 from quietarm.studies.animation import animate
 from quietarm.studies.animation.cast import cast_of
 from quietarm.studies.figures import Line
@@ -162,3 +162,15 @@ def test_ffmpeg_is_given_every_pixel(plan, ffmpeg):
     assert words[words.index("-r") + 1] == "4"
     assert int(count) == 8 * width * height * 3  # 1.8 s at 4 frames a second
     assert film._repr_html_().startswith('<video controls loop src="data:video/mp4;base64,')
+
+
+def test_what_ffmpeg_complains_of_is_told(plan, ffmpeg):
+    ffmpeg(status=1, read=1)
+    with pytest.raises(QuietarmError, match="ffmpeg could not make the MP4: could not; end"):
+        animate([Line(plan, "plan")], format="mp4", width=240, frames_per_second=2)
+
+
+def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(ValueError, match="needs the program ffmpeg, which is not found here"):
+        animate([Line(plan, "plan")], format="mp4")

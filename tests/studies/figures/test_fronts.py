@@ -4,8 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from quietarm.ocp import Generation
-from quietarm.studies.figures import front_figure
+from quietarm.studies.display.pictures import save_figure
+from quietarm.studies.figures import draw_fronts, draw_hypervolume, draw_seed_energies, front_figure
 
 
 def history(*shares):

@@ -4,11 +4,14 @@ import dataclasses
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from quietarm.ocp import PointToPoint, evaluate_coefficients
 from quietarm.studies.display.pictures import SUFFIXES, save_figure
 from quietarm.studies.figures import (
+    PAPER_PANELS,
     QUANTITIES_DRAWN,
+    RED,
     Line,
     draw_quantity,
     motion_figure,
@@ -170,6 +173,18 @@ def test_limits_are_lines_where_a_motion_comes_near_them(task, limit, shown):
     }
 
 
+def test_a_limit_far_off_is_told_and_does_not_flatten_the_motion(task):
+    near, far = (
+        draw_quantity(
+            [Line(evaluate_coefficients(dataclasses.replace(task, torque_limit=limit), []), "it")],
+            "torque",
+        )
+        for limit in (None, 1e3)
+    )
+    assert far.get_title(loc="left") == "joint torque [N m], limit 1000 far off"
+    assert far.get_ylim() == near.get_ylim()
+
+
 def test_the_jerk_is_drawn_where_a_task_limits_it(task):
     # the cycloid's largest: span (2 pi)^2 / duration^3 = 40.4 rad/s^3
     limited = evaluate_coefficients(dataclasses.replace(task, jerk_limit=50.0), [])
@@ -192,6 +207,27 @@ def test_a_quantity_is_drawn_on_the_axes_that_are_given(plan):
     assert own.figure is not given.figure
     for one, other in zip(motions(own), motions(given), strict=True):
         np.testing.assert_array_equal(one.get_ydata(), other.get_ydata())
+
+
+def test_lines_without_a_colour_are_told_apart(plan, cycloid):
+    axis = draw_quantity([Line(plan, "one"), Line(cycloid, "two"), Line(plan, "x", RED)], "speed")
+    one, two, own = motions(axis)
+    assert one.get_color() != two.get_color()
+    assert one.get_linestyle() != two.get_linestyle()
+    assert (own.get_color(), own.get_linestyle()) == (RED, "-")
+
+
+def test_a_quantity_that_is_none_is_refused_and_the_others_named(plan):
+    with pytest.raises(ValueError, match="no quantity is called 'power'; give one of angle, speed"):
+        draw_quantity(plan, "power")
+
+
+def test_motions_of_different_durations_are_refused(plan, task):
+    longer = evaluate_coefficients(dataclasses.replace(task, duration=0.9), [])
+    with pytest.raises(ValueError, match="all of one duration"):
+        draw_quantity([Line(plan, "one"), Line(longer, "other")], "angle")
+    with pytest.raises(ValueError, match="give one motion or more"):
+        motion_figure([])
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)

@@ -12,6 +12,7 @@ from quietarm.studies.paper.printed import (
     SINGLE_LINK_SIXTH,
 )
 from quietarm.studies.report.files import document_files
+from quietarm.studies.report.terminal import show
 from quietarm.studies.reproduction.claims import claims
 from quietarm.studies.reproduction.pictures import against_earlier, redrawn
 from quietarm.studies.reproduction.report import reproduction_document
@@ -30,6 +31,16 @@ def report(reproduction, tmp_path_factory, coarsely):
         for path, write in files:
             write(path)
     return folder, [path for path, _ in files]
+
+
+def test_the_report_says_what_it_wrote_and_writes_nothing_else(report):
+    folder, written = report
+    assert sorted(written) == sorted(folder.iterdir())
+    assert sorted(path.name for path in written) == [
+        "figure_2.png", "figure_3.png", "figure_5.png", "figure_6.png",
+        "floor.csv", "floor.png", "report.md", "systems.csv", "systems.png",
+        "table_2.csv", "table_3.csv", "table_5.csv", "table_6.csv",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("number", [2, 3, 5, 6])

@@ -11,12 +11,14 @@ from quietarm.studies.paper.printed import (
     ARM_WHOLE,
     COEFFICIENTS,
     MENDED,
+    ROWS,
     SINGLE_LINK_HALF_1_0,
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
 )
 from quietarm.studies.reproduction.pieces import pieces_of_paper
 from quietarm.studies.reproduction.recompute import recompute_paper
+from quietarm.studies.reproduction.systems import SEARCHES
 
 LAST_DIGIT = {2: 1e-4, 5: 1e-3}
 """The last digit that Tables 2 and 5 print [J]."""
@@ -55,6 +57,11 @@ GRADIENT = {
 # What is computed
 
 
+def test_every_row_of_the_paper_is_there(reproduction):
+    assert tuple(result.row for result in reproduction.rows) == ROWS
+    assert len(ROWS) == 3 + 3 + 3 + 3  # Tables 2, 3, 5 and 6
+
+
 def test_every_problem_is_solved_once_and_announced(reproduction, begun):
     assert len(begun) == len(set(begun)) == len(pieces_of_paper(seeds=1))
     kinds = Counter(name.partition(": ")[0] for name in begun)
@@ -79,6 +86,12 @@ def test_both_solvers_find_the_fronts_of_all_conditions(reproduction):
     assert [len(check.points) for check in reproduction.checks.values()] == [7] * 6
     assert differences[2] < 1e-6
     assert differences[-1] < 1e-4
+
+
+def test_every_seed_is_a_piece_of_its_own():
+    one, three = (pieces_of_paper(seeds) for seeds in (1, 3))
+    assert len(three) - len(one) == 2 * len(SEARCHES) * (2 * 3 + 4 + 1)
+    assert len({piece.key for piece in three}) == len({piece.name for piece in three}) == len(three)
 
 
 def test_printed_coefficients_are_evaluated_where_there_are_any(reproduction):

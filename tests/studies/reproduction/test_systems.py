@@ -25,10 +25,30 @@ from quietarm.studies.reproduction.pictures import systems_figure
 from quietarm.studies.reproduction.systems import searched
 from quietarm.studies.reproduction.tables import all_systems, systems_table
 
+SYSTEMS = [
+    "plain cycloid", "ZV", "ZVD", "EI", "paper", "network", "Gaussians", "spline", "VEPSO",
+    "NSGA-II", "boxed gradient", "gradient", "robust plan", "floor",
+]  # fmt: skip
+
 
 def on(reproduction, case):
     """The systems on a move by their names."""
     return {found.name: found for found in reproduction.systems[case]}
+
+
+def test_every_system_stands_on_every_move_in_the_same_order(reproduction):
+    assert list(reproduction.systems) == [*CONDITIONS, DUAL_LINK_HALF]
+    for systems in reproduction.systems.values():
+        assert [found.name for found in systems] == SYSTEMS
+
+
+def test_the_numbers_that_are_chosen(reproduction):
+    for case in reproduction.systems:
+        sizes = {name: found.parameters for name, found in on(reproduction, case).items()}
+        assert sizes["plain cycloid"] == 0
+        assert sizes["network"] == sizes["Gaussians"] == 16  # section 3.2 of the paper
+        assert {sizes[name] for name in SYSTEMS[7:13]} == {6}
+        assert sizes["floor"] is None
 
 
 # docs/physics.md, 'What shapers leave of the moves here': residual [mm] and energy [J], three
@@ -104,6 +124,11 @@ def test_nothing_at_rest_on_arrival_is_below_the_floor(reproduction):
         solved = {"arm-on-flexible-link": "Gaussians"}.get(case.task.plant.name, "network")
         assert {solved, "spline", "floor"} <= {one.name for one in at_rest}
         assert min(one.energy for one in at_rest) == found["floor"].energy
+
+
+def test_the_floor_relies_on_the_frequency_too(reproduction):
+    for systems in reproduction.systems.values():
+        assert systems[-1].wrong_residual > 100 * systems[-1].motion.residual
 
 
 def test_a_robust_plan_leaves_little_whatever_the_frequency(reproduction):
