@@ -9,7 +9,7 @@ from typing import Any
 from quietarm.models import Plant, known_plants
 from quietarm.ocp import UncertainPlant
 from quietarm.ocp.base.names import has_no, unknown
-from quietarm.studies.cli.quantities import parse_share
+from quietarm.studies.cli.quantities import once, parse_share
 
 
 def parse_plant(name: str) -> type[Plant]:
@@ -38,11 +38,7 @@ def parse_error(text: str) -> tuple[str, float]:
 
 def uncertain(plant: Plant, errors: Iterable[tuple[str, float]]) -> Plant:
     """The plant that may be wrong by these errors; ValueError where it cannot be."""
-    ranges: dict[str, float] = {}
-    for name, share in errors:
-        if name in ranges:
-            raise ValueError(f"--robust {name} is given twice; give it once")
-        ranges[name] = share
+    ranges = once(errors, "--robust ")
     return UncertainPlant(plant, ranges) if ranges else plant
 
 
@@ -71,11 +67,9 @@ def chosen_plant(
 def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
     known = {entry.name: entry for entry in fields(kind)}
     given: dict[str, float] = {}
-    for name, text in settings:
+    for name, text in once(settings, "--set ").items():
         if name not in known:
             raise ValueError(has_no(kind.name, "parameter", name, known))
-        if name in given:
-            raise ValueError(f"{name} is set twice; set it once")
         given[name] = _number(known[name], text)
     for name, entry in known.items():
         if entry.default is MISSING and entry.default_factory is MISSING and name not in given:

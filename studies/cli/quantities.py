@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
+from typing import TypeVar
 
+T = TypeVar("T")
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
 _PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%]*)")
@@ -24,6 +27,17 @@ def parse_angle(text: str) -> float:
             size = float(factor or 1) * math.pi / float(divisor or 1)
             return -size if sign == "-" else size
     return _with_unit(text, _ANGLES, "an angle", "radians (0.5), 30deg, pi/6 or -pi/2")
+
+
+def parse_joint_angle(text: str) -> float:
+    """Read where a joint stands: beyond a turn with its unit alone, as degrees are easily meant."""
+    angle = parse_angle(text)
+    if abs(angle) > 2 * math.pi and is_number(text):
+        raise ValueError(
+            f"{text} is in radians, {math.degrees(angle):.6g} degrees, more than a turn; were "
+            f"degrees meant? give {text}deg, or {text}rad"
+        )
+    return angle
 
 
 def parse_rate(text: str, order: int) -> float:
@@ -74,14 +88,6 @@ def parse_whole(text: str) -> int:
     return int(value)
 
 
-def parse_number(text: str) -> float:
-    """Read a number; nan and inf, too, for the command to refuse. ValueError when it is none."""
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(f"{text!r} is no number; give one, as 0.2 or 1e3") from None
-
-
 def parse_coefficients(text: str) -> list[float]:
     """Read numbers that are separated by commas. ValueError when one is not a finite number."""
     values: list[float] = []
@@ -118,6 +124,16 @@ def _with_unit(text: str, units: dict[str, float], kind: str, examples: str) -> 
         return float(text)  # nan and inf, for the task to refuse with its own words
     except ValueError:
         raise ValueError(f"{text!r} is not {kind}; give {examples}") from None
+
+
+def once(pairs: Iterable[tuple[str, T]], what: str) -> dict[str, T]:
+    """Values by their names; ValueError where a name is given twice."""
+    values: dict[str, T] = {}
+    for name, value in pairs:
+        if name in values:
+            raise ValueError(f"{what}{name} is given twice; give it once")
+        values[name] = value
+    return values
 
 
 def literal(text: str) -> float | int | bool | str:

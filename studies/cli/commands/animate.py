@@ -5,15 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.options import (
-    INPUT,
-    NUMBER,
-    SHARE,
-    STATE,
-    WHOLE,
-    plant_file_option,
-    quiet_option,
-)
+from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.task import plant_file_option
+from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE
 
 
 @click.command()
@@ -22,10 +16,10 @@ from quietarm.studies.cli.options import (
               help="The file: .gif, or .mp4 where ffmpeg is installed.")  # fmt: skip
 @click.option("--speed", type=SHARE, default="100%", show_default=True,
               help="Speed of the clock; 25% is slow motion.")  # fmt: skip
-@click.option("--deflection-scale", type=NUMBER,
+@click.option("--deflection-scale", type=float,
               help="Draw deflections so many times larger than they are. [default: the largest "
               "becomes up to a fifth of the structure]")  # fmt: skip
-@click.option("--frames-per-second", type=NUMBER, default=25.0, show_default=True,
+@click.option("--frames-per-second", type=float, default=25.0, show_default=True,
               help="Frames in a second of the animation.")  # fmt: skip
 @click.option("--width", type=WHOLE, default=800, show_default=True, help="In pixels.")
 @plant_file_option(expose_value=False)

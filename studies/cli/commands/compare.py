@@ -6,7 +6,9 @@ from functools import partial
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.options import FOLDER, INPUT, plant_file_option, quiet_option
+from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.task import plant_file_option
+from quietarm.studies.cli.types import FOLDER, INPUT
 from quietarm.studies.display.progress import working
 from rich.console import Console
 

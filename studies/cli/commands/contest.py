@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 from quietarm.studies.cli.options import (
-    FOLDER,
-    WHOLE,
     method_settings_option,
     quiet_option,
     settings_by_method,
+    warn_of_workers,
     workers_options,
 )
+from quietarm.studies.cli.types import FOLDER, WHOLE
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -88,7 +88,6 @@ def contest(
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics.sharing.workers import Workers
     from quietarm.ocp import QuietarmError
-    from quietarm.studies.cli.arguments import warn_of_workers
     from quietarm.studies.contest import store as stores
     from quietarm.studies.contest.asked import Contest
     from quietarm.studies.contest.imported import named_files

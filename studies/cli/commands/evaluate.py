@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import click
-from quietarm.ocp import evaluate_coefficients
-from quietarm.studies.cli.arguments import plan_files, refuse_idle, split_options
-from quietarm.studies.cli.options import (
-    COEFFICIENTS,
-    output_options,
-    profile_option,
-    quiet_option,
-    robust_option,
-    task_options,
-)
+from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients
+from quietarm.studies.cli.files import plan_file_options
+from quietarm.studies.cli.options import profile_option, quiet_option, refuse_idle
+from quietarm.studies.cli.task import robust_option, task_options
+from quietarm.studies.cli.types import COEFFICIENTS
 from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import finish
+from quietarm.studies.display.saving import File, finish
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.reports.plan import print_plan
 from rich.console import Console
@@ -33,14 +28,15 @@ from rich.console import Console
 )  # fmt: skip
 @robust_option
 @quiet_option
-@output_options
+@plan_file_options
 @click.pass_context
 def evaluate(
     context: click.Context,
+    task: PointToPoint,
     profile: str,
     coefficients: list[float] | None,
     quiet: bool,
-    **rest: Any,
+    files_of: Callable[[Plan], list[File]],
 ) -> None:
     """Compute residual, energy and peaks of given coefficients, or of an input shaper's motion.
 
@@ -49,14 +45,13 @@ def evaluate(
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
       quietarm evaluate single-link --target pi/6 --duration 0.8 --profile zvd
     """  # noqa: D301  # \b is click's: do not rewrap
-    refuse_idle(context, profile, {"coefficients": list(FAMILIES)})
+    refuse_idle(profile, {"coefficients": list(FAMILIES)})
     if profile in FAMILIES and coefficients is None:
         (option,) = (one for one in context.command.params if one.name == "coefficients")
         raise click.MissingParameter(ctx=context, param=option)
-    task, outputs = split_options(rest)
     numbers = coefficients or []
     family = FAMILIES.get(profile)
     motions = family.of_size(len(numbers)) if family else profile_of(profile, task)
     with working("integrating", Console(stderr=True), quiet=quiet):
         found = evaluate_coefficients(task, numbers, profile=motions)
-    finish(plan_files(found, **outputs), partial(print_plan, plan=found))
+    finish(files_of(found), partial(print_plan, plan=found))

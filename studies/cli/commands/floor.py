@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
-from quietarm.ocp import energy_floor
+from quietarm.ocp import PointToPoint, energy_floor
 from quietarm.ocp.base.interrupts import note_interrupts
-from quietarm.studies.cli.arguments import refuse_same_file, task_of
-from quietarm.studies.cli.options import NUMBER, OUTPUT, PICTURE, WHOLE, quiet_option, task_options
+from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.task import task_options
+from quietarm.studies.cli.types import OUTPUT, PICTURE, WHOLE
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing, finish, interruption
 from quietarm.studies.reports.floor import plan_beside, print_floor
@@ -26,13 +27,14 @@ if TYPE_CHECKING:
 @click.option("--starts", type=WHOLE, default=4, show_default=True, help="Starts of the solver.")
 @click.option("--seed", type=WHOLE, default=0, show_default=True, help="Seed of the random starts.")
 @click.option(
-    "--tolerance", type=NUMBER, default=0.005, show_default=True,
+    "--tolerance", type=float, default=0.005, show_default=True,
     help="Refine the grid until the energy changes by less than this share.",
 )  # fmt: skip
 @click.option("--output", type=OUTPUT, help="Write the floor to this JSON file.")
 @click.option("--figure", type=PICTURE, help="Draw it over the plan (.png, .pdf or .svg).")
 @quiet_option
 def floor(
+    task: PointToPoint,
     smooth: bool,
     starts: int,
     seed: int,
@@ -40,7 +42,6 @@ def floor(
     output: Path | None,
     figure: Path | None,
     quiet: bool,
-    **rest: Any,
 ) -> None:
     """Find the least energy of a move over all joint motions, at rest on arrival.
 
@@ -54,8 +55,6 @@ def floor(
       quietarm floor single-link --target 30deg --duration 0.8 --acceleration-limit 80 \\
           --figure floor.png --output floor.json
     """  # noqa: D301  # \b is click's: do not rewrap
-    refuse_same_file([("--output", output), ("--figure", figure)])
-    task = task_of(rest)
     with working("refining the grid", Console(stderr=True), quiet=quiet):
         found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
         with note_interrupts() as came:  # the floor is found, and the plan takes a moment

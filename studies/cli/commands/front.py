@@ -2,44 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 from quietarm.metaheuristics.ensemble import LostSeedsError, search_many, seeds_of
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError, cross_check
-from quietarm.ocp.base.files import check_writable
-from quietarm.studies.cli.arguments import (
-    FrontFiles,
-    refuse_idle,
-    refuse_same_file,
-    task_of,
-    warn_of_workers,
-)
 from quietarm.studies.cli.options import (
-    INPUT,
-    NUMBER,
-    OUTPUT,
-    PICTURE,
-    STATE,
-    WEIGHTS,
-    WHOLE,
-    Named,
     family_option,
     method_settings_option,
+    options,
     quiet_option,
-    robust_option,
+    refuse_idle,
     settings_of_one,
     solver_option,
-    task_options,
     terms_option,
+    typed,
+    warn_of_workers,
     workers_options,
 )
+from quietarm.studies.cli.task import robust_option, task_options
+from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, STATE, WEIGHTS, WHOLE, Named
 from quietarm.studies.display.progress import count
-from quietarm.studies.display.saving import STDOUT, File, drawing, finish, interruption
+from quietarm.studies.display.saving import STDOUT, drawing, finish, interruption
 from quietarm.studies.display.search_progress import search_display
-from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, Method, methods_of
+from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.reports.search import print_fronts
 from quietarm.studies.reports.sweep import failure_lines, print_sweep
@@ -50,29 +38,57 @@ if TYPE_CHECKING:
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
-_OF_SEARCHES: dict[str, list[str]] = dict.fromkeys(
-    (
-        "population",
-        "generations",
-        "setting",
-        "runs",
-        "workers",
-        "scheduler",
-        "checkpoint",
-        "resume",
-    ),
-    METAHEURISTICS,
-)
+OF_GRADIENT = ("points", "starts", "solver", "check", "weights")
+OF_SEARCHES = (
+    "population", "generations", "setting", "runs", "workers", "scheduler", "checkpoint", "resume",
+)  # fmt: skip
 _CHECKED = 7
 """Points that the other solver finds again."""
-_ONLY_FOR = {
-    "points": GRADIENT,
-    "starts": GRADIENT,
-    "solver": GRADIENT,
-    "check": GRADIENT,
-    "weights": [WEIGHTED.name],
-}
-"""For every option that not all methods have: the methods that have it."""
+
+_gradient_options = options(
+    click.option(
+        "--points", type=WHOLE, default=50, show_default=True,
+        help="Gradient: points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
+    ),
+    click.option(
+        "--starts", type=WHOLE, default=4, show_default=True, help="Gradient: starts of its ends."
+    ),
+    solver_option,
+    click.option(
+        "--check", is_flag=True,
+        help="Gradient: solve seven points, both ends among them, by the other solver as well, "
+        "from the plain cycloid, and say by how much the two differ at most.",
+    ),
+    click.option(
+        "--weights", type=WEIGHTS, multiple=True, metavar="R:E",
+        help="weighted: weights of residual and energy, both scaled to the ends of the front, in "
+        "place of --points; may be repeated, as in --weights 1:1 --weights 1:3.",
+    ),
+)  # fmt: skip
+_search_options = options(
+    click.option(
+        "--population", type=WHOLE,
+        help="Metaheuristic: individuals, or particles in a swarm; docs/methods.md has the "
+        "defaults.",
+    ),
+    click.option("--generations", type=WHOLE, help="Metaheuristic: generations."),
+    method_settings_option("as in --setting crossover=0.7"),
+    click.option(
+        "--seed", type=WHOLE, default=0, show_default=True, help="Seed; of several, the first."
+    ),
+    click.option(
+        "--runs", type=WHOLE, default=1, show_default=True, help="Metaheuristic: number of seeds."
+    ),
+    workers_options,
+    click.option(
+        "--checkpoint", type=STATE, help="Metaheuristic: keep the search here, every few seconds."
+    ),
+    click.option(
+        "--resume", type=INPUT,
+        help="Metaheuristic: continue from this checkpoint. To save what follows as well, give "
+        "--checkpoint, which may name the same file.",
+    ),
+)  # fmt: skip
 
 
 @click.command()
@@ -85,48 +101,10 @@ _ONLY_FOR = {
 @family_option
 @terms_option
 @click.option(
-    "--bound", type=NUMBER, help="Largest coefficient; for polynomials a metaheuristic requires it."
+    "--bound", type=float, help="Largest coefficient; for polynomials a metaheuristic requires it."
 )
-@click.option(
-    "--points", type=WHOLE, default=50, show_default=True,
-    help="Gradient: points of the front; epsilon has three more, at 0.1, 1 and 5 mm.",
-)  # fmt: skip
-@click.option(
-    "--starts", type=WHOLE, default=4, show_default=True, help="Gradient: starts of its ends."
-)
-@solver_option
-@click.option(
-    "--check", is_flag=True,
-    help="Gradient: solve seven points, both ends among them, by the other solver as well, from "
-    "the plain cycloid, and say by how much the two differ at most.",
-)  # fmt: skip
-@click.option(
-    "--weights", type=WEIGHTS, multiple=True, metavar="R:E",
-    help="weighted: weights of residual and energy, both scaled to the ends of the front, in "
-    "place of --points; may be repeated, as in --weights 1:1 --weights 1:3.",
-)  # fmt: skip
-@click.option(
-    "--population", type=WHOLE,
-    help="Metaheuristic: individuals, or particles in a swarm; docs/methods.md has the defaults.",
-)  # fmt: skip
-@click.option("--generations", type=WHOLE, help="Metaheuristic: generations.")
-@method_settings_option("as in --setting crossover=0.7")
-@click.option(
-    "--seed", type=WHOLE, default=0, show_default=True, help="Seed; of several, the first."
-)
-@click.option(
-    "--runs", type=WHOLE, default=1, show_default=True, help="Metaheuristic: number of seeds."
-)
-@workers_options
-@click.option(
-    "--checkpoint", type=STATE, help="Metaheuristic: keep the search here, every few seconds."
-)
-@click.option(
-    "--resume",
-    type=INPUT,
-    help="Metaheuristic: continue from this checkpoint. To save what follows as well, give "
-    "--checkpoint, which may name the same file.",
-)
+@_gradient_options
+@_search_options
 @click.option(
     "--output", type=OUTPUT,
     help="Write the front to this JSON file; with --runs one for every seed: front.json gives "
@@ -142,14 +120,16 @@ _ONLY_FOR = {
 )
 @robust_option
 @quiet_option
-@click.pass_context
 def front(
-    context: click.Context,
+    task: PointToPoint,
+    method: str,
+    profile: str,
+    terms: int | None,
     output: Path | None,
     csv_file: Path | None,
     figure: Path | None,
     quiet: bool,
-    **rest: Any,
+    **settings: Any,
 ) -> None:
     """Find the trade-off of residual and energy by the gradient, or with a metaheuristic.
 
@@ -167,50 +147,51 @@ def front(
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
           --population 100 --generations 200 --setting crossover=0.7
     """  # noqa: D301  # \b is click's: do not rewrap
-    method = METHODS[rest.pop("method")]
-    refuse_idle(context, method.name, _ONLY_FOR)
-    refuse_idle(context, method.name, _OF_SEARCHES, "a metaheuristic")
-    profile, terms = rest.pop("profile"), rest.pop("terms")
-    only_for = {**_ONLY_FOR, **_OF_SEARCHES}
-    names = ["bound", "seed"]
-    names += [name for name, methods in only_for.items() if method.name in methods]
-    options = {name: rest[name] for name in names}
-    for name in (*only_for, "bound", "seed"):
-        del rest[name]
-    task = task_of(rest)
-    options["profile"] = profile_of(profile, task, terms)
-    if method.kind is Kind.GRADIENT:
-        if options.get("weights"):
-            refuse_idle(context, "--weights", {"points": ("weights that the sweep chooses",)})
+    refuse_idle(method, dict.fromkeys(OF_GRADIENT, GRADIENT))
+    refuse_idle(method, {"weights": [WEIGHTED.name]})
+    refuse_idle(method, dict.fromkeys(OF_SEARCHES, METAHEURISTICS), "a metaheuristic")
+    idle = OF_SEARCHES if method in GRADIENT else OF_GRADIENT
+    settings = {name: value for name, value in settings.items() if name not in idle}
+    settings["profile"] = profile_of(profile, task, terms)
+    files = output, csv_file, figure
+    if method in GRADIENT:
+        _by_gradient(task, method, files, quiet, **settings)
     else:
-        options["settings"] = settings_of_one(options.pop("setting"))
-    run = _by_gradient if method.kind is Kind.GRADIENT else _by_search
-    run(task, method, options, FrontFiles(output, csv_file, figure), quiet)
+        _by_search(task, method, files, quiet, **settings)
+
+
+Files = tuple[Path | None, Path | None, Path | None]
+"""Of the front, of its points, of the picture; None where one is not asked for."""
 
 
 def _by_gradient(
     task: PointToPoint,
-    method: Method,
-    options: dict[str, Any],
-    files: FrontFiles,
+    method: str,
+    files: Files,
     quiet: bool,
+    *,
+    check: bool,
+    weights: Sequence[tuple[float, float]],
+    points: int,
+    **settings: Any,
 ) -> None:
     """Sweep the front by the gradient, write what was found, and show it."""
-    files.refuse_same()
-    check = options.pop("check", False)
-    weights = options.get("weights", ())
-    asked_for = 2 + len(weights) if weights else options["points"]  # the ends come with weights
-    front = _swept(task, method, dict(options), quiet)
-    asked_for = max(asked_for, len(front.points) + len(front.failures))  # epsilon's own residuals
+    if weights and typed("points"):
+        raise ValueError("--points is for weights that the sweep chooses; leave it out")
+    errors, asked = Console(stderr=True), {"weights": weights} if weights else {"points": points}
+    total, what = (len(weights), "weights") if weights else (points, "points")
+    with count(total, what, errors, quiet=quiet) as report:
+        front = METHODS[method].sweep(task, report=report, **asked, **settings)
+    # the ends come with weights, and epsilon has residuals of its own
+    asked_for = max(total + 2 * bool(weights), len(front.points) + len(front.failures))
     if not front.points:
         reasons = (line.strip() for line in failure_lines(front, asked_for)[1:])
         raise SolverFailedError(f"no point was found: {'; '.join(reasons)}")
-
-    found, complete = None, front.complete
+    checked, complete = None, front.complete
     if check and complete:
         try:
-            with count(_CHECKED, "checked points", Console(stderr=True), quiet=quiet) as report:
-                found = cross_check(front, _CHECKED, report)
+            with count(_CHECKED, "checked points", errors, quiet=quiet) as report:
+                checked = cross_check(front, _CHECKED, report)
         except KeyboardInterrupt:  # the front is there
             complete = False
 
@@ -219,80 +200,75 @@ def _by_gradient(
 
         return sweep_figure(front)
 
+    output, csv_file, figure = files
     finish(
-        files.written(front, picture),
-        lambda console: print_sweep(console, front, asked_for, found),
+        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
+        lambda console: print_sweep(console, front, asked_for, checked),
         trouble=None if complete else interruption(),
     )
 
 
-def _swept(task: PointToPoint, method: Method, options: dict[str, Any], quiet: bool) -> Front:
-    errors = Console(stderr=True)
-    weights = options.pop("weights", ())
-    if weights:
-        options["weights"] = weights
-    total = len(weights) or options["points"]
-    with count(total, "weights" if weights else "points", errors, quiet=quiet) as report:
-        return method.sweep(task, report=report, **options)
-
-
 def _by_search(
     task: PointToPoint,
-    method: Method,
-    options: dict[str, Any],
-    files: FrontFiles,
+    method: str,
+    files: Files,
     quiet: bool,
+    *,
+    runs: int,
+    seed: int,
+    setting: Sequence[tuple[str, str]],
+    workers: int,
+    **settings: Any,
 ) -> None:
     """Search from every seed, write what was found, and show it."""
-    runs = options["runs"]
-    if runs > 1 and (options.get("checkpoint") or options.get("resume")):
+    output, csv_file, figure = files
+    several = len(seeds_of(seed, runs)) > 1
+    if several and (settings["checkpoint"] or settings["resume"]):
         raise ValueError(
             "--checkpoint and --resume are for one run, not with --runs; leave one of them out"
         )
-    seeds = seeds_of(options["seed"], runs)
-    targets = _targets("--output", files.output, seeds)
-    tables = _targets("--csv", files.csv, seeds)
-    _refuse_same_files([*targets.values()], [*tables.values()], options, files.figure)
-    errors = Console(stderr=True)
-    found, lost, troubles = _fronts(errors, task, method, options, quiet)
-    fronts = [front for front in found if front.complete or front.points]
+    for option, path in {"--output": output, "--csv": csv_file}.items():
+        if several and path is STDOUT:
+            raise ValueError(f"{option} - is for one run; with --runs give the name of a file")
+    errors, lost, warnings = Console(stderr=True), None, list[str]()
+    warn_of_workers(errors, workers, runs)
+    settings |= {"settings": settings_of_one(setting), "seed": seed, "workers": workers}
+    with search_display(errors, quiet=quiet) as display:
+        report: dict[str, Callable[..., object]] = {
+            "report": lambda progress, seed: display(progress), "warn": warnings.append,
+        }  # fmt: skip
+        if several:
+            report = {"report": display, "done": display.finish}
+        try:
+            fronts = search_many(task, method, runs, **report, **settings)
+        except LostSeedsError as error:
+            fronts, lost = error.fronts, error
+    fronts = [front for front in fronts if front.complete or front.points]
     stopped = "" if lost else _interruption(fronts, runs)
     if not any(front.points for front in fronts):
         if stopped:
             raise KeyboardInterrupt
-        raise lost or SolverFailedError(f"{method.name}: {fronts[0].why_empty()}")
+        raise lost or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
 
     def picture() -> Figure:
         from quietarm.studies.figures import front_figure
 
         return front_figure(fronts)
 
-    trouble = lost
-    if stopped or troubles:
-        trouble = lost or QuietarmError("; ".join([*filter(None, [stopped]), *troubles]))
-    written: list[File] = [(targets.get(front.seed or 0), front.save) for front in fronts]
-    written += [(tables.get(front.seed or 0), front.save_csv) for front in fronts]
+    def path_of(path: Path | None, front: Front) -> Path | None:
+        """With several seeds front.json is front-seed3.json for seed 3."""
+        return path.with_stem(f"{path.stem}-seed{front.seed}") if path and several else path
+
+    trouble = "; ".join(filter(None, [stopped, *warnings]))
     finish(
-        [*written, (files.figure, drawing(picture))],
+        [
+            *((path_of(output, front), front.save) for front in fronts),
+            *((path_of(csv_file, front), front.save_csv) for front in fronts),
+            (figure, drawing(picture)),
+        ],
         lambda console: print_fronts(console, fronts),
-        trouble=trouble,
+        trouble=lost or (QuietarmError(trouble) if trouble else None),
     )
-
-
-def _fronts(
-    errors: Console, task: PointToPoint, method: Method, options: Mapping[str, Any], quiet: bool
-) -> tuple[list[Front], LostSeedsError | None, list[str]]:
-    """What every seed found, the error of those whose process died, and warnings."""
-    runs, troubles = options["runs"], list[str]()
-    warn_of_workers(errors, options["workers"], runs)
-    with search_display(errors, quiet=quiet) as display:
-        several = {"report": display, "done": display.finish}
-        one = {"report": lambda progress, seed: display(progress), "warn": troubles.append}
-        try:
-            how = several if runs > 1 else one
-            return search_many(task, method.name, **how, **options), None, troubles
-        except LostSeedsError as error:
-            return error.fronts, error, troubles
 
 
 def _interruption(fronts: Sequence[Front], runs: int) -> str:
@@ -304,31 +280,3 @@ def _interruption(fronts: Sequence[Front], runs: int) -> str:
         return "interrupted; what was found until then is kept"
     part = f", {len(fronts) - done} in part" * (done < len(fronts))
     return f"interrupted: {done} of {runs} seeds are done{part}; these are kept"
-
-
-def _with_seed(path: Path, seed: int) -> Path:
-    """The file for one of several seeds: front.json is front-seed3.json for seed 3."""
-    return path.with_stem(f"{path.stem}-seed{seed}")
-
-
-def _refuse_same_files(
-    outputs: Sequence[Path],
-    tables: Sequence[Path],
-    options: Mapping[str, Any],
-    figure: Path | None,
-) -> None:
-    written: list[tuple[str, Path | None]] = [("--output", path) for path in outputs]
-    written += [*(("--csv", path) for path in tables), ("--figure", figure)]
-    refuse_same_file([*written, ("--checkpoint", options.get("checkpoint"))])
-    # a checkpoint may be continued in the same file, but not overwritten by a front
-    refuse_same_file([*written, ("--resume", options.get("resume"))])
-
-
-def _targets(option: str, output: Path | None, seeds: range) -> dict[int, Path]:
-    if output is None:
-        return {}
-    if len(seeds) == 1:
-        return {seeds[0]: output}
-    if output is STDOUT:
-        raise ValueError(f"{option} {output} is for one run; with --runs give the name of a file")
-    return {seed: check_writable(_with_seed(output, seed)) for seed in seeds}

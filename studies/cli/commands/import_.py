@@ -6,19 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from quietarm.studies.cli.arguments import FrontFiles, task_of
-from quietarm.studies.cli.options import (
-    INPUT,
-    NUMBER,
-    OUTPUT,
-    PICTURE,
-    WHOLE,
-    family_option,
-    quiet_option,
-    task_options,
-)
+from quietarm.ocp import PointToPoint
+from quietarm.studies.cli.options import family_option, quiet_option
+from quietarm.studies.cli.task import task_options
+from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, WHOLE
 from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import finish
+from quietarm.studies.display.saving import drawing, finish
 from quietarm.studies.display.words import print_lines
 from quietarm.studies.reading.foreign import read_found
 from quietarm.studies.reading.importing import import_front
@@ -37,7 +30,7 @@ if TYPE_CHECKING:
 @click.option(
     "--terms", type=WHOLE, help="Refuse the file if it has another number of coefficients."
 )
-@click.option("--bound", type=NUMBER, help="Refuse coefficients beyond this box.")
+@click.option("--bound", type=float, help="Refuse coefficients beyond this box.")
 @click.option("--method", help="What found them; by default the name of the file.")
 @click.option("--output", type=OUTPUT, help="Write the front to this JSON file.")
 @click.option("--csv", "csv_file", type=OUTPUT, help="Write its points to this CSV file.")
@@ -45,6 +38,7 @@ if TYPE_CHECKING:
 @quiet_option
 def import_(
     file: Path,
+    task: PointToPoint,
     profile: str,
     terms: int | None,
     bound: float | None,
@@ -53,7 +47,6 @@ def import_(
     csv_file: Path | None,
     figure: Path | None,
     quiet: bool,
-    **rest: Any,
 ) -> None:
     """Evaluate coefficients that any program found, and make a front of them.
 
@@ -67,7 +60,6 @@ def import_(
       quietarm import found.mat arm-on-flexible-link --target pi/2 --duration 0.8 --bound 0.5 \\
           --method "my swarm" --output front.json --figure front.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    task = task_of(rest)
     found = read_found(file)
     columns = found.coefficients.shape[1]
     if terms is not None:
@@ -86,8 +78,6 @@ def import_(
     if bound is not None:
         settings["bound"] = bound
     name = method or file.stem
-    files = FrontFiles(output, csv_file, figure)
-    files.refuse_same(("FILE", file))
     with working("evaluating", Console(stderr=True), quiet=quiet):
         try:
             front, claims = import_front(task, motions, found, name, settings)
@@ -111,6 +101,6 @@ def import_(
         print_lines(console, *lines)
 
     finish(
-        files.written(front, picture),
+        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
         show,
     )

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
-from typing import Any
 
 import click
 from quietarm.metaheuristics import search
@@ -23,24 +22,20 @@ from quietarm.ocp import (
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.ocp.plan.robust import limit_of
 from quietarm.ocp.program.solving import Solver
-from quietarm.studies.cli.arguments import plan_files, refuse_idle, split_options
+from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import (
-    LENGTH,
-    NUMBER,
-    WHOLE,
-    Named,
     method_settings_option,
-    output_options,
     profile_option,
     quiet_option,
-    robust_option,
+    refuse_idle,
     settings_of_one,
     solver_option,
-    task_options,
     terms_option,
 )
+from quietarm.studies.cli.task import robust_option, task_options
+from quietarm.studies.cli.types import LENGTH, WHOLE, Named
 from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import finish, interruption
+from quietarm.studies.display.saving import File, finish, interruption
 from quietarm.studies.display.search_progress import search_display
 from quietarm.studies.display.words import print_lines
 from quietarm.studies.registry.methods import METHODS, Kind, Method, methods_of
@@ -58,7 +53,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @task_options
 @profile_option
 @terms_option
-@click.option("--bound", type=NUMBER, help="Largest coefficient; no bound by default.")
+@click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
 @click.option(
     "--residual-limit", type=LENGTH,
     help="Largest tip displacement after arrival; 0, the default, is at rest. With --robust the "
@@ -76,10 +71,9 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
 @robust_option
 @quiet_option
-@output_options
-@click.pass_context
+@plan_file_options
 def plan(
-    context: click.Context,
+    task: PointToPoint,
     profile: str,
     terms: int | None,
     bound: float | None,
@@ -91,7 +85,7 @@ def plan(
     setting: tuple[tuple[str, str], ...],
     polish: bool,
     quiet: bool,
-    **rest: Any,
+    files_of: Callable[[Plan], list[File]],
 ) -> None:
     """Find the move of least energy whose residual vibration is within a limit.
 
@@ -106,10 +100,9 @@ def plan(
       quietarm plan single-link --target 30deg --duration 0.8 --profile network --terms 3
       quietarm plan dual-link --target pi/2 --duration 0.9 --profile zv
     """  # noqa: D301  # \b is click's: do not rewrap
-    task, outputs = split_options(rest)
-    refuse_idle(context, profile, {name: list(FAMILIES) for name in OF_FAMILIES})
-    refuse_idle(context, method, {"starts": [GRADIENT], "solver": [GRADIENT]})
-    refuse_idle(context, method, {"setting": SEARCHES}, "a metaheuristic")
+    refuse_idle(profile, {name: list(FAMILIES) for name in OF_FAMILIES})
+    refuse_idle(method, {"starts": [GRADIENT], "solver": [GRADIENT]})
+    refuse_idle(method, {"setting": SEARCHES}, "a metaheuristic")
     if method == GRADIENT and polish:
         raise ValueError("--polish is for a metaheuristic's point; give --method nsga2 or another")
     motions = profile_of(profile, task, terms)
@@ -136,7 +129,7 @@ def plan(
             )
 
     stopped = None if found.complete else interruption(found.provenance.stopped)
-    finish(plan_files(found, **outputs), show, trouble=stopped)
+    finish(files_of(found), show, trouble=stopped)
 
 
 def _by_search(

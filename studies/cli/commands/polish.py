@@ -11,15 +11,9 @@ import click
 import numpy as np
 from quietarm.ocp import Front, Gain, polish_front
 from quietarm.ocp.base.checks import whole
-from quietarm.studies.cli.arguments import FrontFiles
-from quietarm.studies.cli.options import (
-    INPUT,
-    OUTPUT,
-    PICTURE,
-    WHOLE,
-    plant_file_option,
-    quiet_option,
-)
+from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.task import plant_file_option
+from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, WHOLE
 from quietarm.studies.display.progress import count, working
 from quietarm.studies.display.saving import drawing, finish, interruption
 from quietarm.studies.display.words import counted, millimetres, print_lines
@@ -68,8 +62,6 @@ def polish(
       quietarm polish front.json
       quietarm polish front.json --points 50 --output polished.json --figure polished.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    files = FrontFiles(output, csv_file, figure)
-    files.refuse_same(("FRONT", front))
     errors = Console(stderr=True)
     with working("checking", errors, quiet=quiet):
         whole_front = load_front(front)
@@ -87,9 +79,9 @@ def polish(
 
     finish(
         [
-            (files.output, polished.front.save),
-            (files.csv, gains_table(gains).save_csv),
-            (files.figure, drawing(picture)),
+            (output, polished.front.save),
+            (csv_file, gains_table(gains).save_csv),
+            (figure, drawing(picture)),
         ],
         lambda console: _print_gains(console, whole_front, given, polished.front, gains),
         trouble=interruption() if len(gains) < len(given.points) else None,

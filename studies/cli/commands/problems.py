@@ -8,7 +8,8 @@ from pathlib import Path
 import click
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
 from quietarm.ocp import Front
-from quietarm.studies.cli.options import FOLDER, Parsed, quiet_option
+from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.types import FOLDER, Parsed
 from quietarm.studies.display.progress import progress
 from quietarm.studies.display.saving import Together, finish, inside, interruption
 from quietarm.studies.display.words import error_words, print_lines

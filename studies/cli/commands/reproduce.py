@@ -6,7 +6,8 @@ from functools import partial
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.options import FOLDER, WHOLE, quiet_option, workers_at_hand_options
+from quietarm.studies.cli.options import quiet_option, warn_of_workers, workers_at_hand_options
+from quietarm.studies.cli.types import FOLDER, WHOLE
 from rich.console import Console
 
 
@@ -34,7 +35,6 @@ def reproduce(
     from quietarm.metaheuristics.sharing.pieces import InterruptedPiece
     from quietarm.metaheuristics.sharing.workers import Workers, cores_at_hand
     from quietarm.ocp import QuietarmError
-    from quietarm.studies.cli.arguments import warn_of_workers
     from quietarm.studies.display.progress import progress
     from quietarm.studies.display.saving import finish, inside
     from quietarm.studies.display.words import print_lines

@@ -11,14 +11,9 @@ import click
 from quietarm.ocp import Plan, Robustness, evaluate_robustness
 from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.simulation.errors import checked_ranges
-from quietarm.studies.cli.options import (
-    FOLDER,
-    INPUT,
-    SHARE,
-    WHOLE,
-    plant_file_option,
-    quiet_option,
-)
+from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.task import plant_file_option
+from quietarm.studies.cli.types import FOLDER, INPUT, SHARE, WHOLE
 from quietarm.studies.display.progress import count
 from quietarm.studies.display.saving import finish, interruption
 from quietarm.studies.reading.saved import load_plans

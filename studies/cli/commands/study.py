@@ -2,42 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import click
-from click.core import ParameterSource
 from quietarm.metaheuristics import PRESETS
-from quietarm.studies.cli.arguments import task_of
+from quietarm.ocp import PointToPoint
 from quietarm.studies.cli.options import (
-    FOLDER,
-    INPUT,
-    NUMBER,
-    PAGE,
-    WHOLE,
-    Named,
     method_settings_option,
     quiet_option,
     settings_by_method,
-    task_options,
+    typed,
+    warn_of_workers,
     workers_options,
 )
+from quietarm.studies.cli.task import own_task_options
+from quietarm.studies.cli.types import FOLDER, INPUT, PAGE, WHOLE, Named
 from quietarm.studies.registry.methods import PAPERS
 from rich.console import Console
 
 
-def _not_required(command: click.Command) -> click.Command:
-    """A command whose task may be left out."""
-    for parameter in command.params:
-        parameter.required = False
-    return command
-
-
-@_not_required
 @click.command()
-@task_options
-@click.option("--bound", type=NUMBER, help="Largest coefficient; the paper's for its plants.")
+@own_task_options
+@click.option("--bound", type=float, help="Largest coefficient; the paper's for its plants.")
 @click.option("--terms", type=WHOLE, default=6, show_default=True, help="Terms of the polynomial.")
 @click.option(
     "--points", type=WHOLE, default=50, show_default=True, help="Points of the gradient's fronts."
@@ -67,9 +55,16 @@ def _not_required(command: click.Command) -> click.Command:
 )  # fmt: skip
 @click.option("--fronts", type=FOLDER, help="Write every front to this folder.")
 @quiet_option
-@click.pass_context
 def study(
-    context: click.Context, output: Path, fronts: Path | None, quiet: bool, **rest: Any
+    task: PointToPoint | None,
+    bound: float | None,
+    methods: Sequence[str],
+    setting: Sequence[tuple[str, str]],
+    output: Path,
+    given: Sequence[Path],
+    fronts: Path | None,
+    quiet: bool,
+    **amounts: Any,
 ) -> None:
     """Run every method on a task, compare what they find, and write one page of HTML.
 
@@ -86,7 +81,6 @@ def study(
       quietarm study single-link --target 30deg --duration 0.8 --method smsemoa --method gde3
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.ocp import QuietarmError
-    from quietarm.studies.cli.arguments import refuse_same_file, warn_of_workers
     from quietarm.studies.display.progress import progress
     from quietarm.studies.display.saving import Together, finish
     from quietarm.studies.display.words import counted
@@ -98,21 +92,15 @@ def study(
     from quietarm.studies.study.pieces import StudySettings
     from quietarm.studies.study.work import amount_of_work, run_study
 
-    refuse_same_file([("--output", output), ("--fronts", fronts)])
-    names = ("terms", "points", "runs", "seed", "workers", "scheduler", "population", "generations")
     settings = StudySettings(
-        **{name: rest.pop(name) for name in names},
-        methods=tuple(dict.fromkeys(rest["methods"])),
-        settings=settings_by_method(rest.pop("setting"), rest.pop("methods")),
-        fronts=tuple(map(load_front, rest.pop("given"))),
+        **amounts,
+        methods=tuple(dict.fromkeys(methods)),
+        settings=settings_by_method(setting, methods),
+        fronts=tuple(map(load_front, given)),
     )
-    bound = rest.pop("bound")
-    if rest["plant"] is None and rest["plant_file"] is None:
-        _refuse_without_plant(context, ("bound", *rest))
-        cases = CONDITIONS
-    else:
-        _refuse_without_move(rest)
-        cases = (Case(task_of(rest), bound),)
+    if task is None and typed("bound"):
+        raise click.UsageError("--bound is for a task of your own: give its plant as well")
+    cases = CONDITIONS if task is None else (Case(task, bound),)
     errors, total = Console(stderr=True), amount_of_work(cases, settings)
     warn_of_workers(errors, settings.workers, total)
     with progress(total, errors, quiet=quiet) as begin:
@@ -134,19 +122,3 @@ def study(
         together = Together("fronts", fronts, front_files(result, fronts))
     page = [page_file(result, output)]
     finish(page, show, trouble=trouble, together=together, quiet=quiet)
-
-
-def _refuse_without_plant(context: click.Context, names: Iterable[str]) -> None:
-    for name in names:
-        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-            raise click.UsageError(
-                f"--{name.replace('_', '-')} is for a task of your own: give its plant as well"
-            )
-
-
-def _refuse_without_move(rest: Mapping[str, Any]) -> None:
-    for name in ("target", "duration"):
-        if rest[name] is None:
-            raise click.UsageError(
-                f"give --{name} with the plant, or no plant for the paper's tasks"
-            )

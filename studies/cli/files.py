@@ -1,0 +1,63 @@
+"""The files of a plan: their options, and what writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial, wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from quietarm.ocp import Plan, PointToPoint
+from quietarm.ocp.plan.answer import ticks_of_move
+from quietarm.studies.cli.options import options, typed
+from quietarm.studies.cli.types import OUTPUT, PICTURE
+from quietarm.studies.display.saving import File, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_PLAN_FILES = options(
+    click.option("--output", type=OUTPUT,
+                 help="Write the plan to this JSON file; - is standard output."),
+    click.option("--csv", "csv_file", type=OUTPUT, help="Write the move to this CSV file."),
+    click.option("--sample-rate", type=float, default=1000.0, show_default=True,
+                 help="Rows per second of the CSV file [Hz]."),
+    click.option("--figure", type=PICTURE,
+                 help="Draw the move over the plain cycloid (.png, .pdf or .svg)."),
+)  # fmt: skip
+
+
+def plan_file_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options for the files of a plan; the command gets `files_of` a plan."""
+
+    @wraps(command)
+    def with_files(
+        *positional: Any,
+        task: PointToPoint,
+        output: Path | None,
+        csv_file: Path | None,
+        sample_rate: float,
+        figure: Path | None,
+        **named: Any,
+    ) -> Any:
+        if csv_file is not None:  # refused now rather than after the solve
+            ticks_of_move(task.duration, sample_rate)
+        elif typed("sample_rate"):
+            raise ValueError("--sample-rate is for --csv: give that too, or leave it out")
+
+        def picture(plan: Plan) -> Figure:
+            from quietarm.studies.figures import motion_figure
+
+            return motion_figure(plan)
+
+        def files_of(plan: Plan) -> list[File]:
+            return [
+                (output, plan.save),
+                (csv_file, partial(plan.save_csv, sample_rate=sample_rate)),
+                (figure, drawing(partial(picture, plan))),
+            ]
+
+        return command(*positional, task=task, files_of=files_of, **named)
+
+    return _PLAN_FILES(with_files)

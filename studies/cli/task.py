@@ -1,0 +1,110 @@
+"""The options that describe a task, and the task that is made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial, wraps
+from typing import Any, TypeVar
+
+import click
+from quietarm.ocp import PointToPoint
+from quietarm.ocp.task.quantities import QUANTITIES, Quantity
+from quietarm.studies.cli.options import options, typed
+from quietarm.studies.cli.plants import chosen_plant, uncertain
+from quietarm.studies.cli.quantities import parse_rate
+from quietarm.studies.cli.types import (
+    ANGLE,
+    ERROR,
+    LENGTH,
+    PLANT,
+    PLANT_FILE,
+    SETTING,
+    TIME,
+    Parsed,
+)
+
+F = TypeVar("F", bound=Callable[..., Any])
+_OF_A_MOVE = (
+    "start", "target", "duration", "residual_window",
+    *(quantity.limit for quantity in QUANTITIES.values()),
+)  # fmt: skip
+
+
+def _limit_option(quantity: Quantity) -> Callable[[F], F]:
+    option, words = f"--{quantity.name}-limit", f"Largest {quantity.label} on the way"
+    if quantity.unit == "m":
+        return click.option(option, type=LENGTH, help=f"{words}.")
+    if quantity.derivative is not None:
+        parse = partial(parse_rate, order=quantity.derivative)
+        help_text = f"{words} [{quantity.unit}], or as 60deg."
+        return click.option(option, type=Parsed(quantity.name, parse), help=help_text)
+    return click.option(option, type=float, help=f"{words} [{quantity.unit}].")
+
+
+plant_file_option = partial(
+    click.option, "--plant-file", type=PLANT_FILE,
+    is_eager=True,  # the plants in it are then known by name
+    help="A plant of your own: a file in Python, which is run.",
+)  # fmt: skip
+robust_option = click.option(
+    "--robust", type=ERROR, multiple=True, metavar="NAME=SHARE",
+    help="Count as the residual the largest one while the frequency, the damping or a parameter of "
+    "the plant is wrong by up to this, as frequency=10%; may be repeated.",
+)  # fmt: skip
+
+
+def _task_options(required: bool) -> Callable[[F], F]:
+    return options(
+        click.argument("plant", type=PLANT, required=False, metavar="PLANT"),
+        plant_file_option(),
+        click.option("--set", "parameters", type=SETTING, multiple=True,
+                     help="Set a parameter of the plant, as omega=9 (SI units); may be repeated."),
+        click.option("--start", type=ANGLE, default="0", show_default=True,
+                     help="Joint angle at the start."),
+        click.option("--target", type=ANGLE, required=required, help="Joint angle at the end."),
+        click.option("--duration", type=TIME, required=required, help="Travelling time."),
+        *map(_limit_option, QUANTITIES.values()),
+        click.option("--residual-window", type=TIME, default=1.0, show_default=True,
+                     help="Time after arrival in which the residual is measured."),
+    )  # fmt: skip
+
+
+def task_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the plant and the options that describe a task, which the command gets as `task`."""
+
+    @wraps(command)
+    def with_task(*positional: Any, **named: Any) -> Any:
+        return command(*positional, task=_task_of(named), **named)
+
+    return _task_options(required=True)(with_task)
+
+
+def own_task_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same where PLANT may be left out: `task` is then None."""
+
+    @wraps(command)
+    def with_task(*positional: Any, **named: Any) -> Any:
+        if named["plant"] is None and named["plant_file"] is None:
+            return command(*positional, task=_no_task(named), **named)
+        for name in ("target", "duration"):
+            if named[name] is None:
+                raise click.UsageError(
+                    f"give --{name} with the plant, or no plant for the paper's tasks"
+                )
+        return command(*positional, task=_task_of(named), **named)
+
+    return _task_options(required=False)(with_task)
+
+
+def _task_of(named: dict[str, Any]) -> PointToPoint:
+    kind, own, parameters = (named.pop(name) for name in ("plant", "plant_file", "parameters"))
+    plant = uncertain(chosen_plant(kind, own, parameters), named.pop("robust", ()))
+    return PointToPoint(plant, **{name: named.pop(name) for name in _OF_A_MOVE})
+
+
+def _no_task(named: dict[str, Any]) -> None:
+    for name in ("plant", "plant_file", "parameters", *_OF_A_MOVE):
+        if typed(name):
+            option = "set" if name == "parameters" else name.replace("_", "-")
+            raise click.UsageError(f"--{option} is for a task of your own: give its plant as well")
+        del named[name]
