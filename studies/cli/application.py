@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -97,6 +98,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # one more Ctrl-C may come while the first is answered
     with suppress(KeyboardInterrupt), as_ctrl_c():
         status = _run(arguments)
+    if arguments is None:  # answered: nothing is left that another Ctrl-C could stop
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.exit(status)
 
 

@@ -69,12 +69,14 @@ class FileName(Parsed):
         path = super().convert(value, param, ctx)
         if ctx is None or param is None:
             return path
-        name, place = param.opts[0], os.path.realpath(path)  # of a link, too
+        is_option = isinstance(param, click.Option)
+        name = param.opts[0] if is_option else param.human_readable_name
+        place = os.path.realpath(path)  # of a link, too
         named: list[tuple[str, str, str]] = ctx.meta.setdefault("quietarm.files", [])
         for other, there, use in named:
             if there == place and {use, self._use} not in _MAY_BE_ONE:
                 self.fail(f"{other} and {name} are both {path}; give two files", None, ctx)
-        named.append((name if name.startswith("-") else name.upper(), place, self._use))
+        named.append((name, place, self._use))
         return path
 
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
-OF_GRADIENT = ("points", "starts", "solver", "check", "weights")
+OF_GRADIENT = ("points", "starts", "solver", "check")
 OF_SEARCHES = (
     "population", "generations", "setting", "runs", "workers", "scheduler", "checkpoint", "resume",
 )  # fmt: skip
@@ -147,10 +147,9 @@ def front(
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
           --population 100 --generations 200 --setting crossover=0.7
     """  # noqa: D301  # \b is click's: do not rewrap
-    refuse_idle(method, dict.fromkeys(OF_GRADIENT, GRADIENT))
-    refuse_idle(method, {"weights": [WEIGHTED.name]})
+    refuse_idle(method, {"weights": [WEIGHTED.name], **dict.fromkeys(OF_GRADIENT, GRADIENT)})
     refuse_idle(method, dict.fromkeys(OF_SEARCHES, METAHEURISTICS), "a metaheuristic")
-    idle = OF_SEARCHES if method in GRADIENT else OF_GRADIENT
+    idle = OF_SEARCHES if method in GRADIENT else (*OF_GRADIENT, "weights")
     settings = {name: value for name, value in settings.items() if name not in idle}
     settings["profile"] = profile_of(profile, task, terms)
     files = output, csv_file, figure

@@ -38,7 +38,7 @@ def front_of(name):
     [
         ("problems single-link", "unknown problem 'single-link'; did you mean 'single-link-30deg"),
         ("problems --again", "--again finds fronts for a folder; give --output as well"),
-        (f"problems {SMALL} --output -", "this is for a folder, not for standard output"),
+        (f"problems {SMALL} --output -", "this cannot go to standard output"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(call, folder, line, words):
