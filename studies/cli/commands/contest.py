@@ -88,6 +88,7 @@ def contest(
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics.sharing.workers import Workers
     from quietarm.ocp import QuietarmError
+    from quietarm.studies.cli.ending import Together, finish
     from quietarm.studies.contest import store as stores
     from quietarm.studies.contest.asked import Contest
     from quietarm.studies.contest.imported import named_files
@@ -99,9 +100,8 @@ def contest(
     from quietarm.studies.contest.statistics import why_none
     from quietarm.studies.contest.work import pieces_of, run_contest, set_up
     from quietarm.studies.display.progress import progress, working
-    from quietarm.studies.display.saving import Together, finish
     from quietarm.studies.display.words import print_lines
-    from quietarm.studies.report.terminal import show_table
+    from quietarm.studies.report.document import Document, Lines
 
     names = tuple(name.strip() for name in methods.split(","))
     asked = Contest(
@@ -126,17 +126,13 @@ def contest(
     if not arenas:
         raise QuietarmError(_why_not_whole(done, len(pieces)) or "no run was done")
 
-    def show(console: Console) -> None:
-        for arena in arenas:
-            print_lines(console, arena.problem)
-            show_table(console, summary_table(arena))
-        notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *asked.left_out]
-        print_lines(console, *filter(None, notes))
-
+    tables = [part for one in arenas for part in (Lines([one.problem]), summary_table(one))]
+    notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *asked.left_out]
+    document = Document("", [*tables, Lines([*filter(None, notes)])])
     trouble = _why_not_whole(done, len(pieces))
     page, *others = report_files(arenas, output, asked.left_out)
     finish(
-        [page], show, trouble=QuietarmError(trouble) if trouble else None, quiet=quiet,
+        [page], document, trouble=QuietarmError(trouble) if trouble else None, quiet=quiet,
         together=Together("tables and pictures", output, others),
     )  # fmt: skip
 
