@@ -172,9 +172,9 @@ def _check_symbols(plant: Plant, name: str, error: float) -> None:
         return
     value, symbol = getattr(plant, name) * (1 + error), ca.SX.sym(name)
     motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 3 * plant.modes).tolist()
-    expressions = outputs_of(_with_symbols(plant, {name: symbol}), motion).all
+    expressions = outputs_of(_with_symbols(plant, {name: symbol}), motion)
     found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
-    anew = outputs_of(replace(plant, **{name: value}), motion).all
+    anew = outputs_of(replace(plant, **{name: value}), motion)
     if not np.allclose(found, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):
         raise ValueError(
             f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "
