@@ -114,7 +114,7 @@ def check_along(plant: Plant, start: float, target: float) -> None:
 
 @lru_cache(maxsize=256)
 def _equations(plant: Plant) -> ca.Function:
-    """A column of joint motion, W, W' and W'' -> every output, and their slopes by each of these."""
+    """(joint motion, W, W' and W'' in a column) -> every output, the slopes of all by each."""
     x, outputs = _symbolic(plant)
     slopes = ca.vec(ca.jacobian(outputs, x))
     return ca.Function("equations", [x], [ca.densify(outputs), ca.densify(slopes)])
