@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import casadi as ca
-import numpy as np
 from quietarm.models import Expression, JointMotion
+from quietarm.ocp.base.checks import whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
 
 
@@ -28,14 +28,8 @@ class Cycloid(JointProfile):
     terms: int = 6
 
     def __post_init__(self) -> None:
-        terms: object = self.terms
-        least, most = self.least_terms, self.most_terms
-        if isinstance(terms, bool) or not isinstance(terms, int | np.integer):
-            raise ValueError(f"terms is {terms!r}; give a whole number from {least} to {most}")
-        if not least <= terms <= most:
-            why = self.why_no_more
-            raise ValueError(f"terms is {terms}; give {least} to {most}{why and f': {why}'}")
-        object.__setattr__(self, "terms", int(terms))
+        terms = whole("terms", self.terms, self.least_terms, self.most_terms, self.why_no_more)
+        object.__setattr__(self, "terms", terms)
 
     @property
     def label(self) -> str:

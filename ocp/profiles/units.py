@@ -1,4 +1,7 @@
-"""The cycloid whose input is a weighted sum of units that have parameters of their own."""
+"""Cycloids whose input is a weighted sum of units with parameters of their own.
+
+Radial basis functions and hidden nodes, as this project reads the paper's comparators.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Self
 
+import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression
@@ -138,3 +142,99 @@ class CycloidOfUnits(Cycloid):
 def side_by_side(units: int) -> NDArray[np.float64]:
     """Middles of even cells between -1 and 1, shape (units,)."""
     return (2 * np.arange(units) + 1 - units) / units
+
+
+_WIDEST, _SHARPEST = 0.3, 3.0
+"""Inverse widths: from nearly a parabola over the whole move to a sixth of it."""
+
+
+@dataclass(frozen=True)
+class CycloidGaussians(CycloidOfUnits):
+    """A cycloid whose input is a sum of Gaussians: ref. [24], as this project reads it.
+
+    U = t/TE + (1 - T^2) (w_0 + sum_j w_j exp(-(k_j (T - c_j))^2)), T = -1 + 2 t/TE. The
+    coefficients are w_0 to w_n, the centres c_1 to c_n, and the inverse widths k_1 to k_n, which
+    may be any number up to 200 either way, also zero. Every centre keeps to a cell of its own, so
+    that no two Gaussians can change places.
+
+    Parameters
+    ----------
+    terms : int
+        How many Gaussians, n, 1 to 32; the profile has 1 + 3 n coefficients.
+
+    Raises
+    ------
+    ValueError
+        When `terms` is not a whole number in that range.
+    """
+
+    name: ClassVar[str] = "cycloid-gaussians"
+    sharpness: ClassVar[str] = "the inverse width of a Gaussian"
+    terms: int = 5
+
+    @property
+    def ranges(self) -> tuple[Range, Range]:
+        """Centres, then inverse widths."""
+        one = np.ones(self.terms)
+        middle, half = REACH * side_by_side(self.terms), REACH / self.terms * one
+        return (
+            Range(middle, half, middle - half, middle + half),
+            Range(2.0 * one, 0.25 * one, _WIDEST * one, _SHARPEST * one),
+        )
+
+    @staticmethod
+    def unit(
+        x: Expression, y: Expression, T: Expression
+    ) -> tuple[Expression, Expression, Expression]:
+        """A Gaussian of centre x and inverse width y, and its derivatives."""
+        z = y * (T - x)
+        g = ca.exp(-z * z)
+        return g, -2 * y * z * g, y * y * (4 * z * z - 2) * g
+
+
+_STRAIGHTEST, _STEEPEST = 0.3, 4.0
+"""Gains: from nearly a straight line over the whole move to a step that takes a quarter of it."""
+_FIRST_GAIN = 1.5
+
+
+@dataclass(frozen=True)
+class CycloidNetwork(CycloidOfUnits):
+    """A cycloid whose input is a network of one hidden layer: ref. [23], as this project reads it.
+
+    U = t/TE + (1 - T^2) (v_0 + sum_j v_j tanh(b_j + k_j T)), T = -1 + 2 t/TE. The coefficients are
+    v_0 to v_n, the biases b_1 to b_n, and the gains k_1 to k_n. Gains are positive: a negative one
+    is the same as other signs of its weight and bias. They may be up to 200.
+
+    Parameters
+    ----------
+    terms : int
+        How many hidden nodes, n, 1 to 32; the profile has 1 + 3 n coefficients.
+
+    Raises
+    ------
+    ValueError
+        When `terms` is not a whole number in that range.
+    """
+
+    name: ClassVar[str] = "cycloid-network"
+    sharpness: ClassVar[str] = "the gain of a hidden node"
+    terms: int = 5
+
+    @property
+    def ranges(self) -> tuple[Range, Range]:
+        """Biases, then gains."""
+        one = np.ones(self.terms)
+        biases = _FIRST_GAIN * REACH * side_by_side(self.terms)
+        return (
+            Range(biases, 0.5 * one, -_STEEPEST * one, _STEEPEST * one),
+            Range(_FIRST_GAIN * one, 0.5 * one, _STRAIGHTEST * one, _STEEPEST * one),
+        )
+
+    @staticmethod
+    def unit(
+        x: Expression, y: Expression, T: Expression
+    ) -> tuple[Expression, Expression, Expression]:
+        """A hidden node of bias x and gain y, and its derivatives."""
+        g = ca.tanh(x + y * T)
+        slope = y * (1 - g * g)
+        return g, slope, -2 * y * g * slope

@@ -13,8 +13,7 @@ import casadi as ca
 import numpy as np
 from quietarm.models import Plant
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.elementwise import elementwise
-from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places
+from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places, elementwise
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, Step, step
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.objective import energy_derivatives, resolved_energy

@@ -36,15 +36,6 @@ def resolved_energy(
     return ca.sum2(h * _parted_energy(c, cubic, quartic, _breaks(c)))
 
 
-def two_samples() -> NDArray[np.float64]:
-    """What the quadratic through a step's nodes gives at the two Gauss nodes, shape (2, NODES).
-
-    Each of the two samples counts half in the mean over the step.
-    """
-    x = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
-    return x[:, None] ** np.arange(NODES) @ np.array(_TO_QUADRATIC)
-
-
 def _quadratic(power: Sequence[Expression]) -> list[Expression]:
     """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
     return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]

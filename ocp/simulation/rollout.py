@@ -111,9 +111,10 @@ def symbolic_rollout(
     times, length = node_times(steps, candidates)
     joints = [profile.motion(coefficients, at, *move) for at in times]
     if jerk:
+        ends = [end_to_end(at, steps) for at in times]
+        of_jerk = [profile.motion(coefficients, at, *move, jerk=True) for at in ends]
         joints = [
-            joint._replace(jerk=_jerk(profile, coefficients, at, move, steps))
-            for joint, at in zip(joints, times, strict=True)
+            joint._replace(jerk=there.jerk) for joint, there in zip(joints, of_jerk, strict=True)
         ]
     return rollout_along(plant, joints, move[2] * length)
 
@@ -135,19 +136,6 @@ def rollout_along(plant: Plant, joints: list[JointMotion], h: Expression) -> Sym
         for joint, node in zip(joints, states, strict=True)
     ]
     return SymbolicRollout(joints, states, torque, arrival, h)
-
-
-def _jerk(
-    profile: JointProfile,
-    coefficients: Sequence[Expression],
-    times: Expression,
-    move: Sequence[Expression],
-    steps: int,
-) -> Expression:
-    """The jerk that counts for the nodes at these fractions of the duration."""
-    start, target, duration = move
-    at = end_to_end(times, steps)
-    return profile.motion(coefficients, at, start, target, duration, jerk=True).jerk
 
 
 def march(

@@ -60,7 +60,7 @@ def test_any_size(of_units, terms):
 
 def test_a_quintic_spline_has_four_control_points_to_move_at_least():
     assert CycloidSpline(4).size == 4
-    with pytest.raises(ValueError, match="terms is 3; give 4 to 32"):
+    with pytest.raises(ValueError, match="terms is 3; give a whole number from 4 up"):
         CycloidSpline(3)
 
 

@@ -3,7 +3,7 @@
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp.program.elementwise import elementwise
+from quietarm.ocp.program.node import elementwise
 
 
 def test_all_entries_at_once_give_what_one_by_one_gives():

@@ -114,17 +114,6 @@ def test_a_plant_with_errors_is_simulated_as_well(tasks):
     assert resimulate(there, CycloidPolynomial(1), [0.1]).energy > 0
 
 
-def test_an_equation_beyond_all_scale_is_suspected_where_no_number_is():
-    fast = type("Fast", (SingleLinkManipulator,), {
-        "name": "fast",
-        "modal_accelerations": lambda p, joint, W, dW: [
-            -(100.0 + 1e12 * joint.speed**2) * W[0] - joint.acceleration
-        ],
-    })()  # fmt: skip
-    with pytest.raises(SolverFailedError, match=r"number in the plant.* coefficient is only 0\.1"):
-        resimulate(PointToPoint(fast, math.pi / 6, 0.8), CycloidPolynomial(1), [0.1])
-
-
 def test_coefficients_a_thousand_times_those_of_a_plan_are_followed(tasks):
     figures = resimulate(tasks["single link"], CycloidPolynomial(1), [1000.0])
     assert figures.energy > 1e7
@@ -132,5 +121,5 @@ def test_coefficients_a_thousand_times_those_of_a_plan_are_followed(tasks):
 
 def test_a_motion_beyond_all_scale_may_have_no_coefficients():
     wild = SingleLinkManipulator(beta1=1e100)
-    with pytest.raises(SolverFailedError, match=r"CVODES .*beta1 far out.* 1e\+100,"):
+    with pytest.raises(SolverFailedError, match=r"CVODES .*far out of scale.*coefficient is 0"):
         resimulate(PointToPoint(wild, 1e5, 1e-3), PLAIN, [])
