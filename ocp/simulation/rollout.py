@@ -149,8 +149,6 @@ def march(
     """
     rows, steps = shape
     size = len(constant)
-    if size > 2 and _apart(columns):
-        return _march_apart(constant, columns, shape)
     offsets = [_by_step(row, steps) for row in constant]
     by_row = [
         {c: _by_step(column[row], steps) for c, column in enumerate(columns)
@@ -168,58 +166,6 @@ def march(
         ]
     after = [ca.horzcat(*entry) for entry in before]
     return after[: size // 2], after[size // 2 :], ca.horzcat(*state)
-
-
-def _apart(columns: Sequence[Sequence[Expression]]) -> bool:
-    """Whether no mode acts on another."""
-    size, modes = len(columns), len(columns) // 2
-    return all(
-        is_zero(columns[c][row])
-        for c in range(size)
-        for row in range(size)
-        if c % modes != row % modes
-    )
-
-
-def _march_apart(
-    constant: Sequence[Expression],
-    columns: Sequence[Sequence[Expression]],
-    shape: tuple[int, int],
-) -> tuple[list[Expression], list[Expression], Expression]:
-    """As `march` of modes that do not act on each other: at each step they stand below each other.
-
-    That is a step of one mode with more rows, built that much sooner.
-    """
-    (rows, steps), modes = shape, len(constant) // 2
-
-    def below(entries: Sequence[Expression]) -> list[Expression]:
-        by_step = [_by_step(entry, steps) for entry in entries]
-        return [
-            ca.vertcat(*(x if x.shape[0] == rows else ca.repmat(x, rows, 1) for x in at))
-            for at in zip(*by_step, strict=True)
-        ]
-
-    of_W, of_dW = (below(constant[part : part + modes]) for part in (0, modes))
-    gains = [
-        [below([columns[c + i][row + i] for i in range(modes)]) for c in (0, modes)]
-        for row in (0, modes)
-    ]
-    W = dW = ca.DM.zeros(rows * modes, 1)
-    before: list[list[Expression]] = [[], []]
-    for k in range(steps):
-        before[0].append(W)
-        before[1].append(dW)
-        W, dW = (
-            offset[k] + gain[0][k] * W + gain[1][k] * dW
-            for offset, gain in zip((of_W, of_dW), gains, strict=True)
-        )
-    halves = []
-    for states, last in zip(before, (W, dW), strict=True):
-        apart = zip(*(ca.vertsplit(state, rows) for state in [*states, last]), strict=True)
-        halves.append([list(one) for one in apart])
-    arrival = ca.horzcat(*(one[-1] for half in halves for one in half))
-    W_before, dW_before = ([ca.horzcat(*one[:-1]) for one in half] for half in halves)
-    return W_before, dW_before, arrival
 
 
 def _by_step(entry: Expression, steps: int) -> list[Expression]:
