@@ -77,7 +77,6 @@ TESTS = {
         "ocp/simulation/test_resimulation.py",
         "ocp/simulation/test_third_opinion.py",
         "ocp/simulation/test_closed_forms.py",
-        "ocp/simulation/test_samples.py",
         "ocp/simulation/test_free_motions.py",
     ],
 }

@@ -8,7 +8,6 @@ from quietarm.models import (
     SingleLinkManipulator,
 )
 from quietarm.models.drawing import TIP_SLOPE, cantilever
-from sound_plant import Sound
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
@@ -72,21 +71,3 @@ def test_the_arm_turns_as_the_signs_of_its_equations_say():
     assert arm(np.pi / 2, 0.0) == pytest.approx([0, 0.21])
     slope = np.arctan(TIP_SLOPE * 0.03 / 0.55)
     assert arm(slope, 0.03) == pytest.approx(arm(0.0, 0.0))
-
-
-def test_a_plant_of_your_own_is_drawn_as_a_straight_link_of_a_metre():
-    (tip,) = tips_of(Sound().structure(np.pi / 2, [0.1]))
-    assert tip == pytest.approx([-0.1, 1.0])
-
-
-def test_what_is_drawn_thick_is_hubs_motor_arm_and_clamp():
-    hub = SingleLinkManipulator().structure(0.3, [0.01])[1]
-    assert (hub.points.tolist(), hub.rigid) == ([[0.0, 0.0]], True)
-    clamp, link, arm, motor = ArmOnFlexibleLink().structure(0.3, [0.01])
-    assert [body.rigid for body in (clamp, link, arm, motor)] == [True, False, True, True]
-    # upright at the link's root, half of it on either side
-    assert clamp.points[:, 0] == pytest.approx([0, 0])
-    assert clamp.points[0, 1] == -clamp.points[1, 1] < 0
-    assert motor.points.tolist() == [link.points[-1].tolist()] == [arm.points[0].tolist()]
-    hub = Sound().structure(0.3, [0.01])[-1]
-    assert (hub.points.tolist(), hub.rigid) == ([[0.0, 0.0]], True)

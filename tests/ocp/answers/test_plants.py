@@ -40,9 +40,7 @@ def test_it_loads_where_the_file_was_given(saved, crane_file, tmp_path):
 
 def test_nothing_is_run_that_the_user_did_not_name(saved, crane_file):
     del Plant._known["crane"]  # as in another process
-    told = _refused(saved[0])
-    assert "'crane' is not the one of a file here" in told
-    assert f"give its file {str(crane_file)!r} again" in told
+    assert repr(str(crane_file)) in _refused(saved[0])
 
 
 def test_a_changed_file_is_refused_with_both_digests(saved, crane_file):
@@ -53,4 +51,3 @@ def test_a_changed_file_is_refused_with_both_digests(saved, crane_file):
     told = _refused(saved[0])
     assert before[:12] in told
     assert after[:12] in told
-    assert "give the file as it was, or compute anew" in told

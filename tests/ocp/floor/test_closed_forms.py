@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import pytest
-from floor_moves import SHORT
 from quietarm.models import Plant, parameter
 from quietarm.ocp import (
     PointToPoint,
@@ -61,7 +60,7 @@ def _friction_floor(inertia, c, span, duration):
 def test_a_rigid_joint_with_friction_has_its_closed_form(rigid, smooth):
     plant = rigid()
     expected = _friction_floor(plant.inertia, plant.c, 1.5, 0.8)
-    floor = energy_floor(PointToPoint(plant, 1.5, 0.8), smooth=smooth, **SHORT)
+    floor = energy_floor(PointToPoint(plant, 1.5, 0.8), smooth=smooth, starts=1)
     assert floor.energy == pytest.approx(expected, rel=2e-3)
     assert floor.energy > expected * (1 - 1e-4)  # no motion is cheaper
     # A jolt takes up to 4e-5 of the move at any level.
@@ -74,7 +73,7 @@ def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form(rigid):
     limit, span, duration = 15.0, 1.5, 0.8
     v = (limit * duration - math.sqrt((limit * duration) ** 2 - 4 * limit * span)) / 2
     task = PointToPoint(rigid(c=0.0), span, duration, acceleration_limit=limit)
-    floor = energy_floor(task, **SHORT)
+    floor = energy_floor(task, starts=1)
     assert floor.energy == pytest.approx(task.plant.inertia * v**2, rel=1e-3)
     assert floor.motion.peak_speed == pytest.approx(v, rel=2e-3)
     assert floor.motion.peak_acceleration <= limit * (1 + 1e-9)

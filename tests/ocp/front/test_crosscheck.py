@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from front_moves import CASES
 from made_fronts import front as made_by_hand
+from moves import CASES
 from quietarm.ocp import CycloidPolynomial, cross_check, epsilon_front
 
 

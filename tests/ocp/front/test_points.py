@@ -46,27 +46,7 @@ def test_the_points_that_stay_are_those_of_the_definition(figures):
     assert np.all(np.diff(energies) < 0)
 
 
-@given(st.lists(st.tuples(values, values), max_size=15), st.randoms())
-def test_the_order_given_does_not_matter(figures, random):
-    given_points = list(points(*dict.fromkeys(figures)))
-    figures_kept = [(p.residual, p.energy) for p in non_dominated(given_points)]
-    random.shuffle(given_points)
-    assert [(p.residual, p.energy) for p in non_dominated(given_points)] == figures_kept
-
-
-@given(st.lists(st.tuples(values, values), max_size=15))
-def test_what_stays_stays(figures):
-    kept = non_dominated(points(*figures))
-    assert non_dominated(kept) == kept
-
-
 def test_of_equal_points_the_first_stays():
     given_points = points((1.0, 1.0), (1.0, 1.0), (2.0, 0.5), (2.0, 0.5))
     assert non_dominated(given_points) == (given_points[0], given_points[2])
     assert non_dominated(iter(given_points)) == (given_points[0], given_points[2])
-
-
-def test_equal_in_one_is_not_better_in_both():
-    # the same residual, less energy: that one alone; and the other way about
-    given_points = points((1.0, 3.0), (1.0, 2.0), (1.5, 2.0))
-    assert non_dominated(given_points) == (given_points[1],)

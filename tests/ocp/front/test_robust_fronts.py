@@ -10,7 +10,6 @@ import pytest
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
-    FailedPoint,
     Front,
     PointToPoint,
     UncertainPlant,
@@ -20,11 +19,8 @@ from quietarm.ocp import (
     weighted_front,
     with_errors,
 )
-from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.ocp.front import robust
-from quietarm.ocp.front.robust import EXCESS, held_between, on_same_samples
-from quietarm.ocp.front.sweep import Sweep
-from quietarm.ocp.robustness.uncertain import on_assumed, with_samples
+from quietarm.ocp.front.robust import EXCESS, on_same_samples
+from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.studies.comparison.measures import compare_fronts
 
 RANGE, POINTS = 0.15, 3
@@ -107,26 +103,6 @@ def test_a_polished_front_holds_as_well(front):
         assert worst(polished, point) <= point.residual * (1 + polished.settings[EXCESS] + 1e-4)
 
 
-def test_ctrl_c_keeps_the_round_before(at_samples, monkeypatch):
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(robust, "_solved_again", interrupted)
-    sweep = Sweep(at_samples.task, PROFILE, SolveSettings(starts=1))
-    found, excess, complete = held_between(sweep, at_samples.points)
-    assert (tuple(found), excess, complete) == (at_samples.points, None, False)
-    assert sweep.task == at_samples.task
-
-
-def test_a_missing_point_is_found_from_its_neighbour(front):
-    missing = FailedPoint({"residual_limit": front.points[1].residual}, "no luck")
-    sweep = Sweep(front.task, PROFILE, SolveSettings(starts=1))
-    found, _, _ = held_between(sweep, [front.points[0], missing, *front.points[2:]])
-    assert not [one for one in found if isinstance(one, FailedPoint)]
-    energies = sorted(one.energy for one in found)
-    assert energies == pytest.approx(sorted(front.energies), rel=1e-3)
-
-
 def test_fronts_with_other_samples_are_compared_at_those_of_all(front, at_samples):
     same = on_same_samples([front, at_samples])
     assert same[0].task == same[1].task
@@ -135,21 +111,3 @@ def test_fronts_with_other_samples_are_compared_at_those_of_all(front, at_sample
     )
     compared = compare_fronts([front, at_samples], fill=0)
     assert sum(len(group.runs) for group in compared.groups) == 2
-
-
-def test_fronts_of_other_ranges_or_plants_stay_as_they_are(front):
-    wider = UncertainPlant(SingleLinkManipulator(), {"frequency": 2 * RANGE})
-    other = replace(front, task=replace(front.task, plant=wider))
-    assert on_same_samples([front, other]) == [front, other]
-    plain = replace(front, task=on_assumed(front.task))
-    assert on_same_samples([front, plain]) == [front, plain]
-
-
-def test_without_an_uncertain_plant_nothing_happens(front):
-    sweep = Sweep(on_assumed(front.task), PROFILE, SolveSettings(starts=1))
-    assert held_between(sweep, front.points) == (list(front.points), None, True)
-
-
-def test_samples_of_the_sweep_begin_with_none(task):
-    sweep = Sweep(with_samples(task, [[0.05]]), PROFILE, SolveSettings(starts=1))
-    assert sweep.samples == [(0.0,), (-RANGE,), (RANGE,), (0.05,)]

@@ -1,17 +1,12 @@
 """Plans and fronts with a limit on the jerk, and their files."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from quietarm.ocp import (
-    CycloidPolynomial,
     InfeasibleTaskError,
-    Plan,
-    epsilon_front,
     plan_move,
-    resimulate,
 )
 
 
@@ -41,37 +36,3 @@ def test_what_is_said_to_be_feasible_is(tasks):
     plan = plan_move(replace(task, jerk_limit=least), starts=1)
     assert plan.motion.peak_jerk <= least * (1 + 1e-3)
     assert plan.residual < 1e-8
-
-
-def test_every_point_of_a_front_keeps_it(tasks):
-    task = replace(tasks["arm"], jerk_limit=3000.0)
-    front = epsilon_front(task, CycloidPolynomial(6), bound=0.5, points=3, starts=1)
-    assert len(front.points) >= 3
-    for point in front.points:
-        peak = resimulate(task, front.profile, point.coefficients).peak_jerk
-        assert peak <= 3000.0 * (1 + 1e-3)
-
-
-def test_a_plan_with_a_jerk_limit_saves_and_loads_equal(pair, tmp_path):
-    for plan in pair:
-        plan.save(tmp_path / "plan.json")
-        assert Plan.load(tmp_path / "plan.json") == plan
-    document = json.loads((tmp_path / "plan.json").read_text())
-    assert document["task"]["jerk_limit"] == plan.task.jerk_limit
-    assert document["motion"]["peak_jerk"] == plan.motion.peak_jerk
-
-
-@pytest.fixture
-def changed(pair, tmp_path):
-    """The file of a plan without limits, with another peak of the jerk or none."""
-    path = tmp_path / "plan.json"
-    pair[0].save(path)
-
-    def write(**peaks):
-        document = json.loads(path.read_text())
-        del document["motion"]["peak_jerk"]
-        document["motion"] |= peaks
-        path.write_text(json.dumps(document))
-        return path
-
-    return write

@@ -13,7 +13,6 @@ from quietarm.ocp import (
     InfeasibleTaskError,
     Plan,
     PointToPoint,
-    SolverFailedError,
     UncertainPlant,
     evaluate_coefficients,
     plan_move,
@@ -21,9 +20,7 @@ from quietarm.ocp import (
     with_errors,
 )
 from quietarm.ocp.plan import robust
-from quietarm.ocp.plan.solver import plan_at_samples
 from quietarm.ocp.robustness.uncertain import on_assumed
-from quietarm.ocp.robustness.worst import peaks_between
 
 RANGE = 0.1
 
@@ -37,12 +34,6 @@ def task():
 @pytest.fixture(scope="module")
 def plan(task):
     return plan_move(task, starts=1)
-
-
-@pytest.fixture(scope="module")
-def at_samples(task, plan):
-    """The plan before the limit is held between the samples."""
-    return plan_at_samples(task, plan.profile, plan.provenance.settings)
 
 
 def residuals(plan, errors):
@@ -66,16 +57,6 @@ def test_the_limit_holds_between_the_samples(plan):
     assert max(residuals(plan, errors)) <= plan.worst.residual * (1 + 1e-4) <= limit * (1 + 1e-4)
 
 
-def test_samples_are_added_where_the_limit_is_passed_between_them(task, plan, at_samples):
-    assert at_samples.task == task
-    worst, _ = peaks_between(task, plan.profile, at_samples.coefficients, 4)
-    limit = plan.provenance.settings.residual_limit
-    assert worst.residual > (1 + robust.EXCESS) * limit  # else nothing here is tested
-    assert len(plan.task.plant.samples) > len(task.plant.samples)
-    assert all(abs(error) <= RANGE for (error,) in plan.task.plant.samples)
-    assert plan.energy >= at_samples.energy
-
-
 def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
     samples = [0.0, *(error for (error,) in plan.task.plant.samples)]
     assert plan.residual == pytest.approx(max(residuals(plan, samples)), rel=1e-6)
@@ -90,84 +71,17 @@ def test_it_saves_and_loads_equal(plan, tmp_path):
     assert loaded.excess == plan.excess
 
 
-def test_ctrl_c_keeps_the_last_round(task, plan, at_samples):
-    asked = []
-
-    def interrupted(task, profile, settings, starts):
-        asked.append([list(start) for start in starts])
-        if len(asked) == 2:
-            raise KeyboardInterrupt
-        return at_samples, [np.array(at_samples.coefficients)]
-
-    settings = plan.provenance.settings
-    found = robust.robust_plan(task, plan.profile, settings, interrupted)
-    assert asked[0] == [[0.0] * 6]
-    assert list(at_samples.coefficients) in asked[1]
-    assert not found.complete
-    assert "before the residual was held between the samples" in found.provenance.stopped
-    assert found.coefficients == at_samples.coefficients
-    assert found.excess > robust.EXCESS
-    assert found.provenance.settings == settings
-
-
-def test_a_round_that_ctrl_c_ended_is_the_last(task, plan, at_samples):
-    stopped = replace(at_samples.provenance, stopped="1 of 4 starts")
-
-    def once(*_):
-        return replace(at_samples, provenance=stopped), []
-
-    found = robust.robust_plan(task, plan.profile, plan.provenance.settings, once)
-    assert found.provenance.stopped == "1 of 4 starts"
-    assert found.coefficients == at_samples.coefficients
-
-
-def test_peaks_are_judged_by_one_integrator(plan):
-    worst, peaks = peaks_between(plan.task, plan.profile, plan.coefficients, 4)
-    assert len(peaks) > 1
-    assert residuals(plan, peaks[:, 1]) == pytest.approx(peaks[:, 0].tolist(), rel=1e-5)
-    assert peaks[0].tolist() == [worst.residual, worst.errors["frequency"]]
-    assert peaks[:, 0].tolist() == sorted(peaks[:, 0], reverse=True)
-
-
 # -- bad input --
 
 
 def test_rest_is_not_asked_for(task):
-    with pytest.raises(ValueError, match="no motion arrives at rest whatever the errors"):
+    with pytest.raises(ValueError, match="rest"):
         plan_move(task, residual_limit=0.0)
 
 
 def test_what_cannot_be_met_says_what_can(task):
-    with pytest.raises(InfeasibleTaskError, match="feasible with the rest kept: residual limit"):
+    with pytest.raises(InfeasibleTaskError, match="residual limit"):
         plan_move(task, CycloidPolynomial(1), bound=0.2, starts=1)
-
-
-def test_a_limit_that_cannot_be_tightened_keeps_the_plan(task, plan, at_samples):
-    # What comes after the first plan fails: it stands, and its excess says by how much it passes.
-    asked = []
-
-    def fails_when_tighter(task, profile, settings, starts):
-        if settings.residual_limit < plan.provenance.settings.residual_limit:
-            raise SolverFailedError("none of 1 starts was solved")
-        asked.append(task)
-        return replace(at_samples, task=task), []
-
-    found = robust.robust_plan(task, plan.profile, plan.provenance.settings, fails_when_tighter)
-    assert found.excess > 0
-    assert len(asked[-1].plant.samples) > len(asked[0].plant.samples)
-    assert found.coefficients == at_samples.coefficients
-
-
-def test_where_no_motion_is_there_it_does_not_start_again(task, plan):
-    asked = []
-
-    def infeasible(task, *_):
-        asked.append(task)
-        raise InfeasibleTaskError("no motion")
-
-    with pytest.raises(InfeasibleTaskError, match="no motion"):
-        robust.robust_plan(task, plan.profile, plan.provenance.settings, infeasible)
-    assert asked == [task]
 
 
 def test_ipopt_finds_the_same(task, plan):

@@ -75,8 +75,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
     assert _derivatives(made, inputs).energy[0] == pytest.approx(energy, rel=25 / steps**4)
 
 
-@pytest.mark.parametrize("rows", [1, 3, 9, 60])
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize(("rows", "threads"), [(3, 1), (20, 2)])
 def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
     profile = CycloidPolynomial(4)
     made = batch(plants["arm"], profile, 12, ("torque",), ("frequency",))
@@ -111,12 +110,9 @@ CASES = [
     ("single link", "polynomial", QUANTITIES, ()),
     ("arm", "polynomial", ("torque", "jerk"), ("frequency", "damping")),
     ("two links", "polynomial", ("deflection", "acceleration"), ("frequency",)),
-    ("two links", "spline", ("torque", "deflection"), ()),
     ("arm", "spline", ("acceleration", "jerk"), ("omega",)),
     ("arm", "gaussians", ("torque", "jerk"), ()),
     ("single link", "network", ("acceleration", "deflection"), ("frequency",)),
-    ("two links", "network", (), ()),
-    ("single link", "polynomial", ("torque",), ("frequency", "beta1")),
 ]
 
 
@@ -173,7 +169,7 @@ def test_curvature_is_the_limit_of_differences_of_the_lagrangians_gradient(case,
     assert found == pytest.approx(found.swapaxes(1, 2), abs=1e-10 * np.abs(found).max())
 
 
-@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+@pytest.mark.parametrize("name", ["arm", "two links"])
 def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants, name):
     made = batch(plants[name], CycloidPolynomial(3), 30)
     candidates = _candidates(2, made.kind.profile, seed=5)
@@ -199,7 +195,7 @@ def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
     assert _derivatives(made, candidates, 1e-9).energy == pytest.approx(sharp, rel=2e-3)
 
 
-@pytest.mark.parametrize("terms", [3, 12, 20])
+@pytest.mark.parametrize("terms", [3, 12])
 def test_along_even_axes_the_inputs_speed_changes_alike_and_independently(plants, terms):
     # U moves by (1 - T^2) T^n along coefficient n, n from 0, so its derivative by
     # n T^(n-1) - (n + 2) T^(n+1). The Gram matrix is that of the integrals over the move; that of
@@ -210,8 +206,3 @@ def test_along_even_axes_the_inputs_speed_changes_alike_and_independently(plants
     speeds = (n * T ** np.maximum(n - 1, 0) - (n + 2) * T ** (n + 1)).T @ axes
     gram = (speeds * weights[:, None]).T @ speeds
     assert gram == pytest.approx(8 / 3 * np.eye(terms), abs=0.05)
-
-
-def test_axes_of_coefficients_that_enter_nonlinearly_are_their_own(plants):
-    made = batch(plants["arm"], PROFILES["network"], 12)
-    assert made.even_axes().tolist() == np.eye(made.kind.profile.size).tolist()

@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 from quietarm.models import DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import (
-    CycloidPolynomial,
     PointToPoint,
     evaluate_robustness,
     resimulate,
     shaped_cycloid,
     with_errors,
 )
-from quietarm.ocp.robustness.population import ErrorPopulation
 from scipy.optimize import brentq
 
 LINEAR = SingleLinkManipulator(beta2=0.0, zeta=0.0)
@@ -85,18 +83,6 @@ def test_the_figures_of_docs_physics(tasks, solved):
     assert found.cycloid == pytest.approx(15.0e-3, abs=5e-5)
 
 
-def test_faster_modes_are_resolved(two_links):
-    # A mode of 19 periods in the move, and 1.9 times as fast at the end of the range.
-    plant = replace(two_links, omega1=200.0)
-    task = PointToPoint(plant, 1.0, 0.6)
-    found = evaluate_robustness(task, CycloidPolynomial(0), [], {"omega1": 0.9}, samples=1)
-    single = resimulate(
-        replace(task, plant=replace(plant, omega1=200.0 * 1.9)), CycloidPolynomial(0), []
-    )
-    assert found.sweeps[0].figures.residual[-1] == pytest.approx(single.residual, rel=1e-4)
-    assert found.sweeps[0].figures.energy[-1] == pytest.approx(single.energy, rel=1e-4)
-
-
 # -- the insensitivity range --
 
 
@@ -146,24 +132,6 @@ def test_the_insensitivity_of_shapers_is_that_of_the_closed_form(shaper, duratio
     assert sweep.insensitivity == pytest.approx(closed, abs=1e-3)  # by errors 0.006 apart
     assert sweep.width == pytest.approx(closed[1] - closed[0], abs=2e-3)
     assert sweep.open_ends == (False, False)
-
-
-@pytest.mark.parametrize(
-    ("plant", "target", "duration", "shaper"),
-    [
-        (DualLinkManipulator(), math.pi / 2, 1.148, "ei"),  # nine short cycloids
-        (SingleLinkManipulator(), math.pi / 6, 0.3171, "zv"),
-    ],
-)
-def test_the_shortest_shaped_moves_leave_what_cvodes_says(plant, target, duration, shaper):
-    task = PointToPoint(plant, target, duration)
-    profile = shaped_cycloid(task, shaper)
-    errors = [0.0, 0.07, -0.1]
-    found = ErrorPopulation(task, profile, [], {"frequency": 0.1})([[error] for error in errors])
-    wrong = [with_errors(plant, {"frequency": error}) for error in errors]
-    motions = [resimulate(replace(task, plant=one), profile, []) for one in wrong]
-    assert found.residual == pytest.approx([m.residual for m in motions], rel=2e-4)
-    assert found.energy == pytest.approx([m.energy for m in motions], rel=2e-4)
 
 
 def test_a_range_that_is_not_left_is_open():

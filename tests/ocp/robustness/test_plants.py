@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -107,22 +106,11 @@ def test_the_damping_of_coupled_modes_is_scaled_to_first_order():
     [
         ({}, r"no error is named"),
         ({"omga": 0.1}, r"single-link has no parameter 'omga'; did you mean 'omega'\?"),
-        ({"freq": 0.1}, r"no parameter 'freq'; did you mean 'frequency'\?"),
-        ({"mass": 0.1}, r"it has: frequency, damping, alpha1, alpha2"),
         ({"frequency": 1.2}, r"120 % makes the frequency negative; give less than 100 %"),
-        ({"frequency": 1.0}, r"100 % makes the frequency 0; give less than 100 %"),
-        ({"omega": 10}, r"1000 % makes the omega negative; give less than 100 %"),
         ({"damping": 1.5}, r"150 % makes the damping negative; give 100 % or less"),
-        ({"omega": 0.0}, r"range of omega is 0; give a positive number"),
         ({"omega": -0.1}, r"range of omega is -0.1; give a positive number"),
-        ({"omega": math.nan}, r"range of omega is nan"),
     ],
 )
 def test_ranges_that_cannot_be(ranges, message):
     with pytest.raises(ValueError, match=message):
         checked_ranges(SingleLinkManipulator(), ranges)
-
-
-def test_a_parameter_that_is_zero_has_no_share():
-    with pytest.raises(ValueError, match="parameter zeta of single-link is 0"):
-        checked_ranges(SingleLinkManipulator(zeta=0.0), {"zeta": 0.1})

@@ -11,9 +11,8 @@ from quietarm.ocp import (
     resimulate,
     sample_trajectory,
 )
-from quietarm.ocp.simulation.cvodes import rest_of
-from scipy.integrate import simpson, solve_ivp
-from third_opinion import ARM, SINGLE_LINK, ThirdOpinion, two_links
+from scipy.integrate import simpson
+from third_opinion import ARM, SINGLE_LINK, ThirdOpinion
 
 pi = math.pi
 _RANDOM = np.random.default_rng(20)
@@ -88,20 +87,3 @@ def test_scipy_agrees_at_every_sample(case):
     assert found.tips == pytest.approx(other.phi * states[: other.modes].T, abs=3e-9)
     assert found.torque == pytest.approx(torque, abs=1e-8)
     assert found.power == pytest.approx(torque * joint[:, 1], abs=1e-7)
-
-
-def test_the_rest_by_matrices_is_that_by_one_run(tasks):
-    task, arrival = tasks["two links"], [2e-3, -1e-3, 0.03, 0.1]
-    rest = rest_of(task, arrival)
-    assert rest.time[[0, -1]] == pytest.approx([0.9, 1.9], abs=1e-15)
-    assert np.ptp(np.diff(rest.time)) < 1e-14
-    assert np.diff(rest.time).max() * 12.68 * 0.993 <= 0.003  # radians of the faster link
-    run = solve_ivp(
-        lambda t, x: [*x[2:], *two_links(pi / 2, 0, 0, x[:2], x[2:])[0]],
-        (0.9, 1.9), arrival, "DOP853", rest.time, rtol=1e-13, atol=1e-15,
-    )  # fmt: skip
-    torque = [two_links(pi / 2, 0, 0, x[:2], x[2:])[1] for x in run.y.T]
-    assert rest.modes == pytest.approx(run.y[:2].T, abs=1e-11)
-    assert rest.tips == pytest.approx(2.7244 * run.y[:2].T, abs=1e-11)
-    assert rest.torque == pytest.approx(torque, abs=1e-9)
-    assert rest.joint[[0, -1]].tolist() == [[pi / 2, 0.0, 0.0]] * 2
