@@ -4,9 +4,9 @@ import math
 
 import casadi as ca
 import pytest
-from quietarm.models import Plant, SingleLinkManipulator, known_plants
-from quietarm.ocp import PointToPoint
 from sound_plant import Sound
+
+import quietarm as qa
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
@@ -89,10 +89,7 @@ def test_what_is_wrong_is_told_in_one_line(changes, told):
 )
 def test_parameters_that_no_plant_has_are_told(parameters, told):
     with pytest.raises(ValueError, match=f"'single-link'.*{told}"):
-        SingleLinkManipulator(**parameters).validate()
-
-
-# -- along a move --
+        qa.SingleLinkManipulator(**parameters).validate()
 
 
 @pytest.mark.parametrize(
@@ -104,31 +101,28 @@ def test_parameters_that_no_plant_has_are_told(parameters, told):
 )
 def test_equations_need_values_all_along_a_move(method, changed):
     plant = _plant(**{method: changed})
-    PointToPoint(plant, -0.1, 0.8, start=-0.5)
+    qa.PointToPoint(plant, -0.1, 0.8, start=-0.5)
     with pytest.raises(ValueError, match="on the way"):
-        PointToPoint(plant, 0.5, 0.8, start=-0.5)
+        qa.PointToPoint(plant, 0.5, 0.8, start=-0.5)
 
 
 def test_a_right_angle_between_the_samples_is_looked_at():
     def torque(p, j, W, dW, ddW):
         return j.acceleration / ca.if_else(ca.fabs(j.angle - math.pi) < 1e-9, 0.0, 1.0)
 
-    PointToPoint(_plant(torque=torque), 3.0, 0.8)
+    qa.PointToPoint(_plant(torque=torque), 3.0, 0.8)
     with pytest.raises(ValueError, match=r"with the joint at 3\.142 rad"):
-        PointToPoint(_plant(torque=torque), 3.21, 0.8)
-
-
-# -- the class --
+        qa.PointToPoint(_plant(torque=torque), 3.21, 0.8)
 
 
 def test_a_plant_must_give_its_equations():
     with pytest.raises(TypeError, match="abstract"):
-        type("Empty", (Plant,), {"name": "empty", "modes": 1})()
+        type("Empty", (qa.Plant,), {"name": "empty", "modes": 1})()
 
 
 @pytest.mark.parametrize("name", ["single-link", "arm-on-flexible-link"])
 def test_a_plant_of_ones_own_does_not_take_the_place_of_quietarms(name):
-    before = known_plants()[name]
+    before = qa.known_plants()[name]
     with pytest.raises(ValueError, match="own"):
         type("Mine", (Sound,), {"name": name})
-    assert known_plants()[name] is before
+    assert qa.known_plants()[name] is before

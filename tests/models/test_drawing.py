@@ -2,12 +2,9 @@
 
 import numpy as np
 import pytest
-from quietarm.models import (
-    ArmOnFlexibleLink,
-    DualLinkManipulator,
-    SingleLinkManipulator,
-)
 from quietarm.models.drawing import TIP_SLOPE, cantilever
+
+import quietarm as qa
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
@@ -41,14 +38,14 @@ def test_the_mode_shape_is_that_of_a_clamped_free_beam():
 
 def test_the_tip_of_the_single_link_moves_as_its_kinetic_energy_has_it():
     angle, w = 0.4, 0.05
-    (tip,) = tips_of(SingleLinkManipulator().structure(angle, [w]))
+    (tip,) = tips_of(qa.SingleLinkManipulator().structure(angle, [w]))
     radial, across = [np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]
     assert tip @ radial == pytest.approx(0.475)  # the plate's length, section 3.1
     assert tip @ across == pytest.approx(w)
 
 
 def test_the_tips_of_the_two_links_go_the_same_way_round():
-    first, second = tips_of(DualLinkManipulator().structure(0.0, [0.1, 0.2]))
+    first, second = tips_of(qa.DualLinkManipulator().structure(0.0, [0.1, 0.2]))
     assert first == pytest.approx([0.5, 0.1])
     assert second == pytest.approx([-0.5, -0.2])
 
@@ -57,7 +54,7 @@ def test_the_arm_turns_as_the_signs_of_its_equations_say():
     # The coupling of eq (13), (alpha2 + alpha3 cos theta) theta'' with alpha3 > 0 and alpha2 < 0:
     # at 0 rad a growing joint angle moves the arm towards positive w; the arm's own turning, which
     # alpha2 and beta2 hold, is theta' less the slope's rate.
-    plant = ArmOnFlexibleLink()
+    plant = qa.ArmOnFlexibleLink()
 
     def arm(angle, w):
         _, link, arm, _ = plant.structure(angle, [w])

@@ -4,20 +4,14 @@ import json
 from dataclasses import replace
 
 import pytest
-from quietarm.ocp import (
-    CycloidPolynomial,
-    FileFormatError,
-    Plan,
-    UncertainPlant,
-    evaluate_coefficients,
-    plan_move,
-)
+
+import quietarm as qa
 
 
 @pytest.fixture(scope="module")
 def plan(tasks):
     """A plan with a limit."""
-    return evaluate_coefficients(replace(tasks["single link"], torque_limit=0.5), [0.01, -0.1])
+    return qa.evaluate_coefficients(replace(tasks["single link"], torque_limit=0.5), [0.01, -0.1])
 
 
 @pytest.fixture
@@ -28,8 +22,8 @@ def saved(plan, tmp_path):
 
 
 def refusal(path):
-    with pytest.raises(FileFormatError) as error:
-        Plan.load(path)
+    with pytest.raises(qa.FileFormatError) as error:
+        qa.Plan.load(path)
     message = str(error.value)
     assert "\n" not in message
     assert message.startswith(f"{path} ")
@@ -37,15 +31,15 @@ def refusal(path):
 
 
 def test_an_answer_comes_back_equal(plan, saved, tasks, tmp_path):
-    assert Plan.load(saved) == plan
-    uncertain = UncertainPlant(tasks["arm"].plant, {"beta1": 0.02})
+    assert qa.Plan.load(saved) == plan
+    uncertain = qa.UncertainPlant(tasks["arm"].plant, {"beta1": 0.02})
     task = replace(tasks["arm"], plant=uncertain)
-    robust = evaluate_coefficients(task, [0.01, -0.1])
+    robust = qa.evaluate_coefficients(task, [0.01, -0.1])
     robust.save(tmp_path / "robust.json")
-    assert Plan.load(tmp_path / "robust.json") == robust
-    guess = plan_move(tasks["arm"], CycloidPolynomial(2), guess=[0.01, 0.02], starts=1)
+    assert qa.Plan.load(tmp_path / "robust.json") == robust
+    guess = qa.plan_move(tasks["arm"], qa.CycloidPolynomial(2), guess=[0.01, 0.02], starts=1)
     guess.save(tmp_path / "guess.json")
-    assert Plan.load(tmp_path / "guess.json").provenance.settings.guess == (0.01, 0.02)
+    assert qa.Plan.load(tmp_path / "guess.json").provenance.settings.guess == (0.01, 0.02)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +58,7 @@ def test_what_is_not_whole_json_is_refused(saved, spoil):
     ("place", "value", "word"),
     [
         ("format", "quietarm-front", "quietarm-front"),
-        ("version", Plan.version + 1, str(Plan.version + 1)),
+        ("version", qa.Plan.version + 1, str(qa.Plan.version + 1)),
         ("coefficients", ["a"], "coefficients"),
         ("motion/energy", "much", "motion.energy"),
         ("task/duration", -1.0, "duration is -1 s"),

@@ -5,15 +5,9 @@ import math
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    epsilon_front,
-    plan_move,
-    resimulate,
-)
 from quietarm.ocp.program.solution import STILL
+
+import quietarm as qa
 
 POINTS = 8
 
@@ -21,14 +15,14 @@ POINTS = 8
 @pytest.fixture(scope="module", params=CASES)
 def case(request):
     task, bound = CASES[request.param]
-    return task, bound, epsilon_front(task, bound=bound, points=POINTS)
+    return task, bound, qa.epsilon_front(task, bound=bound, points=POINTS)
 
 
 def test_the_ends_are_the_plans_of_least_energy(case):
     # plan_move starts on its own, four times at either end
     task, bound, front = case
-    still = plan_move(task, bound=bound)
-    free = plan_move(task, bound=bound, residual_limit=1.0)
+    still = qa.plan_move(task, bound=bound)
+    free = qa.plan_move(task, bound=bound, residual_limit=1.0)
     assert front.stillest().residual < STILL
     assert front.stillest().energy == pytest.approx(still.energy, rel=1e-6)
     assert front.cheapest().energy == pytest.approx(free.energy, rel=1e-6)
@@ -38,7 +32,7 @@ def test_the_ends_are_the_plans_of_least_energy(case):
 def test_no_point_is_dearer_than_a_plan_at_its_residual(case):
     task, bound, front = case
     for point in front.points[2:-1:2]:
-        plan = plan_move(task, bound=bound, residual_limit=point.residual)
+        plan = qa.plan_move(task, bound=bound, residual_limit=point.residual)
         assert point.energy <= plan.energy * (1 + 1e-4)  # docs/accuracy.md
         assert point.energy == pytest.approx(plan.energy, rel=2e-3)
 
@@ -57,7 +51,7 @@ def test_points_are_even_in_both_objectives(case):
 def test_every_point_has_the_figures_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:
-        motion = resimulate(task, front.profile, point.coefficients)
+        motion = qa.resimulate(task, front.profile, point.coefficients)
         # of all points but the ends by steps that CVODES confirms to this share at every tenth
         assert point.energy == pytest.approx(motion.energy, rel=1e-6)
         assert point.residual == pytest.approx(motion.residual, rel=1e-6, abs=STILL)
@@ -65,24 +59,25 @@ def test_every_point_has_the_figures_of_the_independent_integrator(case):
 
 
 def test_limits_of_the_task_are_kept_along_the_front():
-    plant = ArmOnFlexibleLink()
-    free = epsilon_front(PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=3, starts=1)
+    plant = qa.ArmOnFlexibleLink()
+    free = qa.epsilon_front(qa.PointToPoint(plant, math.pi / 2, 0.8), bound=0.5, points=3, starts=1)
     peak = min(
-        resimulate(free.task, free.profile, point.coefficients).peak_torque for point in free.points
+        qa.resimulate(free.task, free.profile, point.coefficients).peak_torque
+        for point in free.points
     )
-    task = PointToPoint(plant, math.pi / 2, 0.8, torque_limit=0.95 * peak)
-    front = epsilon_front(task, bound=0.5, points=3, starts=1)
+    task = qa.PointToPoint(plant, math.pi / 2, 0.8, torque_limit=0.95 * peak)
+    front = qa.epsilon_front(task, bound=0.5, points=3, starts=1)
     for point in front.points:
-        motion = resimulate(task, front.profile, point.coefficients)
+        motion = qa.resimulate(task, front.profile, point.coefficients)
         assert motion.peak_torque <= task.torque_limit * 1.001
     assert front.cheapest().energy > free.cheapest().energy
 
 
 def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     # One term has nothing left to arrive at rest with: two conditions, one coefficient.
-    task, profile = CASES["arm"][0], CycloidPolynomial(1)
-    front = epsilon_front(task, profile, points=5)
-    scan = [resimulate(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)]
+    task, profile = CASES["arm"][0], qa.CycloidPolynomial(1)
+    front = qa.epsilon_front(task, profile, points=5)
+    scan = [qa.resimulate(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)]
     stillest = front.stillest()
     assert 0.9 * min(scan) < stillest.residual < 1.001 * min(scan)
     assert len(front.points) > 2
@@ -93,20 +88,20 @@ def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     [
         ({"points": 1}, "points is 1"),
         ({"bound": -1.0}, "-1"),
-        ({"profile": CycloidPolynomial(0)}, "0 terms"),
+        ({"profile": qa.CycloidPolynomial(0)}, "0 terms"),
         ({"solver": "snopt"}, "solver is 'snopt'"),
     ],
 )
 def test_bad_input_is_refused(arguments, text):
     with pytest.raises(ValueError, match=text):
-        epsilon_front(CASES["arm"][0], **arguments)
+        qa.epsilon_front(CASES["arm"][0], **arguments)
 
 
 def test_there_is_a_point_at_every_residual_that_is_asked_for():
     task, bound = CASES["arm"]
     at, told = (1e-4, 1e-3, 5e-3, 1.0), []  # at 1 m there is no front
-    front = epsilon_front(
-        task, CycloidPolynomial(3), bound=bound, points=2, at=at,
+    front = qa.epsilon_front(
+        task, qa.CycloidPolynomial(3), bound=bound, points=2, at=at,
         report=lambda done, total: told.append((done, total)),
     )  # fmt: skip
     assert len(front.points) == 5

@@ -6,13 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp import (
-    MAX_TERMS,
-    Plan,
-    Verification,
-    evaluate_coefficients,
-    resimulate,
-)
+
+import quietarm as qa
 
 # Table 1, N = 2.
 TWO_TERMS = [3.347e-3, -1.697e-1]
@@ -21,15 +16,12 @@ TWO_TERMS = [3.347e-3, -1.697e-1]
 @pytest.fixture(scope="module")
 def plan(tasks):
     """The single link along the paper's two terms."""
-    return evaluate_coefficients(tasks["single link"], TWO_TERMS)
+    return qa.evaluate_coefficients(tasks["single link"], TWO_TERMS)
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])
 def any_plan(request, tasks, solved):
     return solved(tasks[request.param], 4)
-
-
-# -- given coefficients --
 
 
 @pytest.mark.parametrize(
@@ -46,26 +38,20 @@ def any_plan(request, tasks, solved):
 )
 def test_what_counts_as_verified(plan, energies, residuals, agrees):
     motion = replace(plan.motion, energy=energies[1], residual=residuals[1])
-    assert Verification.between(80, energies[0], residuals[0], motion).agrees == agrees
+    assert qa.Verification.between(80, energies[0], residuals[0], motion).agrees == agrees
 
 
-@pytest.mark.parametrize("a", [[math.nan], [0.0] * (MAX_TERMS + 1), [[0.1], [0.1]]])
+@pytest.mark.parametrize("a", [[math.nan], [0.0] * (qa.MAX_TERMS + 1), [[0.1], [0.1]]])
 def test_coefficients_that_are_not_as_many_finite_numbers_as_may_be_are_refused(tasks, a):
-    with pytest.raises(ValueError, match=rf"coefficient|{MAX_TERMS + 1}"):
-        evaluate_coefficients(tasks["arm"], a)
-
-
-# -- saved and loaded --
+    with pytest.raises(ValueError, match=rf"coefficient|{qa.MAX_TERMS + 1}"):
+        qa.evaluate_coefficients(tasks["arm"], a)
 
 
 def test_a_saved_plan_loads_equal(any_plan, tmp_path):
     any_plan.save(tmp_path / "plan.json")
-    loaded = Plan.load(tmp_path / "plan.json")
+    loaded = qa.Plan.load(tmp_path / "plan.json")
     assert loaded == any_plan
-    assert loaded.motion == resimulate(loaded.task, loaded.profile, loaded.coefficients)
-
-
-# -- tables --
+    assert loaded.motion == qa.resimulate(loaded.task, loaded.profile, loaded.coefficients)
 
 
 def _table(plan, path, *rate):
@@ -98,7 +84,7 @@ def test_a_table_has_a_row_for_every_tick_up_to_arrival(plan, tmp_path, rate, ro
 
 @pytest.mark.parametrize("duration", [1 - 0.9, 0.1 + 0.2])
 def test_a_duration_that_is_a_tick_but_for_rounding_ends_at_that_tick(tasks, tmp_path, duration):
-    plan = evaluate_coefficients(replace(tasks["arm"], duration=duration), [])
+    plan = qa.evaluate_coefficients(replace(tasks["arm"], duration=duration), [])
     _, table = _table(plan, tmp_path / "move.csv", 1000)
     assert len(table) == round(duration * 1000) + 1
     assert table[-1, 1:4] == pytest.approx([math.pi / 2, 0.0, 0.0], abs=1e-9)

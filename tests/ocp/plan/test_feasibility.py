@@ -5,14 +5,8 @@ import re
 
 import numpy as np
 import pytest
-from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import (
-    CycloidPolynomial,
-    InfeasibleTaskError,
-    PointToPoint,
-    plan_move,
-    rollout,
-)
+
+import quietarm as qa
 
 # Name, terms, task's limits, settings of the solve.
 CASES = {
@@ -21,11 +15,14 @@ CASES = {
     "torque, arm": ("arm", 6, {"torque_limit": 0.05}, {"starts": 1}),
     "torque, in the box": ("single link", 6, {"torque_limit": 0.05}, {"bound": 0.2, "starts": 1}),
     "acceleration": ("arm", 4, {"acceleration_limit": 2.0}, {"starts": 1}),
+    "jerk": ("arm", 6, {"jerk_limit": 100.0}, {"starts": 1}),
     "torque and speed": ("arm", 4, {"torque_limit": 0.05, "speed_limit": 20.0}, {"starts": 1}),
 }
 ALLOWED = 1e-3
 """Share of a limit by which a verified peak may pass it, if there is no room (`OVERRUN`)."""
-QUOTED = re.compile(r"(residual|torque|speed|acceleration|deflection) limit (\S+) (?:N m|rad|m)")
+QUOTED = re.compile(
+    r"(residual|torque|speed|acceleration|jerk|deflection) limit (\S+) (?:N m|rad|m)"
+)
 
 
 @pytest.fixture(scope="module")
@@ -36,11 +33,11 @@ def refused(tasks):
     def of(case):
         if case not in texts:
             name, terms, limits, settings = CASES[case]
-            task = PointToPoint(
+            task = qa.PointToPoint(
                 tasks[name].plant, tasks[name].target, tasks[name].duration, **limits
             )
-            with pytest.raises(InfeasibleTaskError) as error:
-                plan_move(task, CycloidPolynomial(terms), **settings)
+            with pytest.raises(qa.InfeasibleTaskError) as error:
+                qa.plan_move(task, qa.CycloidPolynomial(terms), **settings)
             texts[case] = str(error.value)
         return texts[case]
 
@@ -58,8 +55,10 @@ def test_what_the_error_offers_is_feasible(refused, tasks, case):
             relaxed, asked = limits, {**settings, "residual_limit": value}
         else:
             relaxed, asked = {**limits, f"{quantity}_limit": value}, settings
-        task = PointToPoint(tasks[name].plant, tasks[name].target, tasks[name].duration, **relaxed)
-        plan = plan_move(task, CycloidPolynomial(terms), **asked)
+        task = qa.PointToPoint(
+            tasks[name].plant, tasks[name].target, tasks[name].duration, **relaxed
+        )
+        plan = qa.plan_move(task, qa.CycloidPolynomial(terms), **asked)
         assert plan.motion.peak(quantity) <= value * (1 + ALLOWED)
         for kept, limit in task.limits.items():
             assert plan.motion.peak(kept) <= limit * (1 + ALLOWED)
@@ -71,10 +70,10 @@ def test_what_the_error_offers_is_feasible(refused, tasks, case):
 def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks, name):
     # Coefficients from -2 to 2 in turn, then twice around the best; the error leaves a room of
     # 0.1 %.
-    task, profile = tasks[name], CycloidPolynomial(1)
+    task, profile = tasks[name], qa.CycloidPolynomial(1)
 
     def least(coefficients):
-        return min((rollout(task, profile, [a]).motion.residual, a) for a in coefficients)
+        return min((qa.rollout(task, profile, [a]).motion.residual, a) for a in coefficients)
 
     ((_, text),) = QUOTED.findall(refused(f"one term, {name}").split("with the rest kept")[1])
     _, best = least(np.linspace(-2.0, 2.0, 81))
@@ -85,16 +84,16 @@ def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks,
 
 def test_two_limits_in_the_way_are_said_to_be_two(tasks):
     task = tasks["single link"]
-    both = PointToPoint(
+    both = qa.PointToPoint(
         task.plant, task.target, task.duration, torque_limit=0.05, deflection_limit=1e-3
     )
-    with pytest.raises(InfeasibleTaskError, match="several"):
-        plan_move(both, CycloidPolynomial(4), starts=1)
+    with pytest.raises(qa.InfeasibleTaskError, match="several"):
+        qa.plan_move(both, qa.CycloidPolynomial(4), starts=1)
 
 
 def test_an_overdamped_plant_is_brought_to_rest_from_its_stillest_motion():
     # The plain cycloid and random starts lead nowhere; 1e-8 m counts as at rest (docs/accuracy.md).
-    plant = SingleLinkManipulator(zeta=5.0)
-    task = PointToPoint(plant, math.pi / 6, 0.8)
-    plan = plan_move(task, CycloidPolynomial(3), starts=1)
+    plant = qa.SingleLinkManipulator(zeta=5.0)
+    task = qa.PointToPoint(plant, math.pi / 6, 0.8)
+    plan = qa.plan_move(task, qa.CycloidPolynomial(3), starts=1)
     assert plan.residual < 1e-8

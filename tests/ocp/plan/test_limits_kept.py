@@ -69,6 +69,8 @@ def test_a_limit_is_kept_and_its_peak_told(plants, solved, move, quantity):
         plants[plant], target, duration, start, **{QUANTITIES[quantity].limit: limit}
     )
     plan = plan_move(task, CycloidPolynomial(6), starts=1)
+    assert plan.residual < 1e-7
+    assert plan.energy > free.energy * (1 + 1e-3)
     peaks = densely(plan)
     assert peaks[quantity] <= limit
     for name, peak in peaks.items():  # the README's tolerance

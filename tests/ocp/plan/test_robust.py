@@ -7,41 +7,31 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import (
-    CycloidPolynomial,
-    InfeasibleTaskError,
-    Plan,
-    PointToPoint,
-    UncertainPlant,
-    evaluate_coefficients,
-    plan_move,
-    resimulate,
-    with_errors,
-)
 from quietarm.ocp.plan import robust
 from quietarm.ocp.robustness.uncertain import on_assumed
+
+import quietarm as qa
 
 RANGE = 0.1
 
 
 @pytest.fixture(scope="module")
 def task():
-    plant = UncertainPlant(SingleLinkManipulator(), {"frequency": RANGE})
-    return PointToPoint(plant, target=pi / 6, duration=0.8)
+    plant = qa.UncertainPlant(qa.SingleLinkManipulator(), {"frequency": RANGE})
+    return qa.PointToPoint(plant, target=pi / 6, duration=0.8)
 
 
 @pytest.fixture(scope="module")
 def plan(task):
-    return plan_move(task, starts=1)
+    return qa.plan_move(task, starts=1)
 
 
 def residuals(plan, errors):
     """By CVODES, of the motion on plants with these errors."""
     task = on_assumed(plan.task)
     return [
-        resimulate(
-            replace(task, plant=with_errors(task.plant, {"frequency": error})),
+        qa.resimulate(
+            replace(task, plant=qa.with_errors(task.plant, {"frequency": error})),
             plan.profile,
             plan.coefficients,
         ).residual
@@ -60,32 +50,29 @@ def test_the_limit_holds_between_the_samples(plan):
 def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
     samples = [0.0, *(error for (error,) in plan.task.plant.samples)]
     assert plan.residual == pytest.approx(max(residuals(plan, samples)), rel=1e-6)
-    alone = evaluate_coefficients(on_assumed(plan.task), plan.coefficients)
+    alone = qa.evaluate_coefficients(on_assumed(plan.task), plan.coefficients)
     assert plan.energy == pytest.approx(alone.energy, rel=1e-8)
 
 
 def test_it_saves_and_loads_equal(plan, tmp_path):
     plan.save(tmp_path / "plan.json")
-    loaded = Plan.load(tmp_path / "plan.json")
+    loaded = qa.Plan.load(tmp_path / "plan.json")
     assert loaded == plan
     assert loaded.excess == plan.excess
 
 
-# -- bad input --
-
-
 def test_rest_is_not_asked_for(task):
     with pytest.raises(ValueError, match="rest"):
-        plan_move(task, residual_limit=0.0)
+        qa.plan_move(task, residual_limit=0.0)
 
 
 def test_what_cannot_be_met_says_what_can(task):
-    with pytest.raises(InfeasibleTaskError, match="residual limit"):
-        plan_move(task, CycloidPolynomial(1), bound=0.2, starts=1)
+    with pytest.raises(qa.InfeasibleTaskError, match="residual limit"):
+        qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2, starts=1)
 
 
 def test_ipopt_finds_the_same(task, plan):
-    other = plan_move(task, starts=1, solver="ipopt")
+    other = qa.plan_move(task, starts=1, solver="ipopt")
     assert other.provenance.method == "ipopt"
     assert other.excess <= robust.EXCESS
     assert other.energy == pytest.approx(plan.energy, rel=1e-2)

@@ -7,8 +7,8 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.models import JointMotion
-from quietarm.ocp import JointProfile, Plan, plan_move, resimulate
+
+import quietarm as qa
 
 pi = math.pi
 
@@ -25,7 +25,7 @@ def _cycloid(U, dU, ddU, start, target):
 
 
 @dataclass(frozen=True)
-class _Waves(JointProfile):
+class _Waves(qa.JointProfile):
     """U = x + sum_j a_j sin(j pi x), x = t/T: gives `derivatives` only."""
 
     name: ClassVar[str] = "waves-of-a-test"
@@ -62,7 +62,7 @@ class _LinearWaves(_Waves):
 
     def outer(self, inner, start, target, duration):
         del duration
-        return JointMotion(*_cycloid(*inner, start, target))
+        return qa.JointMotion(*_cycloid(*inner, start, target))
 
 
 @pytest.mark.parametrize("profile", [_Waves(4), _LinearWaves(4)], ids=lambda p: p.name)
@@ -77,10 +77,10 @@ def test_each_derivative_is_that_of_the_one_before(profile):
 def test_plans_are_kept_and_do_not_depend_on_how_the_coefficients_are_said_to_enter(
     tasks, tmp_path
 ):
-    plans = [plan_move(tasks["arm"], kind(5), starts=1) for kind in (_Waves, _LinearWaves)]
+    plans = [qa.plan_move(tasks["arm"], kind(5), starts=1) for kind in (_Waves, _LinearWaves)]
     for plan in plans:
         assert plan.residual < 1e-8
-        assert plan.motion == resimulate(plan.task, plan.profile, plan.coefficients)
+        assert plan.motion == qa.resimulate(plan.task, plan.profile, plan.coefficients)
         plan.save(tmp_path / "plan.json")
-        assert Plan.load(tmp_path / "plan.json") == plan
+        assert qa.Plan.load(tmp_path / "plan.json") == plan
     assert plans[0].energy == pytest.approx(plans[1].energy, rel=1e-6)

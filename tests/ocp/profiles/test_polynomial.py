@@ -78,9 +78,6 @@ def test_joint_rests_before_and_after_the_move(a, order, outside):
     assert path(times, order).tolist() == [0.0, 0.0]
 
 
-# -- derivatives --
-
-
 @settings(max_examples=25)
 @given(a=coefficients, start=angles, target=angles, duration=durations, fraction=st.floats(0, 1))
 def test_derivatives_are_those_of_the_angle(a, start, target, duration, fraction):
@@ -97,9 +94,6 @@ def test_derivatives_are_those_of_the_angle(a, start, target, duration, fraction
         assert path(fraction * duration, order) == pytest.approx(
             float(by_casadi[order]), abs=1e-11 * size + 1e-300
         )
-
-
-# -- the callable --
 
 
 @pytest.mark.parametrize("shape", [(), (0,), (2, 3)])

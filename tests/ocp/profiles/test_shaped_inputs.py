@@ -2,21 +2,13 @@
 
 import numpy as np
 import pytest
-from quietarm.ocp import (
-    CycloidGaussians,
-    CycloidNetwork,
-    CycloidSpline,
-    Plan,
-    evaluate_coefficients,
-    plan_move,
-    resimulate,
-    rollout,
-)
 from quietarm.ocp.profiles.units import SHARPEST
 from scipy.interpolate import BSpline
 
-UNITS = {"gaussians": CycloidGaussians, "network": CycloidNetwork}
-FAMILIES = {**UNITS, "spline": CycloidSpline}
+import quietarm as qa
+
+UNITS = {"gaussians": qa.CycloidGaussians, "network": qa.CycloidNetwork}
+FAMILIES = {**UNITS, "spline": qa.CycloidSpline}
 
 
 @pytest.fixture(params=UNITS)
@@ -73,26 +65,29 @@ def test_a_bound_is_for_the_weights_of_units(of_units):
 @pytest.mark.parametrize(
     ("name", "profile"),
     [
-        ("single link", CycloidGaussians(3)),
-        ("arm", CycloidNetwork(3)),
-        ("two links", CycloidSpline()),
+        ("single link", qa.CycloidGaussians(3)),
+        ("arm", qa.CycloidNetwork(3)),
+        ("two links", qa.CycloidSpline()),
     ],
 )
 def test_the_gradient_plans_with_it(solved, name, profile, tasks, tmp_path):
     task = tasks[name]
-    plan = plan_move(task, profile, starts=1)
-    assert plan.residual < 1e-7 * evaluate_coefficients(task, []).residual + 1e-8
-    assert plan.motion == resimulate(task, profile, plan.coefficients)
+    plan = qa.plan_move(task, profile, starts=1)
+    assert plan.residual < 1e-7 * qa.evaluate_coefficients(task, []).residual + 1e-8
+    assert plan.motion == qa.resimulate(task, profile, plan.coefficients)
     assert plan.energy < 1.001 * solved(task, 4).energy
     plan.save(tmp_path / "plan.json")
-    assert Plan.load(tmp_path / "plan.json") == plan
+    assert qa.Plan.load(tmp_path / "plan.json") == plan
 
 
 def test_the_sharpest_unit_is_still_seen_and_a_sharper_one_refused(of_units, tasks):
     profile, task, gain = of_units(1), tasks["single link"], -SHARPEST
-    sharp = [0.0, 0.01, 0.137 if of_units is CycloidGaussians else -0.137 * gain, gain]
-    found, fine = resimulate(task, profile, sharp), rollout(task, profile, sharp, steps=1000).motion
+    sharp = [0.0, 0.01, 0.137 if of_units is qa.CycloidGaussians else -0.137 * gain, gain]
+    found, fine = (
+        qa.resimulate(task, profile, sharp),
+        qa.rollout(task, profile, sharp, steps=1000).motion,
+    )
     assert found.energy == pytest.approx(fine.energy, rel=1e-3)
     assert found.residual == pytest.approx(fine.residual, rel=1e-4)
     with pytest.raises(ValueError, match="-201"):
-        resimulate(task, profile, [*sharp[:3], -201.0])
+        qa.resimulate(task, profile, [*sharp[:3], -201.0])

@@ -44,9 +44,6 @@ def _profile(shaper, pairs):
     return ShapedCycloid(shaper, *map(tuple, zip(*pairs, strict=True)))
 
 
-# -- residual curves --
-
-
 @names
 @given(frequency=frequencies, r=st.floats(0.5, 1.5))
 def test_an_undamped_mode_is_left_by_the_closed_form(shaper, frequency, r):
@@ -75,9 +72,6 @@ def test_the_impulses_in_the_textbooks_form():
     assert undamped == pytest.approx([1.05 / 4, 0.95 / 2, 1.05 / 4])
 
 
-# -- several modes --
-
-
 @names
 @given(first=st.tuples(frequencies, damping), second=st.tuples(frequencies, damping))
 def test_what_is_left_by_two_shapers_is_the_product(shaper, first, second):
@@ -89,9 +83,6 @@ def test_what_is_left_by_two_shapers_is_the_product(shaper, first, second):
     assert both.times[-1] == pytest.approx(one.times[-1] + other.times[-1])
     for mode in (first, second, (5.0, 0.0)):
         assert left(both, *mode) == pytest.approx(left(one, *mode) * left(other, *mode), abs=1e-9)
-
-
-# -- the cycloid that they shape --
 
 
 @names
@@ -122,9 +113,6 @@ def test_the_jerk_is_the_limit_of_differences(shaper):
     shares = np.array(profile.impulses.amplitudes)[[0, -1]]
     ends = shares * (2 * pi) ** 2 / (duration - profile.length) ** 3
     assert path([0.0, duration], 3) == pytest.approx(ends)
-
-
-# -- the least duration, and bad input --
 
 
 @pytest.mark.parametrize(

@@ -7,37 +7,29 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.models import DualLinkManipulator, SingleLinkManipulator
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    UncertainPlant,
-    evaluate_coefficients,
-    resimulate,
-    rollout,
-    with_errors,
-)
 from quietarm.ocp.robustness.population import ErrorPopulation
 from quietarm.ocp.robustness.uncertain import on_assumed
+
+import quietarm as qa
 
 MOVE = [0.003347, -0.1697]  # the paper's, N = 2
 
 
 @pytest.fixture(scope="module")
 def task():
-    plant = UncertainPlant(SingleLinkManipulator(), {"frequency": 0.1, "beta1": 0.05})
-    return PointToPoint(plant, target=pi / 6, duration=0.8)
+    plant = qa.UncertainPlant(qa.SingleLinkManipulator(), {"frequency": 0.1, "beta1": 0.05})
+    return qa.PointToPoint(plant, target=pi / 6, duration=0.8)
 
 
 @pytest.fixture(scope="module")
 def two_links_task():
-    plant = UncertainPlant(DualLinkManipulator(), {"frequency": 0.2}, ((0.2,),))
-    return PointToPoint(plant, target=pi / 2, duration=0.9)
+    plant = qa.UncertainPlant(qa.DualLinkManipulator(), {"frequency": 0.2}, ((0.2,),))
+    return qa.PointToPoint(plant, target=pi / 2, duration=0.9)
 
 
 @pytest.fixture(scope="module")
 def evaluated(task):
-    return evaluate_coefficients(task, MOVE)
+    return qa.evaluate_coefficients(task, MOVE)
 
 
 def test_the_samples_are_the_corners(task):
@@ -49,18 +41,20 @@ def test_the_samples_are_the_corners(task):
 @pytest.mark.parametrize("of", ["task", "two_links_task"])
 def test_figures_are_the_worst_of_the_parts_alone(of, request):
     task = request.getfixturevalue(of)
-    profile = CycloidPolynomial(len(MOVE))
+    profile = qa.CycloidPolynomial(len(MOVE))
     alone = [
-        resimulate(replace(task, plant=part), profile, MOVE)
+        qa.resimulate(replace(task, plant=part), profile, MOVE)
         for part in (
             task.plant.assumed,
             *(
-                with_errors(task.plant.assumed, dict(zip(task.plant.ranges, sample, strict=True)))
+                qa.with_errors(
+                    task.plant.assumed, dict(zip(task.plant.ranges, sample, strict=True))
+                )
                 for sample in task.plant.samples
             ),
         )
     ]
-    together, fixed = resimulate(task, profile, MOVE), rollout(task, profile, MOVE).motion
+    together, fixed = qa.resimulate(task, profile, MOVE), qa.rollout(task, profile, MOVE).motion
     for found, tolerance in ((together, 1e-6), (fixed, 1e-2)):  # fixed steps: peaks at the nodes
         for name in ("residual", "peak_deflection"):
             largest = max(getattr(one, name) for one in alone)
@@ -74,13 +68,10 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     grid = np.meshgrid(np.linspace(-0.1, 0.1, 60), np.linspace(-0.05, 0.05, 60))
     largest = population(np.reshape(grid, (2, -1)).T).residual.max()
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
-    there = with_errors(task.plant.assumed, evaluated.worst.errors)
-    again = resimulate(replace(task, plant=there), evaluated.profile, MOVE)
+    there = qa.with_errors(task.plant.assumed, evaluated.worst.errors)
+    again = qa.resimulate(replace(task, plant=there), evaluated.profile, MOVE)
     # With the errors as parameters CVODES takes other steps: within its tolerance the same.
     assert evaluated.worst.residual == pytest.approx(again.residual, rel=1e-5)
-
-
-# -- bad input --
 
 
 @pytest.mark.parametrize(
@@ -94,4 +85,4 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
 )
 def test_what_is_wrong_is_said_in_a_line(ranges, samples, complaint):
     with pytest.raises(ValueError, match=complaint):
-        UncertainPlant(SingleLinkManipulator(), ranges, samples)
+        qa.UncertainPlant(qa.SingleLinkManipulator(), ranges, samples)

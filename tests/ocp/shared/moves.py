@@ -2,11 +2,10 @@
 
 import math
 
-from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
-from quietarm.ocp import PointToPoint
+import quietarm as qa
 
-ARM = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
+ARM = qa.PointToPoint(qa.ArmOnFlexibleLink(), math.pi / 2, 0.8)
 CASES = {
     "arm": (ARM, 0.5),
-    "single link": (PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
+    "single link": (qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8), 0.2),
 }

@@ -8,8 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
-from quietarm.models import JointMotion, SingleLinkManipulator
-from quietarm.ocp import Motion, PointToPoint
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
@@ -18,6 +16,8 @@ from quietarm.ocp.simulation.objective import (
     two_samples,
 )
 from quietarm.ocp.task.quantities import QUANTITIES
+
+import quietarm as qa
 
 numbers = st.floats(-10.0, 10.0)
 NODE = np.array(GAUSS_NODES)
@@ -71,9 +71,6 @@ def _with_sign(quadratic, function):
     breaks = [0.0, *sorted(_zeros(quadratic)), 1.0]
     primitive, middles = function.integ(), np.add(breaks[:-1], breaks[1:]) / 2
     return np.sign(quadratic(middles)) @ np.diff(primitive(np.array(breaks)))
-
-
-# -- closed forms --
 
 
 @pytest.mark.parametrize("name", QUADRATICS)
@@ -134,8 +131,6 @@ def test_energy_adds_up_over_the_steps_of_each_candidate():
         assert together[row, 0] == pytest.approx(sum(float(step) for step in steps), rel=1e-12)
 
 
-# -- what the neighbouring steps tell of the power --
-
 VANISHING = math.prod(X - node for node in GAUSS_NODES)
 
 
@@ -173,14 +168,11 @@ def test_a_single_step_has_no_neighbour():
         assert not weights.full().any()
 
 
-# -- diagnostics --
-
-
 def test_peaks_are_of_absolute_values():
-    task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
-    motion = Motion.from_samples(
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8)
+    motion = qa.Motion.from_samples(
         task,
-        JointMotion(*np.array([[0.0, 0.5], [1.0, -3.0], [-7.0, 5.0], [80.0, -90.0]])),
+        qa.JointMotion(*np.array([[0.0, 0.5], [1.0, -3.0], [-7.0, 5.0], [80.0, -90.0]])),
         tips=np.array([[0.01, -0.04], [0.02, 0.03]]),
         torque=np.array([0.3, -0.6]),
         residual=0.005,
@@ -204,17 +196,17 @@ def test_peaks_are_of_absolute_values():
     ],
 )
 def test_overshoot_is_how_far_the_joint_passes_the_target(target, angles, overshoot):
-    task, n = PointToPoint(SingleLinkManipulator(), target, 0.8), len(angles)
-    joint = JointMotion(np.array(angles), *np.zeros((2, n)))
+    task, n = qa.PointToPoint(qa.SingleLinkManipulator(), target, 0.8), len(angles)
+    joint = qa.JointMotion(np.array(angles), *np.zeros((2, n)))
     none = {"residual": 0.0, "energy": 0.0, "net_work": 0.0}
-    motion = Motion.from_samples(task, joint, np.zeros((n, 1)), np.zeros(n), **none)
+    motion = qa.Motion.from_samples(task, joint, np.zeros((n, 1)), np.zeros(n), **none)
     assert (motion.peak_jerk, motion.peak("jerk")) == (None, math.inf)  # its jerk is not known
     assert motion.overshoot == pytest.approx(overshoot, abs=1e-15)
     assert math.copysign(1.0, motion.overshoot) == 1.0  # else a table prints -0
 
 
 def test_what_passes_a_limit_is_named_with_its_share_of_it():
-    motion = Motion(2e-3, 0.1, 0.05, 0.3, 2.0, 9.0, 0.02, 0.0)
+    motion = qa.Motion(2e-3, 0.1, 0.05, 0.3, 2.0, 9.0, 0.02, 0.0)
     limits = {"torque": 0.2, "speed": 2.5, "acceleration": 10.0, "deflection": 0.016}
     assert motion.passed(limits) == pytest.approx({"torque": 1.5, "deflection": 1.25})
     assert motion.passed(limits, room=0.3) == pytest.approx({"torque": 1.5})

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from quietarm.models import JointMotion
-from quietarm.ocp import CycloidPolynomial, resimulate
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
 from scipy.integrate import solve_ivp
+
+import quietarm as qa
 
 
 def simulate(task, free):
@@ -37,7 +37,7 @@ def test_figures_are_those_of_scipy(tasks, free, name):
 
         def at(t, z, k=k):
             a, j = free.acceleration[k], free.jerk[k]
-            joint = JointMotion(
+            joint = qa.JointMotion(
                 angle[k] + speed[k] * t + a * t**2 / 2 + j * t**3 / 6,
                 speed[k] + a * t + j * t**2 / 2,
                 a + j * t,
@@ -67,12 +67,12 @@ def test_figures_are_those_of_scipy(tasks, free, name):
 
 def test_a_fine_grid_along_a_plan_has_the_plan_s_figures(tasks):
     # The cycloid's own acceleration, linear between 2000 points: error of the order of h^2.
-    task, profile = tasks["arm"], CycloidPolynomial(2)
+    task, profile = tasks["arm"], qa.CycloidPolynomial(2)
     coefficients = [0.1, -0.2]
     path = profile.path(coefficients, *task.move)
     times = np.linspace(0, task.duration, 2001)
     acceleration = path(times, 2)
     free = FreeMotion(times, acceleration[:-1], np.diff(acceleration) / np.diff(times))
-    found, expected = simulate(task, free).motion, resimulate(task, profile, coefficients)
+    found, expected = simulate(task, free).motion, qa.resimulate(task, profile, coefficients)
     for name in ("energy", "residual", "net_work", "peak_torque", "peak_speed"):
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=2e-5)

@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-from quietarm.ocp import PointToPoint, residual_matrix
 from quietarm.ocp.simulation.residual import (
     RADIANS_A_SAMPLE,
     extreme_rows,
     fastest_mode,
     residual_samples,
 )
+
+import quietarm as qa
 
 
 def _decay(W, dW, omega, zeta, t):
@@ -24,16 +24,16 @@ def _decay(W, dW, omega, zeta, t):
 def _arm(target):
     """Eq (13) at rest: (1 + alpha1 cos theta_E) W'' + 2 zeta omega W' + omega^2 W = 0."""
     root = math.sqrt(1 - 1.055e-1 * math.cos(target))
-    return ArmOnFlexibleLink(), target, [(0.508, 7.320 / root, 1.500e-3 / root)]
+    return qa.ArmOnFlexibleLink(), target, [(0.508, 7.320 / root, 1.500e-3 / root)]
 
 
 @pytest.mark.parametrize(
     ("plant", "target", "modes"),  # each with its tip's phi, frequency and damping ratio
     [
-        (SingleLinkManipulator(), math.pi / 6, [(2.28, 10.43, 9.636e-3)]),  # eqs (9), (10)
+        (qa.SingleLinkManipulator(), math.pi / 6, [(2.28, 10.43, 9.636e-3)]),  # eqs (9), (10)
         *(_arm(target) for target in (math.pi / 2, 0.3, -2.0)),
         (
-            DualLinkManipulator(),  # docs/physics.md
+            qa.DualLinkManipulator(),  # docs/physics.md
             math.pi / 2,
             [
                 (2.7244, 12.68 * 0.993, 15.49e-3 * 1.214),
@@ -44,9 +44,9 @@ def _arm(target):
 )
 @pytest.mark.parametrize("window", [0.3, 1.0])
 def test_every_tip_decays_freely(plant, target, modes, window):
-    task = PointToPoint(plant, target, 0.8, residual_window=window)
+    task = qa.PointToPoint(plant, target, 0.8, residual_window=window)
     W, dW = [0.02, -0.01][: len(modes)], [0.3, 0.1][: len(modes)]
-    for matrix in (residual_matrix(task), residual_matrix(task, 101)):
+    for matrix in (qa.residual_matrix(task), qa.residual_matrix(task, 101)):
         tips = (matrix @ [*W, *dW]).reshape(-1, len(modes))
         t = np.linspace(0.0, window, len(tips))
         for i, (phi, omega, zeta) in enumerate(modes):
@@ -57,8 +57,8 @@ def test_every_tip_decays_freely(plant, target, modes, window):
 def test_the_largest_entry_is_the_amplitude():
     # Undamped: |w| peaks at phi sqrt(W^2 + (W'/omega)^2), at a phase between two samples that is
     # at most half of RADIANS_A_SAMPLE away.
-    plant = SingleLinkManipulator(zeta=0.0)
-    matrix = residual_matrix(PointToPoint(plant, 1.0, 1.0))
+    plant = qa.SingleLinkManipulator(zeta=0.0)
+    matrix = qa.residual_matrix(qa.PointToPoint(plant, 1.0, 1.0))
     for phase in np.linspace(0.0, 2 * np.pi, 50):
         state = [0.01 * math.cos(phase), -0.1043 * math.sin(phase)]
         peak = np.abs(matrix @ state).max()
@@ -69,25 +69,22 @@ def test_the_largest_entry_is_the_amplitude():
 @pytest.mark.parametrize("window", [0.21, 3.03])
 def test_samples_are_as_close_as_stated_and_no_closer(window):
     # The arm is faster at the start, where nothing is left of the motion: the target counts.
-    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, residual_window=window)
+    task = qa.PointToPoint(qa.ArmOnFlexibleLink(), math.pi / 2, 0.8, residual_window=window)
     phase = 7.320 * window  # eq (13) at theta = pi/2
     steps = residual_samples(task) - 1
     assert phase / steps <= RADIANS_A_SAMPLE < phase / (steps - 1)
-    assert len(residual_matrix(task)) == steps + 1
-
-
-# -- the fastest mode --
+    assert len(qa.residual_matrix(task)) == steps + 1
 
 
 @pytest.mark.parametrize(("start", "target"), [(0.0, math.pi / 2), (math.pi / 2, 0.0)])
 def test_the_arms_fastest_mode_is_at_the_angle_of_least_mass(start, target):
     # omega/sqrt(1 + alpha1 cos theta) is largest at theta = 0.
-    task = PointToPoint(ArmOnFlexibleLink(), target, 0.8, start=start)
+    task = qa.PointToPoint(qa.ArmOnFlexibleLink(), target, 0.8, start=start)
     assert fastest_mode(task) == pytest.approx(7.320 / math.sqrt(1 - 1.055e-1))
 
 
 def test_the_fastest_of_two_modes_counts(two_links):
-    assert fastest_mode(PointToPoint(two_links, 1.0, 1.0)) == pytest.approx(12.68 * 0.993)
+    assert fastest_mode(qa.PointToPoint(two_links, 1.0, 1.0)) == pytest.approx(12.68 * 0.993)
 
 
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
@@ -95,7 +92,7 @@ def test_the_fastest_of_two_modes_counts(two_links):
 def test_extreme_rows_hold_the_largest_displacement_of_any_state(plants, name, target):
     # by definition: the maximum over the kept rows against that over all rows
     plant = plants[name]
-    matrix = residual_matrix(PointToPoint(plant, target, 0.8))
+    matrix = qa.residual_matrix(qa.PointToPoint(plant, target, 0.8))
     rows = extreme_rows(matrix, plant.tips)
     states = np.random.default_rng(0).standard_normal((matrix.shape[1], 500))
     assert len(rows) < len(matrix) / 2

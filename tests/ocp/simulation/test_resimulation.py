@@ -3,17 +3,12 @@
 import math
 
 import pytest
-from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    SolverFailedError,
-    resimulate,
-)
 from third_opinion import COEFFICIENTS
 
+import quietarm as qa
+
 pi = math.pi
-PLAIN = CycloidPolynomial(0)
+PLAIN = qa.CycloidPolynomial(0)
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +17,7 @@ def motion(tasks):
 
     def of(name, row):
         a = COEFFICIENTS[name][row]
-        return resimulate(tasks[name], CycloidPolynomial(len(a)), a)
+        return qa.resimulate(tasks[name], qa.CycloidPolynomial(len(a)), a)
 
     return of
 
@@ -73,10 +68,7 @@ def test_the_printed_energies_are_found_again(motion, name, row, printed, digit)
     assert motion(name, row).energy == pytest.approx(printed, abs=digit)
 
 
-# -- many points of one plant and profile --
-
-
 def test_a_motion_beyond_all_scale_may_have_no_coefficients():
-    wild = SingleLinkManipulator(beta1=1e100)
-    with pytest.raises(SolverFailedError, match=r"CVODES .*beta1 far out.* 1e\+100,"):
-        resimulate(PointToPoint(wild, 1e5, 1e-3), PLAIN, [])
+    wild = qa.SingleLinkManipulator(beta1=1e100)
+    with pytest.raises(qa.SolverFailedError, match=r"CVODES .*beta1 far out.* 1e\+100,"):
+        qa.resimulate(qa.PointToPoint(wild, 1e5, 1e-3), PLAIN, [])

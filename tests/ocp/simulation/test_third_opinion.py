@@ -5,14 +5,10 @@ from functools import cache
 
 import numpy as np
 import pytest
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    resimulate,
-    sample_trajectory,
-)
 from scipy.integrate import simpson
 from third_opinion import ARM, SINGLE_LINK, ThirdOpinion
+
+import quietarm as qa
 
 pi = math.pi
 _RANDOM = np.random.default_rng(20)
@@ -41,13 +37,13 @@ def third_opinion(case):
 def case(request, plants):
     """A task, coefficients of the polynomial, and the third opinion of them."""
     name, a, start, target, duration = CASES[request.param]
-    task = PointToPoint(plants[name], target, duration, start=start)
+    task = qa.PointToPoint(plants[name], target, duration, start=start)
     return task, a, third_opinion(request.param)
 
 
 def test_scipy_agrees(case):
     task, a, other = case
-    motion = resimulate(task, CycloidPolynomial(len(a)), a)
+    motion = qa.resimulate(task, qa.CycloidPolynomial(len(a)), a)
     assert motion.energy == pytest.approx(other.energy, rel=1e-9)
     # The samples after arrival miss 1.2e-6 of a peak at most.
     assert motion.residual == pytest.approx(other.residual, rel=3e-6)
@@ -55,7 +51,7 @@ def test_scipy_agrees(case):
 
 def test_scipy_agrees_on_the_diagnostics(case):
     task, a, other = case
-    motion = resimulate(task, CycloidPolynomial(len(a)), a)
+    motion = qa.resimulate(task, qa.CycloidPolynomial(len(a)), a)
     times = np.linspace(0.0, task.duration, 4001)
     joint, states = np.array(other.joint(times)).T, other.during.sol(times)
     torque = np.ravel(other.torque(joint.T, states))
@@ -78,7 +74,7 @@ def test_scipy_agrees_at_every_sample(case):
     (task, a, other), duration = case, case[0].duration
     moving, resting = np.linspace(0, duration, 50), np.linspace(duration + 0.01, duration + 1, 50)
     times = np.concatenate([moving, resting])
-    found = sample_trajectory(task, CycloidPolynomial(len(a)), a, times)
+    found = qa.sample_trajectory(task, qa.CycloidPolynomial(len(a)), a, times)
     states = np.hstack([other.during.sol(moving), other.after.sol(resting)])
     joint = np.vstack([np.array(other.joint(moving)).T, [(task.target, 0.0, 0.0)] * 50])
     torque = np.ravel(other.torque(joint.T, states))
