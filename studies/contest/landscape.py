@@ -45,9 +45,9 @@ class Landscape(Saved):
     boxes: tuple[tuple[Positive, float | None], ...]
 
     @property
-    def key(self) -> str:
-        """What it is kept under."""
-        return self.problem
+    def place(self) -> str:
+        """Its file in the folder of a contest."""
+        return f"landscape/{self.problem}.json"
 
 
 def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:

@@ -6,6 +6,7 @@ import csv
 import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 
 from quietarm.ocp.base.files import write_whole
@@ -70,3 +71,13 @@ class Table:
     def save_csv(self, path: Path) -> None:
         """Write the table as CSV, whole or not at all."""
         write_whole(path, self.csv())
+
+
+def table_of(title: str, columns: Sequence[tuple[Column, Sequence[Cell]]]) -> Table:
+    """A table of columns with their cells; numbers that are not finite stay empty."""
+    cells = [[_if_finite(cell) for cell in cells] for _, cells in columns]
+    return Table(title, [column for column, _ in columns], list(zip(*cells, strict=True)))
+
+
+def _if_finite(cell: Cell) -> Cell:
+    return None if isinstance(cell, float) and not isfinite(cell) else cell
