@@ -10,9 +10,9 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.contest.measures import TARGETS, Arena, Field, quartiles
 from quietarm.studies.contest.statistics import ALPHA, Pair, Ranking
 from quietarm.studies.display.words import millimetres
-from quietarm.studies.report.table import Cell, Column, Table, table_of
+from quietarm.studies.report.table import Cell, Column, Line, Table, table_of
 
-_PERCENT = "{:.3g} %".format
+_PERCENT = "{:.3g} %"
 _THIRDS = ("still", "middle", "cheap")
 
 
@@ -36,8 +36,8 @@ def runs_table(arenas: Sequence[Arena]) -> Table:
                 row += [None, run.file, run.evaluations, None]
             row += [float(field.final[i]), len(run.front.points), *(float(hit[i]) for hit in hits)]
             rows.append([*row, *field.energies[i].tolist()])
-    columns = zip(*rows, strict=True)
-    return table_of("Runs", list(zip(map(Column, names), columns, strict=True)))
+    columns = zip(names, zip(*rows, strict=True), strict=True)
+    return table_of("Runs", [(name, "", cells) for name, cells in columns])
 
 
 def anytime_table(arenas: Sequence[Arena]) -> Table:
@@ -56,22 +56,22 @@ def summary_table(arena: Arena) -> Table:
     """What each method ended with on a problem: one column a method."""
     fields = arena.fields
     ends = [(100 * quartiles(field.final)).tolist() for field in fields]
-    columns: list[tuple[Column, Sequence[Cell]]] = [
-        (Column("method"), [field.label for field in fields]),
-        (Column("runs"), [len(field.runs) for field in fields]),
-        (Column("evaluations of a run"), [evaluations_words(field) for field in fields]),
-        (Column("hypervolume missing, median", _PERCENT), [end[1] for end in ends]),
-        (Column("  lower quartile", _PERCENT), [end[0] for end in ends]),
-        (Column("  upper quartile", _PERCENT), [end[2] for end in ends]),
-        (Column("processor time [s], median", "{:.2g}".format), [_seconds(f) for f in fields]),
+    columns: list[Line] = [
+        ("method", "", [field.label for field in fields]),
+        ("runs", "", [len(field.runs) for field in fields]),
+        ("evaluations of a run", "", [evaluations_words(field) for field in fields]),
+        ("hypervolume missing, median", _PERCENT, [end[1] for end in ends]),
+        ("  lower quartile", _PERCENT, [end[0] for end in ends]),
+        ("  upper quartile", _PERCENT, [end[2] for end in ends]),
+        ("processor time [s], median", "{:.2g}", [_seconds(f) for f in fields]),
     ]
     for target in TARGETS:
         share = f"{100 * target:g} %"
         reached = [_of_runs((field.final <= target).sum(), field) for field in fields]
         times = [field.expected_running_time(target) for field in fields]
         columns += [
-            (Column(f"runs with at most {share} missing"), reached),
-            (Column(f"  expected evaluations to {share}", "{:.0f}".format), times),
+            (f"runs with at most {share} missing", "", reached),
+            (f"  expected evaluations to {share}", "{:.0f}", times),
         ]
     for place, level in enumerate(LEVELS):
         where = f"at {millimetres(level)}"
@@ -79,8 +79,8 @@ def summary_table(arena: Arena) -> Table:
         reached = [_of_runs(one.count, field) for one, field in zip(above, fields, strict=True)]
         medians = [100 * one.median for one in above]
         columns += [
-            (Column(f"energy above the exact {where}, median", _PERCENT), medians),
-            (Column(f"  runs that have a motion {where}"), reached),
+            (f"energy above the exact {where}, median", _PERCENT, medians),
+            (f"  runs that have a motion {where}", "", reached),
         ]
     return table_of("What the methods ended with", columns)
 
@@ -120,9 +120,9 @@ def effects_table(arena: Arena, pairs: Sequence[Pair]) -> Table:
         return None if effect is None else f"{effect:.2f}{'*' * (p_value < ALPHA)}"
 
     fields = arena.alike
-    columns: list[tuple[Column, Sequence[Cell]]] = [
-        (Column("misses less"), [f"than {other.label}" for other in fields]),
-        *((Column(one.label), [less(one, other) for other in fields]) for one in fields),
+    columns: list[Line] = [
+        ("misses less", "", [f"than {other.label}" for other in fields]),
+        *((one.label, "", [less(one, other) for other in fields]) for one in fields),
     ]
     return table_of("How likely a run misses less (* after Holm, at 5 %)", columns)
 
@@ -139,7 +139,7 @@ def visits_table(arena: Arena) -> Table:
         visited = (100 * quartiles(field.visited)[1]).tolist() if field.own else [None] * 4
         missing = (100 * quartiles(field.missing_by_thirds)[1]).tolist()
         rows.append([field.label, *visited, *missing])
-    columns = [Column("method"), *(Column(name, _PERCENT) for name in names)]
+    columns = [Column("method"), *(Column(name, _PERCENT.format) for name in names)]
     return Table("Where the candidates lie, by the residual", columns, rows)
 
 
