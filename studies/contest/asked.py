@@ -20,6 +20,7 @@ from quietarm.studies.contest.store import Run, Store
 from quietarm.studies.display.words import counted
 
 _REMEDY = "remove it to have it made again"
+_OWN = "the method's own"
 _CODE = ("quietarm", "pymoo")
 """What decides how a search goes; other libraries change its rounding."""
 
@@ -160,24 +161,20 @@ def check_alike(store: Store, contest: Contest) -> None:
 
 def _check_amounts(run: Run, contest: Contest, folder: Path, *, adding: bool) -> None:
     """Refuse a run of other evaluations, population or, where others are added, versions."""
-    if run.evaluations != contest.evaluations:
-        raise ValueError(
-            f"{folder} has runs of {run.evaluations} evaluations ({run.words}) and "
-            f"{contest.evaluations} are asked for; give --evaluations {run.evaluations}, or "
-            "another --output"
-        )
-    if run.population != contest.population and f"{POPULATION}=" not in run.method:
-        theirs, asked = (n or "the method's own" for n in (run.population, contest.population))
-        remedy = f"give --population {theirs}" if run.population else "leave --population out"
-        raise ValueError(
-            f"{folder} has a run whose population is {theirs} ({run.words}) and {asked} is asked "
-            f"for; {remedy}, or another --output"
-        )
-    ours = search_versions()
+    population, ours = run.population, search_versions()
+    remedy = f"give --population {population}" if population else "leave --population out"
+    spent, budget = run.evaluations, contest.evaluations
+    facts: list[tuple[str, object, object, str]] = [
+        ("number of evaluations", spent, budget, f"give --evaluations {spent}")
+    ]
+    if f"{POPULATION}=" not in run.method:
+        facts.append((POPULATION, population, contest.population, remedy))
     for name in _CODE if adding else ():
-        theirs = run.front.versions.get(name, "unknown")
-        if theirs != ours[name]:
+        version = run.front.versions.get(name, "unknown")
+        facts.append((f"version of {name}", version, ours[name], f"install {name} {version}"))
+    for what, theirs, asked, remedy in facts:
+        if theirs != asked:
             raise ValueError(
-                f"{folder} has runs of {name} {theirs} ({run.words}), and new ones would be of "
-                f"{ours[name]}; install {name} {theirs}, or give another --output"
+                f"{folder} has a run of another {what} ({run.words}): {theirs or _OWN}, not "
+                f"{asked or _OWN}; {remedy}, or another --output"
             )

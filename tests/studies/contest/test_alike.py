@@ -25,9 +25,9 @@ def refused(call, copy):
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        (LINE.replace("130", "260"), "has runs of 130 evaluations"),
-        (LINE.replace("--population 20", "--population 24"), "a run whose population is 20"),
-        (LINE.replace("--population 20", ""), "and the method's own is asked for"),
+        (LINE.replace("130", "260"), "another number of evaluations (nsga2 on"),
+        (LINE.replace("--population 20", "--population 24"), ": 20, not 24; give --population 20"),
+        (LINE.replace("--population 20", ""), ": 20, not the method's own; give --population 20"),
     ],
 )
 def test_runs_that_differ_are_not_put_into_one_folder(refused, line, words):
