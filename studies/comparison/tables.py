@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.display.words import millimetres
+from quietarm.studies.report.prose import told
 from quietarm.studies.report.table import Cell, Line, Table, table_of
 
 _ENERGY, _SHARE, _PERCENT, _COUNT, _MISS = "{:.5g}", "{:.4f}", "{:.2f}", "{:.0f}", "{:.2g}"
@@ -126,45 +127,10 @@ def runs_table(comparison: Comparison) -> Table:
 
 def how_to_read(comparison: Comparison) -> list[str]:
     """What the figures of any comparison mean, a sentence or two each."""
-    staircase = (
-        "A front is read as a staircase: its energy at a residual is the least that was found with "
-        "that residual or less."
-    )
-    filled = (
-        "The steps of a front of few points would count against it. So every front is filled: "
-        "between neighbouring points, motions with interpolated coefficients are evaluated, "
-        f"about {comparison.fill} for each front. The indicators, and the best that energies are "
-        "compared with, are those of filled fronts."
-    )
-    found = "Motions between points do not count, so a front of few points loses by its steps."
-    lines = [
-        f"{staircase} {filled if comparison.fill else found}",
-        "Coverage: share of the points found that the other front, filled, dominates or equals.",
-    ]
-    if any(len(group.runs) > 1 for group in comparison.groups):
-        lines.append(
-            "For several seeds the tables show the median over those that reach the residual (for "
-            "two, their mean); the picture shows what at least half of the seeds reach (for two, "
-            "the better one)."
-        )
-    return lines
+    several = any(len(group.runs) > 1 for group in comparison.groups)
+    return told("comparison/reading.txt", fill=comparison.fill, several=several)
 
 
 def units(comparison: Comparison) -> list[str]:
     """What this comparison's figures are measured in and against, a sentence or two each."""
-    (residual, energy), (length, joules) = comparison.corner, comparison.extent
-    lines = [
-        f"Hypervolume: share of the box up to {millimetres(residual)} and {energy:.4g} J, the same "
-        "for all, that a front dominates.",
-        f"IGD+ and (additive) epsilon are measured against {comparison.reference}, thinned to even "
-        "distances. Both objectives are scaled: 1 is the extent of that front, "
-        f"{millimetres(length)} or {joules:.4g} J. IGD+ is the mean distance by which a front "
-        "misses it, epsilon the least shift in both objectives that makes up for the worst miss.",
-    ]
-    if comparison.floor is not None:
-        lines.append(
-            "Floor: the least energy found over all joint motions that arrive "
-            f"{comparison.of_floor}, not of polynomials only, is {comparison.floor:.4g} J. A front "
-            "may go below it where it leaves a residual."
-        )
-    return lines
+    return told("comparison/units.txt", one=comparison)

@@ -25,6 +25,7 @@ from quietarm.studies.report.document import (
     Text,
 )
 from quietarm.studies.report.page import page
+from quietarm.studies.report.prose import told
 from quietarm.studies.study.findings import STILL_LEVEL, case_findings, findings
 from quietarm.studies.study.overview import gap_figure, overview_table
 from quietarm.studies.study.work import CaseStudy, Study, StudySettings
@@ -100,17 +101,8 @@ def _reading(study: Study) -> Section:
 def method_lines(settings: StudySettings) -> list[str]:
     """What the methods are, and the settings that they ran with."""
     levels = ", ".join(millimetres(level) for level in LEVELS)
-    return [
-        "epsilon constraint: the least energy at each of a series of residual limits, "
-        f"{levels} among them, by the gradient.",
-        "weighted sum: the least weighted sum of residual and energy, by the gradient, for a "
-        "series of weights.",
-        *(_search_line(method, settings) for method in settings.searches),
-        "polished: each point of the first seed's front improved by the gradient at its own "
-        "residual.",
-        "floor: the least energy of any joint motion at all that arrives at rest, on a grid "
-        "refined until its energy no longer changes.",
-    ]
+    searches = [_search_line(method, settings) for method in settings.searches]
+    return told("study/methods.txt", levels=levels, searches=searches)
 
 
 def _search_line(method: Method, settings: StudySettings) -> str:

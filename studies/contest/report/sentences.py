@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from jinja2 import Environment, PackageLoader
 from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
 from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, Field, methods_in
 from quietarm.studies.contest.names import is_own, label_of, method_in
 from quietarm.studies.contest.report.tables import evaluations_words
 from quietarm.studies.contest.statistics import ALPHA, Ranking, why_none
-from quietarm.studies.display.words import counted, millimetres, versions_of
+from quietarm.studies.display.words import counted, versions_of
+from quietarm.studies.report.prose import told
 
 _EXACT = "the exact front's"
 
@@ -81,8 +81,8 @@ def verdict(found: Ranking) -> str:
 
 def explanation(found: Landscape) -> list[str]:
     """What makes a problem hard, in sentences."""
-    level = millimetres(LEVEL)
-    return _told("landscape.txt", found=found, level=level, candidates=CANDIDATES).splitlines()
+    figures = {"found": found, "level": LEVEL, "candidates": CANDIDATES}
+    return told("contest/report/landscape.txt", **figures)
 
 
 def methods_paragraph(arenas: Sequence[Arena]) -> str:
@@ -96,8 +96,8 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
         for arena in arenas
         for one in arena.imports
     ]
-    text = _told(
-        "methods.txt",
+    (paragraph,) = told(
+        "contest/report/methods.txt",
         methods="; ".join(map(label_of, methods)),  # some have a comma
         problems=counted(len(arenas), "problem"),
         first=min(run.front.seed or 0 for run in runs),
@@ -109,14 +109,7 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
         imports=", ".join(imports),
         versions=", ".join(versions_of(run.front for run in runs)),
     )
-    return " ".join(text.split())
-
-
-def _told(template: str, **figures: object) -> str:
-    """A text of this folder with its figures."""
-    loader = PackageLoader("quietarm.studies.contest", "report")
-    texts = Environment(loader=loader, trim_blocks=True, autoescape=False)  # no HTML
-    return texts.get_template(template).render(figures)
+    return paragraph
 
 
 def settings_lines(arenas: Sequence[Arena]) -> list[str]:
