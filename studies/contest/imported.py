@@ -30,21 +30,17 @@ def named_files(texts: Sequence[str]) -> dict[str, list[Path]]:
             name = whole.name if whole.is_dir() else whole.stem
         if not path.exists():
             raise ValueError(f"there is no file or folder {path}; give one to --import")
+        inside = [path]
+        if path.is_dir():
+            inside = sorted(p for p in path.iterdir() if p.is_file() and p.name[0] != ".")
+        if not inside:
+            raise ValueError(f"{path} has no files; give a folder with a file of each run")
         files = found.setdefault(name_given(name.strip()), [])
-        for file in _files(path):
+        for file in inside:
             if any(other.name == file.name for other in files):
                 raise ValueError(f"{name} has two files {file.name}; rename one: each is a run")
             files.append(file)
     return found
-
-
-def _files(path: Path) -> list[Path]:
-    if not path.is_dir():
-        return [path]
-    files = sorted(p for p in path.iterdir() if p.is_file() and not p.name.startswith("."))
-    if not files:
-        raise ValueError(f"{path} has no files; give a folder with a file of coefficients a run")
-    return files
 
 
 def imported_run(
@@ -52,12 +48,6 @@ def imported_run(
 ) -> Run:
     """Evaluate a file."""
     found = read_found(path)
-    columns, size = found.coefficients.shape[1], problem.profile.size
-    if columns != size:
-        raise ValueError(
-            f"{path} has {columns} coefficients a motion, and {problem.name} takes {size}; give a "
-            "file of that problem"
-        )
     settings: dict[str, Setting] = {"imported": path.name, "bound": problem.bound}
     try:
         front, claims = import_front(problem.task, problem.profile, found, method, settings)

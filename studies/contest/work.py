@@ -45,32 +45,23 @@ def set_up(
         for method, paths in imports.items()
         for path in paths
     ]
-    for run in given:
-        _refuse_another(run, store)
     for place, run in enumerate(given):
-        _refuse_twice(run, [*there, *given[:place]])
+        _check_new(run, [*there, *given[:place]], store)
     for what in (*exact, *given):
         if what.place not in store.kept:
             store.keep(what)
 
 
-def _refuse_another(run: Run, store: Store) -> None:
-    """Refuse a run that is not the one the folder has in its place."""
-    known = store.kept.get(run.place)
-    if isinstance(known, Run) and (known.digest, known.evaluations) != (
-        run.digest,
-        run.evaluations,
-    ):
-        raise ValueError(
-            f"{store.path} has another run of {run.method} from a file {run.file}; rename one of "
-            f"them, or remove the folder's {run.place}"
-        )
-
-
-def _refuse_twice(run: Run, others: Sequence[Run]) -> None:
-    """Refuse a run that another place has already: it would pass for a second seed."""
+def _check_new(run: Run, others: Sequence[Run], store: Store) -> None:
+    """Refuse a run in the place of another one, or that stands elsewhere: it would count twice."""
     for other in others:
-        if other.digest == run.digest and other.place != run.place:
+        alike = other.digest == run.digest
+        if other.place == run.place and not (alike and other.evaluations == run.evaluations):
+            raise ValueError(
+                f"{store.path} has another run of {run.method} from a file {run.file}; rename one "
+                f"of them, or remove the folder's {run.place}"
+            )
+        if other.place != run.place and alike:
             raise ValueError(
                 f"{run.file} of {run.method} holds the same as {other.file} of {other.method}; "
                 "give every run once"

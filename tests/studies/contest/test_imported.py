@@ -141,7 +141,7 @@ REFUSED = [
     ("--import empty", "empty has no files"),
     ("--import 'nsga2=results'", "'nsga2' is a method that is run here"),
     ("--import '../a=results'", "the name '../a' does not do for a method"),
-    ("--import wide.csv", "wide.csv has 3 coefficients a motion, and single-link"),
+    ("--import wide.csv", "wide.csv: motion 1: got 3 coefficients for a profile of 2"),
     ("--import beyond.csv", "beyond the stated bound of 0.2"),
     ("--import text.csv", "text.csv: line 2"),
     ("--import a=results --import a=other", "a has two files run0.csv"),
