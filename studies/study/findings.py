@@ -10,8 +10,8 @@ import numpy as np
 from quietarm.studies.comparison.measures import Comparison, Group
 from quietarm.studies.comparison.staircase import within
 from quietarm.studies.display.words import millimetres, title_of
-from quietarm.studies.paper.points import PaperPoint
 from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, Method
+from quietarm.studies.report.prose import percents, told
 from quietarm.studies.study.work import CaseStudy, Study
 
 STILL_LEVEL = 1
@@ -40,183 +40,110 @@ def at_rest(found: CaseStudy) -> float:
     return float(within(found.comparison.best_front, [_REST])[0])
 
 
-def _percents(*shares: float) -> str:
-    """A share, or the range of several, in words."""
-    words = [
-        "less than 0.01" if abs(share) < 1e-4 else f"{float(f'{100 * share:.2g}'):g}"
-        for share in (min(shares), max(shares))  # 120 %, not 1.2e+02 %
-    ]
-    return f"{' to '.join(dict.fromkeys(words))} %"
-
-
-def _listed(words: Sequence[str]) -> str:
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
-
-
 def case_findings(found: CaseStudy) -> list[str]:
     """What was found for one task."""
-    comparison, groups = found.comparison, found.comparison.groups
-    searches = [g for g in groups if g.method.kind is not Kind.GRADIENT and not g.method.polished]
-    lines = [_best(comparison), *(_search(group, comparison.levels) for group in searches)]
+    comparison, rest = found.comparison, at_rest(found)
+    groups, best = comparison.groups, comparison.best[STILL_LEVEL]
+    gaps = {group.label: group.spread("gaps_between", STILL_LEVEL).lower for group in groups}
     weighted = group_of(comparison, WEIGHTED)
-    lines += [] if weighted is None else [_weighted(weighted)]
-    for name, polish in found.polishes.items():
-        shares = [gain.share for gain in polish.gains]
-        better, median = sum(share > _ALIKE for share in shares), float(np.median(shares))
-        lines.append(
-            f"Polished by the gradient, each at its own residual, {better} of the {len(shares)} "
-            f"points of {METHODS[name].label}'s first front save energy: the median of all "
-            f"{_percents(median)}, the most {_percents(max(shares))}."
-        )
-    lines += [_paper(point, found) for point in found.paper]
-    return [*filter(None, lines), *_floor(found), *found.failures]
-
-
-def _best(comparison: Comparison) -> str:
-    level, best = millimetres(comparison.levels[STILL_LEVEL]), comparison.best[STILL_LEVEL]
-    if not isfinite(best):
-        residual, energy = comparison.best_front[0]
-        return (
-            f"No method arrives within {level}: the stillest motion leaves {millimetres(residual)} "
-            f"and takes {energy:.4g} J."
-        )
-    gaps = {g.label: g.spread("gaps_between", STILL_LEVEL).lower for g in comparison.groups}
-    labels = [label for label, share in gaps.items() if share <= _ALIKE]
-    return (
-        f"The least energy with a residual within {level} is {best:.4g} J, found by "
-        f"{_listed(labels)}."
+    shares = {name: [gain.share for gain in one.gains] for name, one in found.polishes.items()}
+    paper = [
+        (point, point.energy / float(within(comparison.best_front, [at])[0]) - 1)
+        for point in found.paper
+        for at in (_REST if point.residual is None else point.residual,)
+    ]
+    lines = told(
+        "study/case.txt",
+        level=comparison.levels[STILL_LEVEL],
+        best=best,
+        found=[label for label, share in gaps.items() if isfinite(best) and share <= _ALIKE],
+        stillest=comparison.best_front[0],
+        searches=[
+            (group, *_reached(group, comparison.levels))
+            for group in groups
+            if group.method.kind is not Kind.GRADIENT and not group.method.polished
+        ],
+        holes=None if weighted is None else _holes(weighted),
+        polished=[
+            (METHODS[name].label, saved, sum(share > _ALIKE for share in saved))
+            for name, saved in shares.items()
+        ],
+        paper=[(point, share) for point, share in paper if isfinite(share)],
+        terms=comparison.runs[0].front.profile.size,
+        rest=rest if isfinite(rest) else None,
+        floor=found.floor.energy if found.floor else None,
     )
+    return [*lines, *found.failures]
 
 
-def _search(group: Group, levels: Sequence[float]) -> str:
+def _reached(group: Group, levels: Sequence[float]) -> tuple[float | None, list[str]]:
+    """The residual of the stillest motion where none is within a level; and what each level takes.
+
+    In words, with the share above the best.
+    """
     runs, words = len(group.runs), list[str]()
-    for i, level in enumerate(levels):
-        reached, where = group.reached(i), millimetres(level)
+    for i, level in enumerate(map(millimetres, levels)):
+        reached, share = group.reached(i), group.spread("gaps_between", i).median
         short = "" if reached == runs else f" ({reached} of {runs} seeds get there)"
-        share = group.spread("gaps_between", i).median
-        words.append(f"{_percents(share)} at {where}{short}" if reached else f"{where} not reached")
-    if not any(map(group.reached, range(len(levels)))):
-        least = min(run.front.stillest().residual for run in group.runs)
-        return f"The stillest motion of {group.label} leaves {millimetres(least)}."
-    return (
-        f"With the motions between its points, {group.label} needs more energy than the best: "
-        f"{', '.join(words)}."
-    )
+        words.append(
+            f"{percents([share])} at {level}{short}" if reached else f"{level} not reached"
+        )
+    if any(group.reached(i) for i in range(len(levels))):
+        return None, words
+    return min(run.front.stillest().residual for run in group.runs), words
 
 
-def _weighted(group: Group) -> str:
-    holes = [
+def _holes(group: Group) -> list[str]:
+    return [
         f"between {'rest' if low <= _REST else millimetres(low)} and {millimetres(high)}"
         for low, high in group.runs[0].front.gaps
-    ]
-    if not holes:
-        return "The weighted sum reaches the whole front."
-    return f"No weighted sum reaches the front {_listed(holes)}."
-
-
-def _paper(point: PaperPoint, found: CaseStudy) -> str:
-    if point.residual is None:
-        share = point.energy / at_rest(found) - 1
-        if not isfinite(share):
-            return ""
-        return (
-            f"The paper prints {point.energy:.3g} J for N = {point.terms}, of unknown residual: "
-            f"{_percents(share)} more than the best found here at rest on arrival."
-        )
-    (best,) = within(found.comparison.best_front, [point.residual])
-    return (
-        f"The paper's own motion, N = {point.terms}, takes {point.energy:.4g} J at "
-        f"{millimetres(point.residual)}: {_percents(point.energy / best - 1)} more than the best "
-        "found here at that residual."
-    )
-
-
-def _floor(found: CaseStudy) -> list[str]:
-    if found.floor is None:
-        return []
-    best, floor = at_rest(found), found.floor.energy
-    terms = found.comparison.runs[0].front.profile.size
-    if not isfinite(best):
-        return [
-            f"No motion of {terms} coefficients was found that arrives at rest; the floor, the "
-            f"least energy of any joint motion that does, is {floor:.4g} J."
-        ]
-    return [
-        f"At rest on arrival, the best motion of {terms} coefficients takes {best:.4g} J, "
-        f"{best / floor:.3g} times the floor of {floor:.4g} J that any joint motion needs."
     ]
 
 
 def findings(study: Study) -> list[str]:
     """What the whole study found, in a few sentences."""
-    searches = study.settings.searches
-    lines = [_whose_hypervolume(study), *(_over_tasks(study, method) for method in searches)]
+    cases, searches = study.cases, study.settings.searches
     saved = {
         method.label: [
             float(np.median([gain.share for gain in found.polishes[method.name].gains]))
-            for found in study.cases
+            for found in cases
             if method.name in found.polishes
         ]
         for method in searches
     }
-    words = [f"{_percents(*shares)} for {label}" for label, shares in saved.items() if shares]
-    if words:
-        lines.append(
-            "Polished by the gradient, the median point saves this share of its energy: "
-            f"{_listed(words)}."
-        )
-    weighted = [group_of(found.comparison, WEIGHTED) for found in study.cases]
-    holes = [len(group.runs[0].front.gaps) > 0 for group in weighted if group is not None]
-    if holes:
-        lines.append(f"The weighted sum leaves gaps in {sum(holes)} of {len(holes)} fronts.")
-    ratios = [at_rest(found) / found.floor.energy for found in study.cases if found.floor]
+    weighted = [group_of(found.comparison, WEIGHTED) for found in cases]
+    ratios = [at_rest(found) / found.floor.energy for found in cases if found.floor]
     finite = sorted(ratio for ratio in ratios if isfinite(ratio))
-    if finite:
-        between = " to ".join(dict.fromkeys(f"{ratio:.3g}" for ratio in (finite[0], finite[-1])))
-        lines.append(
-            f"At rest on arrival, the best motion of {study.settings.terms} coefficients takes "
-            f"{between} times the floor, the least energy of any joint motion at all."
-        )
-    return [*filter(None, lines), _times(study)]
-
-
-def _whose_hypervolume(study: Study) -> str:
-    winners, total = Counter[str](), len(study.cases)
-    for found in study.cases:
-        shares = {g.label: g.spread("hypervolume").median for g in found.comparison.groups}
-        most = max(shares.values()) - _SAME_HYPERVOLUME
-        winners.update(label for label, share in shares.items() if share > most)
-    words = ", ".join(f"{label} in {count} of {total}" for label, count in winners.most_common())
-    if total == 1:
-        return ""
-    return (
-        f"The front that dominates most: {words}; hypervolumes that differ by less than "
-        f"{_SAME_HYPERVOLUME:g} count as equal."
-    )
-
-
-def _over_tasks(study: Study, method: Method) -> str:
-    gaps = [gap(found.comparison, method) for found in study.cases]
-    finite = [share for share in gaps if isfinite(share)]
-    level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
-    if not finite:
-        return f"{method.label} never comes within {level}."
-    worst = title_of(study.cases[int(np.nanargmax(gaps))].case.task)
-    where = f", most for {worst}" if len(finite) > 1 else ""
-    alone = [gap(case.comparison, method, "gaps") for case in study.cases]
-    reached = [share for share in alone if isfinite(share)]
-    return (
-        f"{method.label} takes {_percents(*finite)} more energy than the best at {level}{where}; "
-        f"{_percents(*reached) if reached else 'never so still'} with the points of its front "
-        f"alone, no motions between them (median of {study.settings.runs} seeds)."
-    )
-
-
-def _times(study: Study) -> str:
     times: dict[str, list[float]] = {}
-    for group in (group for found in study.cases for group in found.comparison.groups):
-        if not group.method.polished:
-            seconds = [run.front.seconds for run in group.runs]
-            times.setdefault(group.method.label, []).extend(seconds)
-    words = ", ".join(f"{name} {np.median(values):.2g} s" for name, values in times.items())
-    return f"Median time of a front: {words}."
+    winners = Counter[str]()
+    for groups in (found.comparison.groups for found in cases):
+        volumes = {group.label: group.spread("hypervolume").median for group in groups}
+        most = max(volumes.values()) - _SAME_HYPERVOLUME
+        winners.update(label for label, volume in volumes.items() if volume > most)
+        for group in groups:
+            if not group.method.polished:
+                seconds = [run.front.seconds for run in group.runs]
+                times.setdefault(group.method.label, []).extend(seconds)
+    return told(
+        "study/tasks.txt",
+        tasks=len(cases),
+        winners=winners.most_common(),
+        same=f"{_SAME_HYPERVOLUME:g}",
+        level=cases[0].comparison.levels[STILL_LEVEL],
+        searches=[_over_tasks(study, method) for method in searches],
+        seeds=study.settings.runs,
+        saved=[f"{percents(shares)} for {label}" for label, shares in saved.items() if shares],
+        holes=[len(group.runs[0].front.gaps) > 0 for group in weighted if group is not None],
+        ratios=list(dict.fromkeys(f"{ratio:.3g}" for ratio in (*finite[:1], *finite[-1:]))),
+        terms=study.settings.terms,
+        times=times,
+    )
+
+
+def _over_tasks(study: Study, method: Method) -> tuple[Method, list[float], str, list[float]]:
+    """A method, its gaps to the best, the task with the largest, and the gaps of points alone."""
+    gaps = [gap(found.comparison, method) for found in study.cases]
+    alone = [gap(found.comparison, method, "gaps") for found in study.cases]
+    finite = [share for share in gaps if isfinite(share)]
+    worst = study.cases[gaps.index(max(finite))].case.task if finite else study.cases[0].case.task
+    return method, finite, title_of(worst), [share for share in alone if isfinite(share)]
