@@ -17,7 +17,6 @@ from quietarm.studies.paper.case import Case
 from quietarm.studies.report.page import page as page_of
 from quietarm.studies.study.findings import case_findings
 from quietarm.studies.study.page import study_document
-from quietarm.studies.study.pieces import StudySettings
 from quietarm.studies.study.work import Study, amount_of_work, run_study
 from small_study import CASES, METHODS, QUICK
 from small_study import FLOOR as FLOOR_FOUND
@@ -58,16 +57,6 @@ def test_a_plant_of_ones_own_needs_a_bound(two_links):
     assert Case(task, 0.3).bound == 0.3
     with pytest.raises(ValueError, match="bound on the coefficients is -1"):
         Case(task, -1)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [{"points": 1}, {"runs": 0}, {"terms": 0}, {"workers": 0}, {"population": 1},
-     {"generations": 0}],
-)  # fmt: skip
-def test_settings_out_of_range_are_refused(wrong):
-    with pytest.raises(ValueError, match=next(iter(wrong))):
-        StudySettings(**wrong)
 
 
 def searches_that_find(monkeypatch, answer):
