@@ -151,6 +151,7 @@ def test_the_runtime_requirements_are_few():
         "rich",
         "moocore",
         "msgspec",
+        "lazy_loader",
     }
 
 

@@ -41,7 +41,7 @@ def test_the_second_runs_the_tests():
 
 @pytest.mark.parametrize("command", [*TWO_COMMANDS, NOTEBOOK])
 def test_the_commands_install_with_the_constraints_that_are_here(command):
-    (install,) = [step for step in command.split(" && ") if "pip install" in step]
+    (install,) = [step for step in re.split(" && |\n", command) if "pip install" in step]
     words = shlex.split(install)
     assert (ROOT / words[words.index("-c") + 1]).is_file()
     extras = re.fullmatch(r"\.(?:\[(.*)\])?", words[-1]).group(1)
@@ -95,7 +95,7 @@ def test_the_gate_lints_types_and_holds_the_imports():
 
 
 def test_what_opens_the_notebook_is_installed_before():
-    install, opens = NOTEBOOK.split(" && ")
+    install, opens = NOTEBOOK.splitlines()
     (extra,) = re.findall(r"\.\[(\w+)\]", install)
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     brought = [re.match(r"[\w-]+", one)[0] for one in project["optional-dependencies"][extra]]

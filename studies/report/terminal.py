@@ -46,7 +46,7 @@ def show_block(console: Console, block: Block) -> None:
             for line in lines:
                 style = "dim" if soft else None
                 console.print(f"- {line}", style=style, markup=False, highlight=False)
-        case Lines(lines):
+        case Lines(lines) if lines:
             print_lines(console, *lines)
         case Facts(rows):
             _show_facts(console, rows)

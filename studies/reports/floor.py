@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from quietarm.ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
-from quietarm.studies.report.document import Facts
-from quietarm.studies.report.terminal import show_block
+from quietarm.studies.report.document import Document, Facts
 from quietarm.studies.reports.plan import figure_rows, move_rows, stopped_words
-from rich.console import Console
 
 TERMS = 6
 """Terms of the plan that a floor is compared with."""
@@ -20,8 +18,8 @@ def plan_beside(floor: Floor) -> Plan | None:
         return None
 
 
-def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
-    """Print a floor: its energy, what is left, how it was found."""
+def floor_document(floor: Floor, plan: Plan | None) -> Document:
+    """A floor: its energy, what finer grids would save, how it was found."""
     motion, check = floor.motion, floor.verification
     kind = "smooth (jerk free)" if floor.smooth else "acceleration free"
     beside = "none within these limits" if floor.complete else "not looked for"
@@ -52,7 +50,7 @@ def print_floor(console: Console, floor: Floor, plan: Plan | None) -> None:
         ),
         ("time", f"{floor.provenance.seconds:.2f} s"),
     ]
-    show_block(console, Facts(rows))
+    return Document("", [Facts(rows)])
 
 
 def _unsolved(floor: Floor) -> str:

@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid
+from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.answers.provenance import AGREEMENT
 from quietarm.ocp.plan.robust import EXCESS
 from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.task.quantities import QUANTITIES
 from quietarm.studies.display.words import millimetres, move_of, plant_words
-from quietarm.studies.report.document import Facts
-from quietarm.studies.report.terminal import show_block
-from quietarm.studies.reports.worst import worst_in_words
-from rich.console import Console
+from quietarm.studies.report.document import Document, Facts, Lines
 
 Row = tuple[str, str]
 _ROUNDING = 1e-12
 """Angles below this [rad] are rounding errors."""
 
 
-def print_plan(console: Console, plan: Plan) -> None:
-    """Print a plan's coefficients, figures and verification."""
+def plan_document(plan: Plan, notes: Sequence[str] = ()) -> Document:
+    """A plan's coefficients, figures and verification."""
     motion = plan.motion
     rows = [
         *move_rows(plan.task, motion),
@@ -33,7 +31,13 @@ def print_plan(console: Console, plan: Plan) -> None:
         _verified_row(plan),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
-    show_block(console, Facts(rows))
+    return Document("", [Facts(rows), Lines(notes)])
+
+
+def worst_in_words(worst: Worst) -> str:
+    """The largest residual within the errors of a plant, and the errors that it comes with."""
+    errors = ", ".join(f"{name} {100 * error:+.3g} %" for name, error in worst.errors.items())
+    return f"{millimetres(worst.residual)} with {errors}"
 
 
 def _worst_rows(plan: Plan) -> list[Row]:

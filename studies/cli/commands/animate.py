@@ -47,11 +47,11 @@ def animate(
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.studies.animation import animate as draw
     from quietarm.studies.animation.formats import format_of
+    from quietarm.studies.cli.ending import finish
     from quietarm.studies.display.progress import count
-    from quietarm.studies.display.saving import finish
-    from quietarm.studies.display.words import print_lines
     from quietarm.studies.figures import Line
     from quietarm.studies.reading.saved import load_plans
+    from quietarm.studies.report.document import Document, Lines
     from rich.console import Console
 
     kind = format_of(output)
@@ -63,4 +63,4 @@ def animate(
             frames_per_second=frames_per_second, format=kind, report=report,
         )  # fmt: skip
     size = f"{film.frames} frames, {film.seconds:.1f} s, {len(film.content) / 1e3:.0f} kB"
-    finish([(output, film.save)], lambda console: print_lines(console, size))
+    finish([(output, film.save)], Document("", [Lines([size])]))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 import click
@@ -47,11 +46,10 @@ def compare(
       quietarm compare front-seed0.json front-seed1.json epsilon.json --output compared
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.ocp import QuietarmError
+    from quietarm.studies.cli.ending import finish
     from quietarm.studies.comparison.measures import FILL, compare_fronts
-    from quietarm.studies.display.saving import finish
     from quietarm.studies.reading.saved import load_front
     from quietarm.studies.report.files import document_files
-    from quietarm.studies.report.terminal import show
     from quietarm.studies.reports.comparison import comparison_document, with_floor
 
     errors, trouble = Console(stderr=True), None
@@ -71,4 +69,4 @@ def compare(
             trouble = QuietarmError("interrupted; the comparison is kept, without the floor")
     document = comparison_document(comparison)
     files = [] if output is None else document_files(output, document)
-    finish(files, partial(show, document=document), trouble=trouble, quiet=quiet)
+    finish(files, document, trouble=trouble, quiet=quiet)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 import click
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients
+from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import profile_option, quiet_option, refuse_idle
 from quietarm.studies.cli.task import robust_option, task_options
 from quietarm.studies.cli.types import COEFFICIENTS
 from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import File, finish
+from quietarm.studies.display.saving import File
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
-from quietarm.studies.reports.plan import print_plan
+from quietarm.studies.reports.plan import plan_document
 from rich.console import Console
 
 
@@ -54,4 +54,4 @@ def evaluate(
     motions = family.of_size(len(numbers)) if family else profile_of(profile, task)
     with working("integrating", Console(stderr=True), quiet=quiet):
         found = evaluate_coefficients(task, numbers, profile=motions)
-    finish(files_of(found), partial(print_plan, plan=found))
+    finish(files_of(found), plan_document(found))

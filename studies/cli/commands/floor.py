@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 from quietarm.ocp import PointToPoint, energy_floor
 from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import task_options
 from quietarm.studies.cli.types import OUTPUT, PICTURE, WHOLE
 from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import drawing, finish, interruption
-from quietarm.studies.reports.floor import plan_beside, print_floor
+from quietarm.studies.display.saving import drawing
+from quietarm.studies.reports.floor import floor_document, plan_beside
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -67,6 +67,6 @@ def floor(
 
     finish(
         [(output, found.save), (figure, drawing(picture))],
-        partial(print_floor, floor=found, plan=plan),
+        floor_document(found, plan),
         trouble=interruption(found.provenance.stopped) if came or not found.complete else None,
     )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from quietarm.metaheuristics.ensemble import LostSeedsError, search_many, seeds_of
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError, cross_check
+from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import (
     family_option,
     method_settings_option,
@@ -25,12 +26,11 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.task import robust_option, task_options
 from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, STATE, WEIGHTS, WHOLE, Named
 from quietarm.studies.display.progress import count
-from quietarm.studies.display.saving import STDOUT, drawing, finish, interruption
+from quietarm.studies.display.saving import STDOUT, drawing
 from quietarm.studies.display.search_progress import search_display
 from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
-from quietarm.studies.reports.search import print_fronts
-from quietarm.studies.reports.sweep import failure_lines, print_sweep
+from quietarm.studies.reports.front import failure_lines, searches_document, sweep_document
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -202,7 +202,7 @@ def _by_gradient(
     output, csv_file, figure = files
     finish(
         [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
-        lambda console: print_sweep(console, front, asked_for, checked),
+        sweep_document(front, asked_for, checked),
         trouble=None if complete else interruption(),
     )
 
@@ -265,7 +265,7 @@ def _by_search(
             *((path_of(csv_file, front), front.save_csv) for front in fronts),
             (figure, drawing(picture)),
         ],
-        lambda console: print_fronts(console, fronts),
+        searches_document(fronts),
         trouble=lost or (QuietarmError(trouble) if trouble else None),
     )
 

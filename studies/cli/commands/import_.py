@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from quietarm.ocp import PointToPoint
+from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import family_option, quiet_option
 from quietarm.studies.cli.task import task_options
 from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, WHOLE
 from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import drawing, finish
-from quietarm.studies.display.words import print_lines
+from quietarm.studies.display.saving import drawing
 from quietarm.studies.reading.foreign import read_found
 from quietarm.studies.reading.importing import import_front
 from quietarm.studies.registry.profiles import FAMILIES
-from quietarm.studies.reports.search import print_fronts
+from quietarm.studies.reports.front import searches_document
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -89,18 +89,14 @@ def import_(
 
         return front_figure([front])
 
-    def show(console: Console) -> None:
-        print_fronts(console, [front])
-        lines = [claim.line() for claim in claims]
-        if not claims:
-            lines.append(
-                "the file states neither residual nor energy in numbers: nothing to hold against"
-            )
-        if found.ignored:
-            lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
-        print_lines(console, *lines)
-
+    lines = [claim.line() for claim in claims]
+    if not claims:
+        lines.append(
+            "the file states neither residual nor energy in numbers: nothing to hold against"
+        )
+    if found.ignored:
+        lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
     finish(
         [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
-        show,
+        searches_document([front], lines),
     )

@@ -22,6 +22,7 @@ from quietarm.ocp import (
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.ocp.plan.robust import limit_of
 from quietarm.ocp.program.solving import Solver
+from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import (
     method_settings_option,
@@ -35,12 +36,11 @@ from quietarm.studies.cli.options import (
 from quietarm.studies.cli.task import robust_option, task_options
 from quietarm.studies.cli.types import LENGTH, WHOLE, Named
 from quietarm.studies.display.progress import working
-from quietarm.studies.display.saving import File, finish, interruption
+from quietarm.studies.display.saving import File
 from quietarm.studies.display.search_progress import search_display
-from quietarm.studies.display.words import print_lines
 from quietarm.studies.registry.methods import METHODS, Kind, Method, methods_of
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
-from quietarm.studies.reports.plan import print_plan
+from quietarm.studies.reports.plan import plan_document
 from rich.console import Console
 
 GRADIENT = "gradient"
@@ -118,18 +118,14 @@ def plan(
             settings_of_one(setting),
         )  # fmt: skip
 
-    def show(console: Console) -> None:
-        print_plan(console, found)
-        at_rest = not residual_limit and found.worst is None
-        if method != GRADIENT and at_rest and not polish:
-            print_lines(
-                console,
-                "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; "
-                "--polish does",
-            )
-
+    notes = []
+    if method != GRADIENT and not (polish or residual_limit or found.worst):
+        notes = [
+            "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; --polish "
+            "does"
+        ]
     stopped = None if found.complete else interruption(found.provenance.stopped)
-    finish(files_of(found), show, trouble=stopped)
+    finish(files_of(found), plan_document(found, notes), trouble=stopped)
 
 
 def _by_search(

@@ -11,15 +11,17 @@ import click
 import numpy as np
 from quietarm.ocp import Front, Gain, polish_front
 from quietarm.ocp.base.checks import whole
+from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, WHOLE
 from quietarm.studies.display.progress import count, working
-from quietarm.studies.display.saving import drawing, finish, interruption
-from quietarm.studies.display.words import counted, millimetres, print_lines
+from quietarm.studies.display.saving import drawing
+from quietarm.studies.display.words import counted, millimetres
 from quietarm.studies.reading.saved import load_front
+from quietarm.studies.report.document import Document, Lines
 from quietarm.studies.report.table import Column, Table
-from quietarm.studies.reports.sweep import failure_lines
+from quietarm.studies.reports.front import failure_lines
 from rich.console import Console
 
 if TYPE_CHECKING:
@@ -83,7 +85,7 @@ def polish(
             (csv_file, gains_table(gains).save_csv),
             (figure, drawing(picture)),
         ],
-        lambda console: _print_gains(console, whole_front, given, polished.front, gains),
+        _gains_document(whole_front, given, polished.front, gains),
         trouble=interruption() if len(gains) < len(given.points) else None,
     )
 
@@ -112,9 +114,9 @@ def gains_table(gains: Sequence[Gain]) -> Table:
     return Table("what each point gained", columns, rows)
 
 
-def _print_gains(
-    console: Console, whole_front: Front, front: Front, polished: Front, gains: Sequence[Gain]
-) -> None:
+def _gains_document(
+    whole_front: Front, front: Front, polished: Front, gains: Sequence[Gain]
+) -> Document:
     number, of = len(front.points), len(whole_front.points)
     points = (
         f"{number} of its {of} points, spread along it" if number < of else counted(of, "point")
@@ -132,7 +134,7 @@ def _print_gains(
     if beaten:
         some = "1 point is" if beaten == 1 else f"{beaten} points are"
         lines.append(f"{some} dominated by another now, and left out")
-    print_lines(console, *lines, *failure_lines(polished, number))
+    return Document("", [Lines([*lines, *failure_lines(polished, number)])])
 
 
 def _row(gain: Gain) -> str:

@@ -8,11 +8,13 @@ from pathlib import Path
 import click
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
 from quietarm.ocp import Front
+from quietarm.studies.cli.ending import Together, finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.types import FOLDER, Parsed
 from quietarm.studies.display.progress import progress
-from quietarm.studies.display.saving import Together, finish, inside, interruption
-from quietarm.studies.display.words import error_words, print_lines
+from quietarm.studies.display.saving import inside
+from quietarm.studies.display.words import error_words
+from quietarm.studies.report.document import Document, Lines
 from rich.console import Console
 
 
@@ -54,7 +56,7 @@ def problems(names: tuple[str, ...], again: bool, output: Path | None, quiet: bo
             "front" if len(writes) == 1 else "fronts", output, inside(output, writes)
         )
     finish(
-        [], lambda console: print_lines(console, *map(_line, chosen)), trouble=trouble,
+        [], Document("", [Lines([*map(_line, chosen)])]), trouble=trouble,
         together=together, quiet=quiet,
     )  # fmt: skip
 

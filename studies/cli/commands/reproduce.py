@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 import click
@@ -35,11 +34,11 @@ def reproduce(
     from quietarm.metaheuristics.sharing.pieces import InterruptedPiece
     from quietarm.metaheuristics.sharing.workers import Workers, cores_at_hand
     from quietarm.ocp import QuietarmError
+    from quietarm.studies.cli.ending import finish
     from quietarm.studies.display.progress import progress
-    from quietarm.studies.display.saving import finish, inside
-    from quietarm.studies.display.words import print_lines
+    from quietarm.studies.display.saving import inside
+    from quietarm.studies.report.document import Document, Lines
     from quietarm.studies.report.files import document_files
-    from quietarm.studies.report.terminal import show
     from quietarm.studies.reproduction.pieces import pieces_of_paper
     from quietarm.studies.reproduction.recompute import recompute_paper
     from quietarm.studies.reproduction.report import reproduction_document
@@ -62,7 +61,7 @@ def reproduce(
         table = unfinished_table(pieces, stop.part)
         finish(
             [] if output is None else inside(output, {"unfinished.csv": table.save_csv}),
-            lambda console: print_lines(console, table.csv().rstrip()),
+            Document("", [Lines([table.csv().rstrip()])]),
             trouble=QuietarmError(
                 f"{stop.part.stopped}: {stop.part.number} of {len(pieces)} pieces of work are done"
             ),
@@ -71,6 +70,6 @@ def reproduce(
         document = reproduction_document(result)
         finish(
             [] if output is None else document_files(output, document),
-            partial(show, document=document),
+            document,
             quiet=quiet,
         )

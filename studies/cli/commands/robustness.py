@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 
 import click
 from quietarm.ocp import Plan, Robustness, evaluate_robustness
 from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.simulation.errors import checked_ranges
+from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import FOLDER, INPUT, SHARE, WHOLE
 from quietarm.studies.display.progress import count
-from quietarm.studies.display.saving import finish, interruption
 from quietarm.studies.reading.saved import load_plans
 from quietarm.studies.report.files import document_files
-from quietarm.studies.report.terminal import show
 from quietarm.studies.reports.robustness import Figured, robustness_document
 from rich.console import Console
 
@@ -82,7 +80,7 @@ def robustness(
         trouble = interruption(f"{len(figured)} of {len(plans)} plans")
     document = robustness_document(figured)
     files = [] if output is None else document_files(output, document)
-    finish(files, partial(show, document=document), trouble=trouble, quiet=quiet)
+    finish(files, document, trouble=trouble, quiet=quiet)
 
 
 def _parted(context: click.Context, words: tuple[str, ...]) -> tuple[list[Path], dict[str, float]]:

@@ -81,12 +81,13 @@ def study(
       quietarm study single-link --target 30deg --duration 0.8 --method smsemoa --method gde3
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.ocp import QuietarmError
+    from quietarm.studies.cli.ending import Together, finish
     from quietarm.studies.display.progress import progress
-    from quietarm.studies.display.saving import Together, finish
     from quietarm.studies.display.words import counted
     from quietarm.studies.paper.case import Case
     from quietarm.studies.paper.printed import CONDITIONS
     from quietarm.studies.reading.saved import load_front
+    from quietarm.studies.report.document import Bullets, Document
     from quietarm.studies.study.findings import case_findings, findings
     from quietarm.studies.study.page import front_files, page_file
     from quietarm.studies.study.pieces import StudySettings
@@ -106,11 +107,7 @@ def study(
     with progress(total, errors, quiet=quiet) as begin:
         result = run_study(cases, settings, begin)
 
-    def show(console: Console) -> None:
-        several = len(cases) > 1
-        for line in findings(result) if several else case_findings(result.cases[0]):
-            console.print(f"- {line}", highlight=False, markup=False)
-
+    found = findings(result) if len(cases) > 1 else case_findings(result.cases[0])
     trouble = None
     if result.done is not None:
         trouble = QuietarmError(
@@ -121,4 +118,4 @@ def study(
     if fronts is not None:
         together = Together("fronts", fronts, front_files(result, fronts))
     page = [page_file(result, output)]
-    finish(page, show, trouble=trouble, together=together, quiet=quiet)
+    finish(page, Document("", [Bullets(found)]), trouble=trouble, together=together, quiet=quiet)

@@ -124,7 +124,8 @@ def test_a_jerk_limit_is_kept_and_no_plan_needs_less(tasks, coarse_of, solved):
 
 def test_the_least_jerk_of_a_rigid_joint_is_its_closed_form():
     # A joint beside a link that nothing excites. From rest to rest with a continuous acceleration,
-    # at rest too: +J, -J, +J for T/4, T/2, T/4 goes J T^3/32. Less than that is not feasible; on a grid, only a little more is.
+    # at rest too: +J, -J, +J for T/4, T/2, T/4 goes J T^3/32.
+    # Less than that is not feasible; on a grid, only a little more is.
     rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, beta1=0.0, c=0.03)
     least = 32 * 1.5 / 1.0**3
     with pytest.raises(qa.InfeasibleTaskError, match="jerk limit") as error:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from moves import CASES
 from quietarm.ocp.front.sweep import Sweep
+from quietarm.studies.comparison.measures import compare_fronts
 
 import quietarm as qa
 
@@ -61,11 +62,22 @@ def test_given_weights_are_used():
     task, bound = CASES["arm"]
     front = qa.weighted_front(task, bound=bound, weights=[(1, 1), (1, 3), (0, 1), (2, 0)], starts=1)
     r, e = _scaled(front, front).T
+    assert front.settings["weights"] == "1:1, 1:3, 0:1, 2:0"
     assert len(front.points) == 4  # the ends, and one for each pair without a 0
     middle = slice(1, -1)
     for of_residual, of_energy in ((1, 1), (1, 3)):
         values = of_residual * r + of_energy * e
         assert values[middle].min() == pytest.approx(values.min(), abs=1e-6)
+
+
+def test_fronts_of_other_weights_are_not_seeds_of_one_method():
+    task, bound = CASES["arm"]
+    one, other = (
+        qa.weighted_front(task, bound=bound, weights=[pair], starts=1)
+        for pair in ((1, 0.1), (1, 3))
+    )
+    labels = [group.label for group in compare_fronts([one, other], fill=0).groups]
+    assert labels == ["weighted sum, weights 1:0.1", "weighted sum, weights 1:3"]
 
 
 def test_the_figures_are_those_of_the_independent_integrator(case):

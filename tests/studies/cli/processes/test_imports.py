@@ -42,15 +42,6 @@ def test_help_and_version_load_no_command(tmp_path, line):
     assert not [name for name in found if name.startswith("quietarm.studies.cli.commands")]
 
 
-def test_the_help_of_a_command_loads_no_other(tmp_path):
-    found = loaded("plan --help", tmp_path)
-    assert found.isdisjoint(HEAVY)
-    commands = [name for name in found if name.startswith("quietarm.studies.cli.commands.")]
-    assert sorted(commands) == [
-        "quietarm.studies.cli.commands.plan",
-    ]
-
-
 def test_what_is_asked_for_is_loaded(tmp_path):
     """The tests above look for the right name: here it is."""
     ran = subprocess.run(

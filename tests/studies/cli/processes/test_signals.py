@@ -118,12 +118,6 @@ def test_ctrl_c_while_files_are_written_waits_until_they_are_there(call, folder,
     assert sorted(path.name for path in folder.iterdir()) == ["o.csv", "o.json"]
 
 
-def test_the_command_leaves_the_signals_of_the_process_as_they_were(call):
-    before = [signal.getsignal(number) for number in STOPS]
-    assert call("--version")[0] == 0
-    assert [signal.getsignal(number) for number in STOPS] == before
-
-
 def test_a_signal_that_the_shell_ignores_stays_ignored(folder):
     # as in the background of a script, and after nohup
     line = f"front {MOVE} --method nsga2 {SEARCH} --output f.json"

@@ -110,33 +110,6 @@ def test_ctrl_c_keeps_the_seeds_that_are_done(call, interrupted_at):
     assert "median" not in out  # of one seed
 
 
-# What is refused
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        (f'{SMALL} --resume ""', "the name is empty; give one"),
-        (f"{SMALL} --runs 2 --checkpoint state", "are for one run, not with --runs"),
-        (f"{SMALL} --runs 1000000000 --output f.json", "runs is 1000000000; give at most 10000"),
-        (f"front {MOVE} --method vepso --bound 1e308", "is 1e+308; give at most 1e+06"),
-        (f"front {MOVE} --method epsilon --bound 1e308", "is 1e+308; give at most 1e+06"),
-        (f"plan {MOVE} --bound 1e308", "is 1e+308; give at most 1e+06"),
-        (f"{SMALL} --runs 2 --output nowhere/f.json", "folder nowhere does not exist"),
-        (f"{SMALL} --output a --checkpoint ./a", "--output and --checkpoint are both a"),
-        (f"{SMALL} --output a --resume a", "--output and --resume are both a"),
-        (f"{SMALL} --output a.png --figure a.png", "--output and --figure are both a.png"),
-        (f"plan {MOVE} --output a --csv a", "--output and --csv are both a; give two files"),
-        (f"plan {MOVE} --figure a.png --csv ./a.png", "--figure and --csv are both a.png"),
-        (f"plan {MOVE} --polish", "--polish is for a metaheuristic's point; give --method"),
-        (f"plan {MOVE} --method vepso --starts 4", "--starts is for gradient, not for vepso"),
-    ],
-)
-def test_what_would_be_lost_or_ignored_is_refused(refused, line, words):
-    Path("a").write_text("")
-    assert words in refused(line)
-
-
 TABLED = "single-link --target 30deg --duration 0.8 --terms 2 --bound 0.2"
 
 
@@ -151,21 +124,3 @@ def test_the_points_are_written_as_a_table(call, tmp_path, method):
     assert out.splitlines()[-1] == f"wrote {tmp_path / 'f.csv'}"
     Front.load(tmp_path / "f.json").save_csv(tmp_path / "again.csv")
     assert (tmp_path / "f.csv").read_bytes() == (tmp_path / "again.csv").read_bytes()
-
-
-def test_every_seed_has_its_table(call, tmp_path):
-    code, _, _ = call(
-        f"front {TABLED} --method nsga2 --population 20 --generations 2 --runs 2 "
-        f"--csv {tmp_path / 'f.csv'}"
-    )
-    assert code == 0
-    assert sorted(path.name for path in tmp_path.glob("*.csv")) == ["f-seed0.csv", "f-seed1.csv"]
-
-
-@pytest.mark.parametrize("other", ["--output", "--figure"])
-@pytest.mark.parametrize("method", ["epsilon", "nsga2"])
-def test_a_table_does_not_take_the_place_of_another_file(call, tmp_path, method, other):
-    name = tmp_path / "f.png"
-    code, out, err = call(f"front {TABLED} --method {method} --csv {name} {other} {name}")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert f"are both {name}; give two files" in err

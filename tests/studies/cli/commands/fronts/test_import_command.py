@@ -2,7 +2,6 @@
 
 import io
 import math
-import os
 import re
 
 import numpy as np
@@ -165,20 +164,6 @@ def test_a_file_that_does_not_fit_is_refused_in_one_line(call, folder, content, 
     assert words in err
     assert "\x1b" not in err
     assert not (folder / "f.json").exists()
-
-
-def test_a_pipe_is_not_waited_for(call, folder):
-    os.mkfifo("f.csv")
-    code, _, err = call(f"import f.csv {IMPORT}")
-    assert (code, err.count("\n")) == (2, 1)
-    assert "f.csv is no ordinary file" in err
-
-
-def test_the_file_is_not_written_over(call, folder):
-    written("f.csv", table(["a_1", "a_2"], X.tolist()))
-    code, _, err = call(f"import f.csv {IMPORT} --csv f.csv")
-    assert code == 2
-    assert "are both f.csv; give two files" in err
 
 
 def test_a_file_without_a_motion_that_can_be_used(call, folder):

@@ -1,6 +1,5 @@
 """`quietarm problems`: the list, and the exact fronts in files."""
 
-import pytest
 from quietarm.metaheuristics import PROBLEMS, problem_of
 from quietarm.ocp import Front
 
@@ -27,22 +26,3 @@ def test_exact_fronts_are_written_to_a_folder(call, folder):
     names = problem_of(THIRD).tasks()
     loaded = tuple(Front.load(folder / "fronts" / f"{name}.json") for name in names)
     assert loaded == problem_of(THIRD).fronts()
-
-
-def front_of(name):
-    return problem_of(name).fronts()[0]
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("problems single-link", "unknown problem 'single-link'; did you mean 'single-link-30deg"),
-        ("problems --again", "--again finds fronts for a folder; give --output as well"),
-        (f"problems {SMALL} --output -", "this cannot go to standard output"),
-    ],
-)
-def test_bad_input_is_refused_in_one_line(call, folder, line, words):
-    code, out, err = call(line)
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert words in err
-    assert list(folder.iterdir()) == []

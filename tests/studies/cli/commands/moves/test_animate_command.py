@@ -45,22 +45,6 @@ def test_a_plant_of_ones_own_is_drawn_from_its_file(call, crane_file):
     assert out.endswith("wrote crane.gif\n")
 
 
-@pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        ("plan.json", "Missing option '--output'"),
-        ("--output m.gif", "no plan is given; give files that were written by quietarm plan"),
-        ("plan.json --output m.png", "m.png is no animation; end its name in .gif or .mp4"),
-        ("plan.json --output nowhere/m.gif", "folder nowhere does not exist; make it first"),
-        ("none.json --output m.gif", "none.json cannot be read: no such file or directory"),
-        ("plan.json --speed 1% --output m.gif", "make 4500 frames, where 500 are the most"),
-        ("plan.json --width 9 --output m.gif", "width is 9; give a whole number from 200 up"),
-    ],
-)
-def test_what_cannot_be_is_refused(refused, line, message):
-    assert message in refused(f"animate {line}")
-
-
 def test_an_mp4_without_ffmpeg_is_refused(refused, monkeypatch):
     monkeypatch.setenv("PATH", "")
     said = refused("animate plan.json --output m.mp4")

@@ -10,7 +10,8 @@ from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
 from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.front.robust import EXCESS
-from quietarm.studies.reports.plan import print_plan
+from quietarm.studies.report.terminal import show
+from quietarm.studies.reports.plan import plan_document
 from rich.console import Console
 
 
@@ -64,7 +65,8 @@ def test_a_plan_that_is_not_robust_enough_says_so(cycloid, excess, stopped, says
     settings = SolveSettings(residual_limit=cycloid.worst.residual / (1 + excess))
     provenance = replace(cycloid.provenance, settings=settings, stopped=stopped)
     text = io.StringIO()
-    print_plan(Console(file=text, width=400), replace(cycloid, provenance=provenance))
+    document = plan_document(replace(cycloid, provenance=provenance))
+    show(Console(file=text, width=400), document)
     (row,) = [line.strip() for line in text.getvalue().splitlines() if "at worst" in line]
     assert says in row
     assert ("not robust" in row) == (excess > 0.05)

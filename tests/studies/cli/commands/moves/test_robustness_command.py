@@ -157,40 +157,6 @@ def test_plans_of_different_plants_share_what_both_have(call):
 
 
 @pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        ("", "no plan is given"),
-        ("ours.json ours.json", "ours.json is given twice"),
-        (
-            "ours.json --omga 10%",
-            "ours.json: single-link has no parameter 'omga'; did you mean 'omega'?",
-        ),
-        ("ours.json arm.json --beta3 10%", "ours.json: single-link has no parameter 'beta3'"),
-        ("arm.json ours.json --beta3 10%", "ours.json: single-link has no parameter 'beta3'"),
-        ("ours.json --frequency 100%", "makes the frequency 0; give less than 100 %"),
-        ("ours.json --frequency 10", "1000 % makes the frequency negative"),
-        ("ours.json --frequency 1O%", "'1O%' is not a share; give 10% or 0.1"),
-        ("ours.json --omega ten", "--omega: 'ten' is not a share; give 10% or 0.1"),
-        ("ours.json --omega", "--omega has no value; give one, as --omega 10%"),
-        ("ours.json --omega 10% --omega 5%", "--omega is given twice"),
-        ("ours.json --frequency 10% --frequency 5%", "--frequency is given twice; give it once"),
-        ("ours.json -x", "No such option '-x'"),
-        ("ours.json --samples 0", "samples is 0; give a whole number from 1 up"),
-        ("ours.json --samples 1e9", "samples is 1000000000; give at most 1000000"),
-        ("ours.json --samples ten", "'ten' is no whole number; give one, as 2 or 1e3"),
-        ("none.json", "none.json cannot be read"),
-        ("ours.json --output ours.json", "ours.json is a file; give a folder"),
-    ],
-)
-def test_what_cannot_be_is_told_in_one_line(call, folder, line, message):
-    code, out, err = call(f"{line} --quiet")
-    assert (code, out) == (2, "")
-    assert message in err
-    assert err.count("\n") == 1
-    assert {path.suffix for path in folder.iterdir()} == {".json"}
-
-
-@pytest.mark.parametrize(
     ("figure", "told"),
     [
         ("residual", "states residual"),
