@@ -92,7 +92,6 @@ def search(
         When the file to resume from is not a whole checkpoint.
     """
     # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
-    from quietarm.metaheuristics.algorithms.provenance import settings_of
     from quietarm.metaheuristics.objective.population import PopulationObjective
     from quietarm.metaheuristics.objective.problem import MoveProblem
     from quietarm.metaheuristics.runs.checkpoint import Keeper, KeptProblem, load_checkpoint
@@ -101,8 +100,8 @@ def search(
 
     profile = CycloidPolynomial() if profile is None else profile
     bound = profile.default_bound if bound is None else bound
-    method, chosen, asked = _chosen(algorithm, task, bound, population, generations, settings)
-    spec = SearchSpec(task, profile, method, asked, seed, settings_of(chosen))
+    method, chosen, asked, own = _chosen(algorithm, task, bound, population, generations, settings)
+    spec = SearchSpec(task, profile, method, asked, seed, own)
     objective = PopulationObjective(task, profile, threads=threads)
     problem, keeper, known = MoveProblem(objective, asked.bound), None, None
     if checkpoint is not None or resume is not None:
@@ -132,8 +131,8 @@ def _chosen(
     population: int | None,
     generations: int | None,
     settings: Mapping[str, object] | None,
-) -> tuple[str, Algorithm, SearchSettings]:
-    """Name, algorithm and settings, each checked; those that are not given are the preset's."""
+) -> tuple[str, Algorithm, SearchSettings, Mapping[str, object]]:
+    """Name, algorithm, what every method is asked, and its own settings, defaults as well."""
     if not isinstance(algorithm, str):
         if settings:
             raise ValueError("settings are set in the algorithm that you give, not beside it")
@@ -148,13 +147,15 @@ def _chosen(
     population = preset.population if population is None else population
     generations = preset.generations if generations is None else generations
     asked = SearchSettings(bound, population, generations)
-    return preset.name, preset.build(asked.population or 0, settings), asked
+    size = asked.population or 0
+    return preset.name, preset.build(size, settings), asked, preset.checked(size, settings)
 
 
 def _own(
     algorithm: Algorithm, bound: float | None, population: int | None, generations: int | None
-) -> tuple[str, Algorithm, SearchSettings]:
+) -> tuple[str, Algorithm, SearchSettings, Mapping[str, object]]:
     from quietarm.metaheuristics.algorithms.own import own_algorithm
+    from quietarm.metaheuristics.algorithms.provenance import settings_of
 
     chosen = own_algorithm(algorithm)
     method = type(chosen).__name__
@@ -163,7 +164,7 @@ def _own(
         raise ValueError("population is set in the algorithm that you give, not beside it")
     if generations is None:
         raise ValueError(f"give the number of generations for {method}")
-    return method, chosen, SearchSettings(bound, None, generations)
+    return method, chosen, SearchSettings(bound, None, generations), settings_of(chosen)
 
 
 def _required(bound: float | None, method: str) -> float:

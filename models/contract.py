@@ -168,6 +168,8 @@ def _called(plant: Plant, method: str, *arguments: object) -> list[Expression]:
             line = f" at line {inside.tb_lineno} of {Path(inside.tb_frame.f_code.co_filename).name}"
             if isinstance(error, RuntimeError | TypeError | FutureWarning):
                 remedy = _CASADIS
+        if isinstance(error, IndexError):
+            remedy = f"it says modes = {plant.modes}: set them to as many as its equations use"
         text = re.sub(r"^\S*\.[ch]pp:\d+: ", "", str(error).strip().partition("\n")[0])
         said = f"fails{line} ({type(error).__name__}: {text})"
         raise _wrong(plant, method, said, remedy) from None

@@ -11,6 +11,9 @@ import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import Field, field, fields
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any, ClassVar
 
 import numpy as np
@@ -199,6 +202,8 @@ def known_plants() -> dict[str, type[Plant]]:
     Returns
     -------
     dict
-        Class by name; a class is known from the moment its file is imported.
+        Class by name: those of the files of this package, and any whose file was imported.
     """
+    for module in iter_modules([str(Path(__file__).parent)]):
+        import_module(f"{__package__}.{module.name}")
     return dict(Plant._known)

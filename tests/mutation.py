@@ -49,14 +49,12 @@ TESTS = {
     "models/dual_link.py": ["models/test_dual_link.py", "models/test_drawing.py"],
     "models/arm_on_flexible_link.py": ["models/test_plants.py", "models/test_drawing.py"],
     "ocp/simulation/collocation.py": [
-        "ocp/simulation/test_collocation.py",
         "ocp/simulation/test_jerk.py",
         "ocp/simulation/test_rollout.py",
         "ocp/robustness/test_uncertain.py",
     ],
     "ocp/simulation/objective.py": [
-        "ocp/simulation/test_objective.py",
-        "ocp/simulation/test_energy_derivatives.py",
+        "ocp/simulation/test_energy.py",
         "ocp/simulation/test_rollout.py",
     ],
     "ocp/profiles/joint_profile.py": [
@@ -77,7 +75,6 @@ TESTS = {
         "ocp/simulation/test_resimulation.py",
         "ocp/simulation/test_third_opinion.py",
         "ocp/simulation/test_closed_forms.py",
-        "ocp/simulation/test_samples.py",
         "ocp/simulation/test_free_motions.py",
     ],
 }

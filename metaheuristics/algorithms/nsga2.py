@@ -63,35 +63,15 @@ class PaperNSGA2(NSGA2):
     def __init__(
         self, population: int = 200, crossover: SBX | None = None, mutation: PM | None = None
     ) -> None:
-        self._crossover = SBX(**CROSSOVER) if crossover is None else crossover
-        self._mutation = PM(**MUTATION) if mutation is None else mutation
-        self._size = whole("population", population, 2)
+        size = whole("population", population, 2)
         super().__init__(
-            pop_size=self._size,
-            n_offsprings=self._size,
+            pop_size=size,
+            n_offsprings=size,
             sampling=FloatRandomSampling(),
             selection=TournamentSelection(func_comp=binary_tournament, pressure=2),
-            crossover=self._crossover,
-            mutation=self._mutation,
+            crossover=SBX(**CROSSOVER) if crossover is None else crossover,
+            mutation=PM(**MUTATION) if mutation is None else mutation,
             survival=RankAndCrowding(crowding_func="cd"),
             eliminate_duplicates=ExactDuplicates(),
         )
         self.tournament_type = TOURNAMENT
-
-    @property
-    def settings(self) -> dict[str, Any]:
-        """The population and the operators, in numbers and words."""
-        return {
-            "population": self._size,
-            "sampling": "uniform in the box",
-            "selection": "binary tournament by constraints, dominance, crowding distance",
-            "crossover": f"SBX({_stated(self._crossover)})",
-            "mutation": f"PM({_stated(self._mutation)})",
-            "survival": "rank and crowding distance",
-            "duplicates": "none with equal coefficients",
-        }
-
-
-def _stated(operator: Any) -> str:
-    values = {name: getattr(operator, name).value for name in ("prob", "prob_var", "eta")}
-    return ", ".join(f"{name}={value:g}" for name, value in values.items())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -15,16 +16,15 @@ _RENAMED = {"pop_size": "population", "n_offsprings": "offspring"}
 
 
 def settings_of(algorithm: Algorithm) -> dict[str, Any]:
-    """The settings of an algorithm that was not run yet."""
+    """The settings of an algorithm of one's own that was not run yet."""
     own = getattr(algorithm, "settings", None)
     if isinstance(own, Mapping):
         return dict(own)
     base = vars(Algorithm()).keys()
     entries = {name: value for name, value in vars(algorithm).items() if name not in base}
-    found: dict[str, Any] = {_RENAMED.get(name, name): value for name, value in _plain(entries)}
     for holder in ("initialization", "mating"):
-        inner = entries.get(holder)
-        entries = {**(vars(inner) if hasattr(inner, "__dict__") else {}), **entries}
+        entries = {**getattr(entries.get(holder), "__dict__", {}), **entries}
+    found: dict[str, Any] = {_RENAMED.get(name, name): value for name, value in _plain(entries)}
     found.update((name, _named(entries[name])) for name in _OPERATORS if entries.get(name))
     directions = entries.get("ref_dirs")
     if isinstance(directions, np.ndarray):
@@ -33,20 +33,13 @@ def settings_of(algorithm: Algorithm) -> dict[str, Any]:
     return found
 
 
-def flat(settings: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Settings with those of an inner table beside the others."""
-    for name, value in settings.items():
-        if isinstance(value, Mapping):
-            yield from flat(value)
-        else:
-            yield name, value
-
-
 def _plain(entries: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """The entries that are numbers or words; what is None is not set, or not a setting."""
+    """The entries that are numbers, words or functions; None is not set, or not a setting."""
     for name, value in sorted(entries.items()):
         value = value.value if isinstance(value, Variable) else value
         value = value.item() if isinstance(value, np.generic) else value
+        value = value.__name__ if inspect.isfunction(value) else value
+        value = str(value) if isinstance(value, tuple) else value
         if isinstance(value, str | int | float) and not name.startswith("_"):
             yield name, value
 

@@ -205,7 +205,7 @@ class VEPSO(Algorithm):
     def settings(self) -> dict[str, Any]:
         """In plain numbers and words."""
         names = ("particles", "boundary", "velocity_limit", "archive_size", "iterations")
-        return {**{name: getattr(self, name) for name in names}, "rule": asdict(self.rule)}
+        return {**{name: getattr(self, name) for name in names}, **asdict(self.rule)}
 
 
 def _count_or_none(name: str, value: object, least: int) -> int | None:

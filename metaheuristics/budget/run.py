@@ -129,7 +129,6 @@ def _built(
     search: str, population: int | None, bound: float, given: Mapping[str, object] | None
 ) -> tuple[Algorithm | None, dict[str, Any]]:
     """The algorithm of a search, none where the gradient is alone, and its settings."""
-    from quietarm.metaheuristics.algorithms.provenance import flat, settings_of
     from quietarm.metaheuristics.runs.settings import SearchSettings
 
     if search == MULTISTART:
@@ -139,8 +138,8 @@ def _built(
     preset = PRESETS[search]
     population = preset.population if population is None else population
     SearchSettings(bound, population, preset.generations)  # refuses what is out of range
-    algorithm = preset.build(population, given)
-    return algorithm, {"bound": bound, **dict(flat(settings_of(algorithm)))}
+    asked = {"bound": bound, "population": population, **preset.checked(population, given)}
+    return preset.build(population, given), asked
 
 
 def _run(

@@ -8,7 +8,6 @@ from dataclasses import asdict, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.algorithms.provenance import flat
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.runs.loop import Loop
 from quietarm.metaheuristics.runs.progress import SearchProgress
@@ -51,7 +50,7 @@ def front_of(loop: Loop) -> Front:
         profile=spec.profile,
         points=verified_points(spec.task, spec.profile, loop.found()[0], threads),
         method=spec.method,
-        settings={**asdict(spec.settings), **dict(flat(spec.algorithm))},
+        settings={**asdict(spec.settings), **spec.algorithm},
         seed=spec.seed,
         reference=loop.reference,
         evaluations=loop.evaluations,

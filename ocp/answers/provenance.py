@@ -73,6 +73,11 @@ class SolveSettings:
             object.__setattr__(self, "guess", tuple(finite("guess", a) for a in self.guess))
 
 
+def digits(number: float) -> str:
+    """A number as text that gives it again: 1, 0.001, 0.30000000000000004."""
+    return repr(float(number)).removesuffix(".0")
+
+
 def settings_given(settings: Mapping[str, Setting]) -> dict[str, Setting]:
     """Settings by name, as an answer holds them; ValueError where no file could hold one."""
     for name, value in settings.items():

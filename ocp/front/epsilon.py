@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
+from quietarm.ocp.answers.provenance import SolveSettings, digits, number_of_points
 from quietarm.ocp.base.checks import positive
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.ocp.base.threads import one_at_a_time
@@ -133,7 +133,7 @@ def epsilon_front(
         found = [*found, *(failed if complete else []), *inner]
     complete = complete and whole and not late
     front = front_of(sweep, "epsilon", found, points, complete=complete, between=between)
-    extra = {"at": ", ".join(f"{residual:g}" for residual in at)} if at else {}
+    extra = {"at": ", ".join(map(digits, at))} if at else {}
     return replace(front, settings={**front.settings, **extra})
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
-from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
+from quietarm.ocp.answers.provenance import SolveSettings, digits, number_of_points
 from quietarm.ocp.base.checks import not_negative
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.front.answer import Front
@@ -73,8 +74,8 @@ def weighted_front(
     -------
     Front
         Method ``"weighted"``; figures by the independent integrator. Its `gaps` are the ranges of
-        the residual that no weight reaches, where the weights were not given. After Ctrl-C what was
-        found until then, with ``complete`` false.
+        the residual that no weight reaches, where the weights were not given; given ones stand in
+        ``settings["weights"]``. After Ctrl-C what was found until then, with ``complete`` false.
 
     Raises
     ------
@@ -104,7 +105,11 @@ def weighted_front(
         complete = False
     found, whole = sums.checked(interrupted=not complete)
     complete = complete and whole
-    return front_of(sweep, "weighted", found, points, gaps=sums.gaps, complete=complete)
+    front = front_of(sweep, "weighted", found, points, gaps=sums.gaps, complete=complete)
+    if chosen is None:
+        return front
+    stated = ", ".join(f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen)
+    return replace(front, settings={**front.settings, "weights": stated})
 
 
 def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:

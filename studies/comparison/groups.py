@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import reprlib
 from collections.abc import Sequence
 
 from quietarm.ocp import Front
@@ -13,20 +12,8 @@ from quietarm.studies.paper.tasks import task_difference
 from quietarm.studies.registry.methods import method_of
 
 
-def checked_names(names: Sequence[str], fronts: int) -> list[str]:
-    """What to call each of so many fronts."""
-    given = list(names)
-    if given and len(given) != fronts:
-        raise ValueError(f"names are {reprlib.repr(given)}; give one for each of {fronts} fronts")
-    return given or [f"front {i}" for i in range(1, fronts + 1)]
-
-
-def check_fronts(
-    fronts: Sequence[Front], names: Sequence[str], *, twice: bool = False, least: int = 2
-) -> None:
-    """Refuse fronts that cannot be compared."""
-    if len(fronts) < least:
-        raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given: give more")
+def check_alike(fronts: Sequence[Front], names: Sequence[str]) -> None:
+    """Refuse fronts without points, or of several tasks."""
     for front, name in zip(fronts, names, strict=True):
         if not front.points:
             raise ValueError(f"{name} has no finite point; leave it out, or search longer")
@@ -36,29 +23,28 @@ def check_fronts(
                 f"{name} is of another task than {names[0]}: its {difference}; compare fronts of "
                 "one task"
             )
-    for i, front in enumerate(fronts):
-        if not twice and front in fronts[:i]:
+
+
+def check_apart(fronts: Sequence[Front], names: Sequence[str]) -> None:
+    """Refuse a front that is given twice, and two of one name."""
+    for i, (front, name) in enumerate(zip(fronts, names, strict=True)):
+        if front in fronts[:i]:
             first = names[list(fronts).index(front)]
-            raise ValueError(f"{name_of_twin(names[i], first)}; give every front once")
-        if not twice and names[i] in names[:i]:
-            raise ValueError(f"{names[i]!r} is the name of two fronts; give each one of its own")
-
-
-def name_of_twin(name: str, first: str) -> str:
-    """Two names of one front, in words."""
-    return f"{name} is given twice" if name == first else f"{name} is the same front as {first}"
+            twin = "given twice" if name == first else f"the same front as {first}"
+            raise ValueError(f"{name} is {twin}; give every front once")
+        if name in names[:i]:
+            raise ValueError(f"{name!r} is the name of two fronts; give each one of its own")
 
 
 def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
     """Which fronts are runs of one method with one set of settings."""
     groups: dict[str, list[int]] = {}
     for i, front in enumerate(fronts):
-        groups.setdefault(json.dumps([front.method, _settings(front)], sort_keys=True), []).append(
-            i
-        )
+        key = json.dumps([front.method, _settings(front)], sort_keys=True)
+        groups.setdefault(key, []).append(i)
     firsts = [fronts[members[0]] for members in groups.values()]
     return {
-        _label(front, [o for o in firsts if o.method == front.method]): members
+        _label(front, [other for other in firsts if other.method == front.method]): members
         for front, members in zip(firsts, groups.values(), strict=True)
     }
 
@@ -71,15 +57,13 @@ def _settings(front: Front) -> dict[str, object]:
 
 def _label(front: Front, alike: Sequence[Front]) -> str:
     """The method, with the settings in which it differs from others of the same method."""
-    words = [method_of(front.method).label]
+    words, others = [method_of(front.method).label], [_settings(other) for other in alike]
     for name, value in _settings(front).items():
-        others = [_settings(other).get(name) for other in alike]
-        if any(other != value for other in others):
-            if name == "whole":
-                words += [] if value else ["interrupted"]
-            elif value is None:
-                words.append(f"no {name}")
-            else:
-                shown = f"{value:g}" if isinstance(value, float) else str(value)
-                words.append(f"{name} {shown}")
+        if all(other.get(name) == value for other in others):
+            continue
+        if name == "whole":
+            words += [] if value else ["interrupted"]
+        else:
+            shown = f"{value:g}" if isinstance(value, float) else str(value)
+            words.append(f"no {name}" if value is None else f"{name} {shown}")
     return ", ".join(words)

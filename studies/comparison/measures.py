@@ -16,7 +16,7 @@ from quietarm.ocp.base.checks import not_negative, positive, whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.robust import on_same_samples
 from quietarm.ocp.robustness.uncertain import on_assumed
-from quietarm.studies.comparison.groups import check_fronts, checked_names, grouped
+from quietarm.studies.comparison.groups import check_alike, check_apart, grouped
 from quietarm.studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
 from quietarm.studies.registry.methods import Method, method_of
 
@@ -130,13 +130,6 @@ class Comparison:
         certain = on_assumed(self.task) is self.task
         return "at rest" if certain else "at rest on the assumed plant"
 
-    def group(self, label: str) -> Group:
-        """The group of this label; KeyError where there is none."""
-        for group in self.groups:
-            if group.label == label:
-                return group
-        raise KeyError(label)
-
 
 def compare_fronts(
     fronts: Sequence[Front],
@@ -154,18 +147,21 @@ def compare_fronts(
     The indicators are moocore's. IGD+ and epsilon are measured against the points that none of any
     front dominates, thinned to even distances, so that the front of most points does not decide.
     """
-    names = checked_names(names, len(fronts))
-    fill, least = whole("fill", fill, 0, MOST_FILL, "each is a motion"), whole("least", least, 1)
+    names = names or [f"front {i}" for i in range(1, len(fronts) + 1)]
+    if len(names) != len(fronts):
+        raise ValueError(f"names are {names}; give one for each of {len(fronts)} fronts")
+    if len(fronts) < least:
+        raise ValueError(f"a comparison takes two fronts or more; {len(fronts)} given: give more")
+    fill = whole("fill", fill, 0, MOST_FILL, "each is a motion")
     levels = [positive("level", level, "m") for level in levels]
     if not levels:
         raise ValueError("no levels are given; give one residual in m or more, as [1e-3]")
     if floor is not None:
         floor = not_negative("floor", floor, "J")
     given = on_same_samples([*fronts, reference] if reference else fronts)
+    check_alike(given, [*names, reference_name][: len(given)])
     fronts, reference = given[: len(fronts)], given[-1] if reference else None
-    check_fronts(fronts, names, least=least)
-    if reference is not None:
-        check_fronts([fronts[0], reference], [names[0], reference_name], twice=True)
+    check_apart(fronts, names)
     found, between = [objectives(front) for front in fronts], [filled(f, fill) for f in fronts]
     best_front = best_of(between)
     known = best_front if reference is None else filled(reference, fill)
@@ -179,18 +175,18 @@ def compare_fronts(
         return Measured(
             name=names[i],
             front=fronts[i],
-            between=_frozen(between[i]),
-            hypervolume=_share(between[i] / corner),
-            hypervolume_found=_share(found[i] / corner),
+            between=between[i],
+            hypervolume=float(moocore.hypervolume(between[i] / corner, ref=[1.0, 1.0])),
+            hypervolume_found=float(moocore.hypervolume(found[i] / corner, ref=[1.0, 1.0])),
             igd_plus=float(moocore.igd_plus(scaled, ref=stations)),
             epsilon=float(moocore.epsilon_additive(scaled, ref=stations)),
-            energies=_floats(energies),
-            gaps=_floats(energies / best - 1),
-            gaps_between=_floats(within(between[i], levels) / best - 1),
+            energies=tuple(energies.tolist()),
+            gaps=tuple((energies / best - 1).tolist()),
+            gaps_between=tuple((within(between[i], levels) / best - 1).tolist()),
         )
 
     groups = tuple(
-        Group(label, tuple(measured(i) for i in members), *_surfaces([found[i] for i in members]))
+        Group(label, tuple(map(measured, members)), *_surfaces([found[i] for i in members]))
         for label, members in grouped(fronts).items()
     )
     return Comparison(
@@ -201,7 +197,7 @@ def compare_fronts(
         extent=(float(extent[0]), float(extent[1])),
         levels=tuple(levels),
         best_front=_frozen(best_front),
-        best=_floats(best),
+        best=tuple(best.tolist()),
         coverage=_frozen([[_coverage(one, other) for other in groups] for one in groups]),
         fill=fill,
         floor=floor,
@@ -219,19 +215,11 @@ def _coverage(one: Group, other: Group) -> float:
     """Median over the pairs of runs of the share of `other` that `one` dominates or equals."""
     if one is other:
         return np.nan
-    shares: list[float] = []
-    for a, b in product(one.runs, other.runs):
-        mine = within(a.between, b.front.residuals, np.inf)
-        shares.append(float(np.mean(mine <= b.front.energies)))
+    shares = [
+        np.mean(within(a.between, b.front.residuals, np.inf) <= b.front.energies)
+        for a, b in product(one.runs, other.runs)
+    ]
     return float(np.median(shares))
-
-
-def _share(scaled: Array) -> float:
-    return float(moocore.hypervolume(scaled, ref=[1.0, 1.0]))
-
-
-def _floats(values: Array) -> tuple[float, ...]:
-    return tuple(float(value) for value in values)
 
 
 def _frozen(values: object) -> Array:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import isfinite
+from collections.abc import Sequence
 
 from quietarm.metaheuristics.ensemble import Spread
-from quietarm.studies.comparison.measures import Comparison, Group
+from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.display.words import millimetres
-from quietarm.studies.report.table import Cell, Column, Table
+from quietarm.studies.report.prose import told
+from quietarm.studies.report.table import Cell, Line, Table, table_of
 
-_ENERGY, _SHARE, _PERCENT = "{:.5g}".format, "{:.4f}".format, "{:.2f}".format
-_MISS = "{:.2g}".format
+_ENERGY, _SHARE, _PERCENT, _COUNT, _MISS = "{:.5g}", "{:.4f}", "{:.2f}", "{:.0f}", "{:.2g}"
 
 
 def tables(comparison: Comparison) -> dict[str, Table]:
@@ -24,173 +23,114 @@ def tables(comparison: Comparison) -> dict[str, Table]:
 
 
 def _fronts(comparison: Comparison) -> Table:
-    columns = (
-        Column("method"),
-        Column("bound on coefficients", "{:g}".format),
-        Column("coefficients"),
-        Column("seeds"),
-        Column("points", "{:.0f}".format),
-        Column("hypervolume (more is better)", _SHARE),
-        *_quartile_columns(_SHARE),
-        Column("  as found", _SHARE),
-        Column("IGD+ (less is better)", _MISS),
-        *_quartile_columns(_MISS),
-        Column("epsilon (less is better)", _MISS),
-        *_quartile_columns(_MISS),
-        Column("candidates", "{:.0f}".format),
-        Column("solver iterations", "{:.0f}".format),
-        Column("time of a run [s]", "{:.1f}".format),
-    )
-    rows: list[list[Cell]] = []
-    filling = comparison.fill > 0
-    for group in comparison.groups:
-        front = group.runs[0].front
-        bound, several = front.settings.get("bound"), len(group.runs) > 1
-        row: list[Cell] = [group.label, "none" if bound is None else bound, front.profile.size]
-        row += [len(group.runs) if several else None, _points(group)]
-        for figure in ("hypervolume", "igd_plus", "epsilon"):
-            row += _quartiles(group.spread(figure), several)
-            if figure == "hypervolume":
-                row.append(group.spread("hypervolume_found").median if filling else None)
-        row += [
-            group.spread(f"front.{work}").median or None for work in ("evaluations", "iterations")
-        ]
-        row.append(group.spread("front.seconds").median)
-        rows.append(row)
-    return Table("Fronts", columns, rows)
+    groups = comparison.groups
+    fronts = [group.runs[0].front for group in groups]
+    bounds = [front.settings.get("bound") for front in fronts]
+    points = [Spread.of([len(run.front.points) for run in group.runs]) for group in groups]
 
+    def medians(figure: str) -> list[float]:
+        return [group.spread(figure).median for group in groups]
 
-def _points(group: Group) -> float:
-    return Spread.of([len(run.front.points) for run in group.runs]).median
+    def spreads(heading: str, form: str, figure: str) -> list[Line]:
+        return _quartiles(heading, form, [group.spread(figure) for group in groups])
+
+    columns: list[Line] = [
+        ("method", "", [group.label for group in groups]),
+        ("bound on coefficients", "{:g}", ["none" if b is None else b for b in bounds]),
+        ("coefficients", "", [front.profile.size for front in fronts]),
+        ("seeds", "", [len(group.runs) if len(group.runs) > 1 else None for group in groups]),
+        ("points", _COUNT, [spread.median for spread in points]),
+        *spreads("hypervolume (more is better)", _SHARE, "hypervolume"),
+        *([("  as found", _SHARE, medians("hypervolume_found"))] if comparison.fill else []),
+        *spreads("IGD+ (less is better)", _MISS, "igd_plus"),
+        *spreads("epsilon (less is better)", _MISS, "epsilon"),
+        ("candidates", _COUNT, [median or None for median in medians("front.evaluations")]),
+        ("solver iterations", _COUNT, [median or None for median in medians("front.iterations")]),
+        ("time of a run [s]", "{:.1f}", medians("front.seconds")),
+    ]
+    return table_of("Fronts", columns)
 
 
 def _energies(comparison: Comparison) -> Table:
-    columns = [Column("method")]
-    for level in comparison.levels:
+    groups = comparison.groups
+    columns: list[Line] = [("method", "", [group.label for group in groups])]
+    for i, level in enumerate(comparison.levels):
         where = f"at {millimetres(level)}"
-        columns += [
-            Column(f"energy {where} [J]", _ENERGY),
-            *_quartile_columns(_ENERGY),
-            Column(f"  above the best {where} [%]", _PERCENT),
-            Column("  with motions between its points", _PERCENT),
-            Column("  seeds that reach it"),
+        energies = [group.spread("energies", i) for group in groups]
+        (heading, form, medians), *quartiles = _quartiles(f"energy {where} [J]", _ENERGY, energies)
+        stated = [m if e.count else "not reached" for m, e in zip(medians, energies, strict=True)]
+        gaps = [100 * group.spread("gaps", i).median for group in groups]
+        between = [
+            100 * group.spread("gaps_between", i).median
+            if comparison.fill and group.reached(i)
+            else None
+            for group in groups
         ]
-    rows: list[list[Cell]] = []
-    for group in comparison.groups:
-        row: list[Cell] = [group.label]
-        for i in range(len(comparison.levels)):
-            row += _at_level(group, i, comparison.fill > 0)
-        rows.append(row)
-    return Table("Least energy within a residual", columns, rows)
+        seeds = [f"{e.count} of {e.seeds}" if 0 < e.count < e.seeds else None for e in energies]
+        columns += [
+            (heading, form, stated),
+            *quartiles,
+            (f"  above the best {where} [%]", _PERCENT, gaps),
+            ("  with motions between its points", _PERCENT, between),
+            ("  seeds that reach it", "", seeds),
+        ]
+    return table_of("Least energy within a residual", columns)
 
 
-def _at_level(group: Group, level: int, filling: bool) -> list[Cell]:
-    reached, runs = group.reached(level), len(group.runs)
-    if not reached:
-        return ["not reached", None, None, None, None, None]
-    energy = group.spread("energies", level)
-    gap = 100 * group.spread("gaps", level).median
+def _quartiles(heading: str, form: str, spreads: Sequence[Spread]) -> list[Line]:
+    """The median, and the quartiles where there are several seeds."""
+    lower = [spread.lower if spread.count > 1 else None for spread in spreads]
+    upper = [spread.upper if spread.count > 1 else None for spread in spreads]
     return [
-        *_quartiles(energy, reached > 1),
-        gap,
-        100 * group.spread("gaps_between", level).median if filling else None,
-        f"{reached} of {runs}" if reached < runs else None,
+        (heading, form, [spread.median for spread in spreads]),
+        ("  lower quartile of the seeds", form, lower),
+        ("  upper quartile", form, upper),
     ]
 
 
 def _coverage(comparison: Comparison) -> Table:
     labels = [group.label for group in comparison.groups]
-    columns = [
-        Column("points beaten or equalled [%]"),
-        *(Column(f"  by {label}", "{:.0f}".format) for label in labels),
-    ]
-    rows: list[list[Cell]] = [
-        [label, *(100 * share if isfinite(share) else None for share in shares)]
-        for label, shares in zip(labels, comparison.coverage.T.tolist(), strict=True)
-    ]
-    return Table("Coverage", columns, rows)
+    columns: list[Line] = [("points beaten or equalled [%]", "", labels)]
+    for label, shares in zip(labels, 100 * comparison.coverage, strict=True):
+        columns.append((f"  by {label}", _COUNT, shares.tolist()))
+    return table_of("Coverage", columns)
 
 
 def runs_table(comparison: Comparison) -> Table:
     """Every run with all of its figures, for CSV."""
-    levels = [f"{1e3 * level:g}mm" for level in comparison.levels]
-    names = [
-        "name", "label", "method", "seed", "bound", "coefficients", "points", "hypervolume",
-        "hypervolume_found", "igd_plus", "epsilon",
-        *(f"{name}_at_{at}" for name in ("energy_J", "gap", "gap_between") for at in levels),
-        "evaluations", "iterations", "seconds", "complete",
-    ]  # fmt: skip
-    rows: list[list[Cell]] = []
-    for group in comparison.groups:
-        for run in group.runs:
-            front, figures = run.front, (*run.energies, *run.gaps, *run.gaps_between)
-            row: list[Cell] = [run.name, group.label, front.method, front.seed]
-            row += [front.settings.get("bound"), front.profile.size, len(front.points)]
-            row += [run.hypervolume, run.hypervolume_found, run.igd_plus, run.epsilon]
-            row += [figure if isfinite(figure) else None for figure in figures]
-            row += [
-                front.evaluations,
-                front.iterations,
-                front.seconds,
-                "yes" if front.complete else "no",
+    runs = [(group.label, run, run.front) for group in comparison.groups for run in group.runs]
+    columns: dict[str, Sequence[Cell]] = {
+        "name": [run.name for _, run, _ in runs],
+        "label": [label for label, _, _ in runs],
+        "method": [front.method for *_, front in runs],
+        "seed": [front.seed for *_, front in runs],
+        "bound": [front.settings.get("bound") for *_, front in runs],
+        "coefficients": [front.profile.size for *_, front in runs],
+        "points": [len(front.points) for *_, front in runs],
+    }
+    for figure in ("hypervolume", "hypervolume_found", "igd_plus", "epsilon"):
+        columns[figure] = [getattr(run, figure) for _, run, _ in runs]
+    for name, figure in (
+        ("energy_J", "energies"),
+        ("gap", "gaps"),
+        ("gap_between", "gaps_between"),
+    ):
+        for i, level in enumerate(comparison.levels):
+            columns[f"{name}_at_{1e3 * level:g}mm"] = [
+                getattr(run, figure)[i] for _, run, _ in runs
             ]
-            rows.append(row)
-    return Table("Runs", [Column(name) for name in names], rows)
+    for figure in ("evaluations", "iterations", "seconds"):
+        columns[figure] = [getattr(front, figure) for *_, front in runs]
+    columns["complete"] = ["yes" if front.complete else "no" for *_, front in runs]
+    return table_of("Runs", [(name, "", cells) for name, cells in columns.items()])
 
 
 def how_to_read(comparison: Comparison) -> list[str]:
     """What the figures of any comparison mean, a sentence or two each."""
-    lines = [
-        "A front is read as a staircase: its energy at a residual is the least that was found with "
-        "that residual or less."
-    ]
-    if comparison.fill:
-        lines[0] += (
-            " The steps of a front of few points would count against it. So every front is "
-            "filled: between neighbouring points, motions with interpolated coefficients are "
-            f"evaluated, about {comparison.fill} for each front. The indicators, and the best that "
-            "energies are compared with, are those of filled fronts."
-        )
-    else:
-        lines[0] += (
-            " Motions between points do not count, so a front of few points loses by its steps."
-        )
-    lines.append(
-        "Coverage: share of the points found that the other front, filled, dominates or equals."
-    )
-    if any(len(group.runs) > 1 for group in comparison.groups):
-        lines.append(
-            "For several seeds the tables show the median over those that reach the residual (for "
-            "two, their mean); the picture shows what at least half of the seeds reach (for two, "
-            "the better one)."
-        )
-    return lines
+    several = any(len(group.runs) > 1 for group in comparison.groups)
+    return told("comparison/reading.txt", fill=comparison.fill, several=several)
 
 
 def units(comparison: Comparison) -> list[str]:
     """What this comparison's figures are measured in and against, a sentence or two each."""
-    (residual, energy), (length, joules) = comparison.corner, comparison.extent
-    lines = [
-        f"Hypervolume: share of the box up to {millimetres(residual)} and {energy:.4g} J, the same "
-        "for all, that a front dominates.",
-        f"IGD+ and (additive) epsilon are measured against {comparison.reference}, thinned to even "
-        "distances. Both objectives are scaled: 1 is the extent of that front, "
-        f"{millimetres(length)} or {joules:.4g} J. IGD+ is the mean distance by which a front "
-        "misses it, epsilon the least shift in both objectives that makes up for the worst miss.",
-    ]
-    if comparison.floor is not None:
-        lines.append(
-            "Floor: the least energy found over all joint motions that arrive "
-            f"{comparison.of_floor}, not of polynomials only, is {comparison.floor:.4g} J. A front "
-            "may go below it where it leaves a residual."
-        )
-    return lines
-
-
-def _quartile_columns(form: Callable[[float], str]) -> tuple[Column, Column]:
-    return Column("  lower quartile of the seeds", form), Column("  upper quartile", form)
-
-
-def _quartiles(spread: Spread, several: bool) -> list[Cell]:
-    """The median, and the quartiles where there are several seeds."""
-    return [spread.median, *([spread.lower, spread.upper] if several else [None, None])]
+    return told("comparison/units.txt", one=comparison)

@@ -45,9 +45,9 @@ class Landscape(Saved):
     boxes: tuple[tuple[Positive, float | None], ...]
 
     @property
-    def key(self) -> str:
-        """What it is kept under."""
-        return self.problem
+    def place(self) -> str:
+        """Its file in the folder of a contest."""
+        return f"landscape/{self.problem}.json"
 
 
 def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
@@ -66,6 +66,7 @@ def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
     cheapest = sweep.best([places[energies.argmin()]], sweep.ask()).coefficients
     drawn = random.uniform(*box, (CANDIDATES, problem.profile.size))
     costs = PopulationObjective(problem.task, problem.profile)(drawn).energy
+    far = np.linalg.norm((drawn - cheapest) / width, axis=1)
     return Landscape(
         problem=problem.name,
         starts=STARTS,
@@ -73,7 +74,7 @@ def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
         best=float((energies <= lowest * (1 + _SAME)).sum()) / STARTS,
         minima=_different(energies),
         correlation=_correlation(energies, (places - places[energies.argmin()]) / width),
-        candidates=float(np.corrcoef(costs, _length((drawn - cheapest) / width))[0, 1]),
+        candidates=float(np.corrcoef(costs, far)[0, 1]),
         boxes=tuple((share, _in_box(problem, share, float(lowest))) for share in BOXES),
     )
 
@@ -84,22 +85,17 @@ def _different(energies: Array) -> int:
     return 1 + int((np.diff(ordered) > _SAME * ordered[:-1]).sum())
 
 
-def _length(steps: Array) -> Array:
-    return np.linalg.norm(steps, axis=1)
-
-
 def _correlation(energies: Array, steps: Array) -> float | None:
     """Of energies and lengths of the steps to the best; None where all are one minimum."""
     if _different(energies) == 1:
         return None
-    return float(np.corrcoef(energies, _length(steps))[0, 1])
+    return float(np.corrcoef(energies, np.linalg.norm(steps, axis=1))[0, 1])
 
 
 def _in_box(problem: NamedProblem, share: float, own: float) -> float | None:
+    bound = share * problem.bound
     try:
-        plan = plan_move(
-            problem.task, problem.profile, residual_limit=LEVEL, bound=share * problem.bound
-        )
+        plan = plan_move(problem.task, problem.profile, residual_limit=LEVEL, bound=bound)
     except QuietarmError:
         return None
     return plan.energy / own

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import astuple, dataclass
 from functools import cached_property
+from itertools import groupby
 from math import inf
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.budget.record import CORNER
-from quietarm.metaheuristics.ensemble import Spread
+from quietarm.metaheuristics.budget.record import CORNER, Visits
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.comparison.staircase import objectives, within
-from quietarm.studies.contest.imported import Imported
 from quietarm.studies.contest.landscape import Landscape
+from quietarm.studies.contest.names import label_of
 from quietarm.studies.contest.problems import Yardstick
-from quietarm.studies.contest.runs import Run
-from quietarm.studies.contest.store import Store
+from quietarm.studies.contest.store import Run, Store
 
 Array = NDArray[np.float64]
-_Kind = TypeVar("_Kind", Run, Imported)
 TARGETS = (1e-2, 1e-3)
 """Shares of the exact front's hypervolume that may be missing for a target to count as reached."""
 _TIMES = 120
@@ -29,16 +26,28 @@ _PLACES = 3000
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
-    """What the runs of one method on one problem ended with; all that is known of other tools'."""
+class Field:
+    """All runs of one method on one problem; of another tool's only the ends are known."""
 
     method: str
     yardstick: Yardstick
-    runs: tuple[Run, ...] | tuple[Imported, ...]
+    runs: tuple[Run, ...]
+
+    @property
+    def label(self) -> str:
+        """What the method is called in tables and pictures."""
+        return label_of(self.method)
+
+    @property
+    def own(self) -> bool:
+        """Whether they were run here, so that what they had found on the way is known."""
+        return all(run.file is None for run in self.runs)
 
     @cached_property
     def final(self) -> Array:
         """Share of the exact front's hypervolume that is missing at the end, shape (runs,)."""
+        if self.own:
+            return self.missing[:, -1]
         scale = self.yardstick.scale
         volumes = [scale.hypervolume(objectives(run.front)) for run in self.runs]
         return 1.0 - np.array(volumes) / self.yardstick.hypervolume
@@ -60,8 +69,11 @@ class Outcome:
         Shape (runs, levels); infinite where a run has no motion within a level.
         """
         exact = within(objectives(self.yardstick.front), LEVELS)
-        found = [within(objectives(run.front), LEVELS, inf) for run in self.runs]
-        return np.array(found) / exact - 1
+        return self.stairs(np.array(LEVELS)) / exact - 1
+
+    def stairs(self, residuals: Array) -> Array:
+        """Least energy [J] of every run within residuals, shape (runs, residuals)."""
+        return np.array([within(objectives(run.front), residuals, inf) for run in self.runs])
 
     @cached_property
     def missing_by_thirds(self) -> Array:
@@ -74,18 +86,11 @@ class Outcome:
         found = [_over_thirds(scale.scaled(objectives(run.front))) for run in self.runs]
         return 1.0 - np.array(found) / exact
 
-
-@dataclass(frozen=True, eq=False)
-class Field(Outcome):
-    """All runs of one method on one problem, with what they had found on the way."""
-
-    runs: tuple[Run, ...]
-
     @cached_property
     def evaluations(self) -> NDArray[np.int64]:
         """Evaluations of the marks that all runs reached, shape (marks,)."""
-        longest = min((run.marks for run in self.runs), key=len)
-        return np.array([mark.evaluations for mark in longest], dtype=np.int64)
+        shortest = min((run.marks for run in self.runs), key=len)
+        return np.array([mark.evaluations for mark in shortest], dtype=np.int64)
 
     @cached_property
     def missing(self) -> Array:
@@ -101,21 +106,19 @@ class Field(Outcome):
         return np.array([[mark.seconds for mark in run.marks[:count]] for run in self.runs])
 
     @cached_property
-    def final(self) -> Array:
-        """Missing share at the last mark, shape (runs,)."""
-        return self.missing[:, -1]
-
-    @cached_property
     def visited(self) -> Array:
         """Share of the feasible candidates in each third and beyond, shape (runs, 4)."""
-        counts = np.array([astuple(run.visits) for run in self.runs], dtype=float)
+        counts = np.array([astuple(run.visits or Visits()) for run in self.runs], dtype=float)
         return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
 
     def hits(self, target: float) -> Array:
-        """Evaluations after which a target was first seen reached, shape (runs,); else infinite.
+        """Evaluations after which a target was first seen reached, shape (runs,).
 
-        Seen at the marks: up to 5 % later than it was reached.
+        Seen at the marks: up to 5 % later than it was reached. Infinite where it was not, and where
+        only the end is known.
         """
+        if not self.own:
+            return np.full(len(self.runs), inf)
         reached = self.missing <= target
         first = self.evaluations[reached.argmax(axis=1)].astype(float)
         return np.where(reached.any(axis=1), first, inf)
@@ -124,7 +127,7 @@ class Field(Outcome):
         """The expected running time to a target, as COCO defines it [evaluations].
 
         The evaluations that all runs spent until they reached it, or in all where they did not,
-        over the number of those that did; infinite where none did [1]_.
+        over the number of those that did; infinite where none did.
         """
         hits = self.hits(target)
         reached = np.isfinite(hits)
@@ -135,20 +138,20 @@ class Field(Outcome):
 
     def after_times(self, times: Array) -> Array:
         """Missing share after times [s], shape (runs, times); 1 before the first mark."""
-        rows = list[Array]()
-        for seconds, missing in zip(self.seconds, self.missing, strict=True):
-            count = np.searchsorted(seconds, times, side="right")
-            rows.append(np.where(count > 0, missing[np.maximum(count - 1, 0)], 1.0))
-        return np.array(rows)
+        return np.array(
+            [
+                np.append(1.0, missing)[np.searchsorted(seconds, times, side="right")]
+                for seconds, missing in zip(self.seconds, self.missing, strict=True)
+            ]
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Arena:
-    """A problem with the runs of all methods on it."""
+    """A problem with the runs of all methods on it, results from elsewhere last."""
 
     yardstick: Yardstick
     fields: tuple[Field, ...]
-    imports: tuple[Outcome, ...] = ()
     landscape: Landscape | None = None
 
     @property
@@ -157,43 +160,51 @@ class Arena:
         return self.yardstick.problem
 
     @property
-    def outcomes(self) -> tuple[Outcome, ...]:
-        """Of all methods."""
-        return *self.fields, *self.imports
+    def own(self) -> list[Field]:
+        """Those that were run here."""
+        return [field for field in self.fields if field.own]
 
     @property
-    def alike(self) -> tuple[Outcome, ...]:
+    def imports(self) -> list[Field]:
+        """Results from elsewhere."""
+        return [field for field in self.fields if not field.own]
+
+    @property
+    def alike(self) -> list[Field]:
         """Those that are compared by tests: of runs with one number of evaluations, known here."""
-        budgets = {budget for field in self.fields for budget in field.budgets}
-        return *self.fields, *(one for one in self.imports if one.budgets == budgets)
+        budgets = {budget for field in self.own for budget in field.budgets}
+        return [field for field in self.fields if field.own or field.budgets == budgets]
+
+    @property
+    def best(self) -> Field:
+        """The one whose middle run ends nearest to the exact front."""
+        return min(self.alike, key=lambda field: field.middle)
 
     @cached_property
     def times(self) -> Array:
         """Times [s] at even distances on a logarithmic scale, from the first mark to the last."""
-        first = min(field.seconds[:, 0].min() for field in self.fields)
-        last = max(field.seconds[:, -1].max() for field in self.fields)
+        first = min(field.seconds[:, 0].min() for field in self.own)
+        last = max(field.seconds[:, -1].max() for field in self.own)
         return np.geomspace(max(first, 1e-4), max(last, 2e-4), _TIMES)
 
 
 def arenas_of(store: Store) -> tuple[Arena, ...]:
     """The problems with runs, in the order of their names; methods in that of theirs."""
-    runs = [run for _, run in sorted(store.runs.items())]
-    imports = [run for _, run in sorted(store.imports.items())]
-    arenas = list[Arena]()
-    for problem in dict.fromkeys(run.problem for run in runs):
-        yardstick = store.yardsticks[problem]
-        fields = [Field(name, yardstick, own) for name, own in _by_method(runs, problem)]
-        given = [Outcome(name, yardstick, own) for name, own in _by_method(imports, problem)]
-        landscape = store.landscapes.get(problem)
-        arenas.append(Arena(yardstick, tuple(fields), tuple(given), landscape))
+
+    def order(run: Run) -> tuple[str, bool, str, int, str]:
+        return run.problem, bool(run.file), run.method, run.front.seed or 0, run.file or ""
+
+    runs, arenas = sorted(store.of(Run), key=order), list[Arena]()
+    landscapes = {one.problem: one for one in store.of(Landscape)}
+    for problem, yardstick in sorted(store.yardsticks.items()):
+        here = [run for run in runs if run.problem == problem]
+        fields = tuple(
+            Field(method, yardstick, tuple(own))
+            for (_, method), own in groupby(here, key=lambda run: (bool(run.file), run.method))
+        )
+        if any(field.own for field in fields):
+            arenas.append(Arena(yardstick, fields, landscapes.get(problem)))
     return tuple(arenas)
-
-
-def _by_method(runs: Iterable[_Kind], problem: str) -> Iterable[tuple[str, tuple[_Kind, ...]]]:
-    """The runs on a problem, one method after another."""
-    own = [run for run in runs if run.problem == problem]
-    for method in dict.fromkeys(run.method for run in own):
-        yield method, tuple(run for run in own if run.method == method)
 
 
 def _over_thirds(scaled: Array) -> Array:
@@ -206,7 +217,7 @@ def _over_thirds(scaled: Array) -> Array:
 
 def methods_in(arenas: Iterable[Arena]) -> tuple[str, ...]:
     """Names of the methods that have runs on any problem, each once."""
-    return tuple(dict.fromkeys(one.method for arena in arenas for one in arena.outcomes))
+    return tuple(dict.fromkeys(field.method for arena in arenas for field in arena.fields))
 
 
 def quartiles(rows: Array) -> Array:
@@ -215,8 +226,3 @@ def quartiles(rows: Array) -> Array:
     Values that exist rather than means of two, so that one infinite run makes no other infinite.
     """
     return np.quantile(rows, [0.25, 0.5, 0.75], axis=0, method="inverted_cdf")
-
-
-def spread(values: Sequence[float] | Array) -> Spread:
-    """Quartiles of the finite values, with how many there are."""
-    return Spread.of([float(value) for value in values])

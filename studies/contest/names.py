@@ -32,11 +32,6 @@ def method_in(name: str) -> str:
     return name.partition("(")[0]
 
 
-def sets_population(name: str) -> bool:
-    """Whether the name says how many individuals there are."""
-    return bool(re.search(rf"[( ]{POPULATION}=", name))
-
-
 def is_own(name: str) -> bool:
     """Whether it is the name of a method that is run here, not of one whose results came."""
     try:
@@ -53,23 +48,18 @@ def label_of(name: str) -> str:
     method = method_in(name)
     search, helped = parts_of(method)
     label = "gradient, random starts" if search == MULTISTART else method_of(search).label
-    given = name.removeprefix(method)
-    return f"{label}{_HELPED[helped]} {given}" if given else f"{label}{_HELPED[helped]}"
+    return f"{label}{_HELPED[helped]} {name.removeprefix(method)}".strip()
 
 
-def name_given(text: str) -> str:
+def name_given(name: str) -> str:
     """A name for a method whose results come from elsewhere."""
-    name = text.strip()
     if not _GIVEN.fullmatch(name):
         raise ValueError(
             f"the name {name!r} does not do for a method; give up to 60 letters, digits, spaces "
             "and . , + / ( ) = - with a letter or digit first"
         )
     if is_own(name):
-        raise ValueError(
-            f"{name!r} is a method that is run here; name what others found differently, as "
-            f"{name + ' of mine'!r}"
-        )
+        raise ValueError(f"{name!r} is a method that is run here; give another name")
     return name
 
 

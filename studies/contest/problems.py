@@ -23,23 +23,18 @@ _FILL = 10_000
 
 def problems_of(names: Sequence[str]) -> tuple[NamedProblem, ...]:
     """Problems by their names; the paper's six conditions where none is given."""
-    for name in names:
-        if problem_of(name).peak:
+    if not names:
+        wanted = [(case.task, CycloidPolynomial(), case.bound) for case in CONDITIONS]
+        every = [problem for problem in PROBLEMS.values() if not problem.peak]
+        return tuple(one for one in every if (one.task, one.profile, one.bound) in wanted)
+    problems = tuple(map(problem_of, dict.fromkeys(names)))
+    for problem in problems:
+        if problem.peak:
             raise ValueError(
-                f"{name} has a third objective, and a contest compares residual and energy alone; "
-                "leave it out"
+                f"{problem.name} has a third objective, and a contest compares residual and "
+                "energy alone; leave it out"
             )
-    return tuple(map(problem_of, dict.fromkeys(names))) or the_papers()
-
-
-def the_papers() -> tuple[NamedProblem, ...]:
-    """The problems that are the paper's six conditions."""
-    wanted = [(case.task, CycloidPolynomial(), case.bound) for case in CONDITIONS]
-    return tuple(
-        problem
-        for problem in PROBLEMS.values()
-        if not problem.peak and (problem.task, problem.profile, problem.bound) in wanted
-    )
+    return problems
 
 
 @dataclass(frozen=True)
@@ -55,11 +50,6 @@ class Yardstick(Saved):
     scale: Scale
     hypervolume: Positive
 
-    @property
-    def key(self) -> str:
-        """What it is kept under."""
-        return self.problem
-
     @classmethod
     def of(cls, problem: NamedProblem) -> Yardstick:
         """The yardstick of a problem; ValueError where its exact front is a single motion."""
@@ -67,6 +57,11 @@ class Yardstick(Saved):
         scale = Scale.of(front)
         volume = scale.hypervolume(filled(front, _FILL))
         return cls(problem.name, problem.bound, front, scale, volume)
+
+    @property
+    def place(self) -> str:
+        """Its file in the folder of a contest."""
+        return f"exact/{self.problem}.json"
 
     @cached_property
     def filled(self) -> NDArray[np.float64]:

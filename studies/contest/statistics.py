@@ -15,15 +15,14 @@ Array = NDArray[np.float64]
 LEAST_RUNS = 5
 """With fewer seeds, or fewer problems, no test could find anything."""
 ALPHA = 0.05
-_EXTRA = "statistics need scipy: pip install 'quietarm[contest]'; they are left out"
 
 
 @dataclass(frozen=True)
 class Ranking:
     """Mean ranks of methods, and how far apart they must be to tell them apart."""
 
-    what: str
-    blocks: int
+    on: str
+    blocks: str
     methods: tuple[str, ...]
     ranks: tuple[float, ...]
     statistic: float
@@ -63,18 +62,18 @@ class Pair:
 def why_none(arenas: Sequence[Arena]) -> str:
     """Why there are no statistics at all, in a line; empty where there are some."""
     if find_spec("scipy") is None:
-        return _EXTRA
-    if len({one.method for arena in arenas for one in arena.alike}) < 2:
+        return "statistics need scipy: pip install 'quietarm[contest]'; they are left out"
+    if len({field.method for arena in arenas for field in arena.alike}) < 2:
         return "one method alone is not compared: statistics are left out"
     if not any(len(_common_seeds(arena)) >= LEAST_RUNS for arena in arenas):
         return f"fewer than {LEAST_RUNS} runs of each method: statistics are left out"
     return ""
 
 
-def ranking(values: Array, methods: Sequence[str], what: str) -> Ranking:
+def ranking(values: Array, methods: Sequence[str], what: str, on: str = "") -> Ranking:
     """Rank methods within each block, and test whether they differ.
 
-    Friedman's test, and Nemenyi's critical difference as Demsar has it [1]_.
+    Friedman's test, and Nemenyi's critical difference as Demsar has it.
     """
     from scipy import stats
 
@@ -85,8 +84,8 @@ def ranking(values: Array, methods: Sequence[str], what: str) -> Ranking:
     quantile = stats.studentized_range.ppf(1 - ALPHA, count, np.inf) / np.sqrt(2)
     order: list[int] = np.argsort(means, kind="stable").tolist()
     return Ranking(
-        what=what,
-        blocks=blocks,
+        on=on,
+        blocks=f"{blocks} {what}",
         methods=tuple(methods[i] for i in order),
         ranks=tuple(float(means[i]) for i in order),
         statistic=float(found.statistic),
@@ -100,14 +99,12 @@ def ranking_on(arena: Arena) -> Ranking | None:
 
     Without those whose results came from elsewhere: they have no seeds.
     """
-    seeds = _common_seeds(arena)
-    if len(arena.fields) < 3 or len(seeds) < LEAST_RUNS:
+    fields, seeds = arena.own, _common_seeds(arena)
+    if len(fields) < 3 or len(seeds) < LEAST_RUNS:
         return None
-    columns = [
-        [share for run, share in zip(field.runs, field.final, strict=True) if run.key.seed in seeds]
-        for field in arena.fields
-    ]
-    return ranking(np.array(columns).T, [field.method for field in arena.fields], "seeds")
+    values = [field.final[[run.front.seed in seeds for run in field.runs]] for field in fields]
+    methods = [field.method for field in fields]
+    return ranking(np.column_stack(values), methods, "seeds", arena.problem)
 
 
 def ranking_over(arenas: Sequence[Arena]) -> Ranking | None:
@@ -116,45 +113,51 @@ def ranking_over(arenas: Sequence[Arena]) -> Ranking | None:
     None with fewer than three methods, or fewer than `LEAST_RUNS` problems on which all of them
     have so many runs. Results from elsewhere are ranked where they are alike on every problem.
     """
-    known = [{one.method: one for one in arena.alike if len(one.runs) >= LEAST_RUNS}
-             for arena in arenas]  # fmt: skip
-    own = {field.method for arena in arenas for field in arena.fields}
-    methods = [name for name in methods_in(arenas)
-               if name in own or all(name in here for here in known)]  # fmt: skip
+    known = [
+        {field.method: field.middle for field in arena.alike if len(field.runs) >= LEAST_RUNS}
+        for arena in arenas
+    ]
+    own = {field.method for arena in arenas for field in arena.own}
+    methods = [
+        name for name in methods_in(arenas) if name in own or all(name in here for here in known)
+    ]
     rows = [
-        [here[method].middle for method in methods]
+        [here[method] for method in methods]
         for here, arena in zip(known, arenas, strict=True)
-        if all(method in here for method in methods) and len(_common_seeds(arena)) >= LEAST_RUNS
+        if here.keys() >= set(methods) and len(_common_seeds(arena)) >= LEAST_RUNS
     ]
     if len(methods) < 3 or len(rows) < LEAST_RUNS:
         return None
-    return ranking(np.array(rows), methods, "problems")
+    return ranking(np.array(rows), methods, "problems", "all problems")
 
 
 def pairs_on(arena: Arena) -> list[Pair]:
     """Every pair of methods on a problem that both have `LEAST_RUNS` runs of one length on."""
     from scipy import stats
 
-    fields = [field for field in arena.alike if len(field.runs) >= LEAST_RUNS]
-    found = list[tuple[str, str, float, float]]()
-    for one, other in combinations(fields, 2):
-        test = stats.mannwhitneyu(one.final, other.final)
-        effect = 1 - float(test.statistic) / (len(one.final) * len(other.final))
-        found.append((one.method, other.method, effect, float(test.pvalue)))
-    adjusted = holm([p_value for *_, p_value in found])
-    return [Pair(arena.problem, *pair, p) for pair, p in zip(found, adjusted, strict=True)]
+    pairs = list(combinations([f for f in arena.alike if len(f.runs) >= LEAST_RUNS], 2))
+    tests = [stats.mannwhitneyu(one.final, other.final) for one, other in pairs]
+    adjusted = holm([float(test.pvalue) for test in tests])
+    return [
+        Pair(
+            problem=arena.problem,
+            one=one.method,
+            other=other.method,
+            effect=1 - float(test.statistic) / (len(one.final) * len(other.final)),
+            p_value=float(test.pvalue),
+            adjusted=p_value,
+        )
+        for (one, other), test, p_value in zip(pairs, tests, adjusted, strict=True)
+    ]
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
     """P-values of several tests, corrected by Holm's step-down method."""
-    adjusted, largest = [0.0] * len(p_values), 0.0
-    for done, i in enumerate(np.argsort(p_values, kind="stable").tolist()):
-        largest = max(largest, min(1.0, (len(p_values) - done) * p_values[i]))
-        adjusted[i] = largest
-    return adjusted
+    order = np.argsort(p_values)
+    steps = np.minimum(1.0, np.arange(len(order), 0, -1) * np.array(p_values)[order])
+    return np.maximum.accumulate(steps)[np.argsort(order)].tolist()
 
 
-def _common_seeds(arena: Arena) -> set[int]:
+def _common_seeds(arena: Arena) -> set[int | None]:
     """Seeds from which every method was run."""
-    seeds = [{run.key.seed for run in field.runs} for field in arena.fields]
-    return set[int].intersection(*seeds)
+    return set.intersection(*({run.front.seed for run in field.runs} for field in arena.own))

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
 from quietarm.metaheuristics import NamedProblem
+from quietarm.metaheuristics.budget.record import Scale
 from quietarm.metaheuristics.budget.run import number_of_evaluations, search_within
 from quietarm.metaheuristics.sharing.pieces import Done, Listener, Piece, Say
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.base.interrupts import note_interrupts
-from quietarm.studies.contest.asked import Contest, check_alike
-from quietarm.studies.contest.imported import Imported, imported_run
+from quietarm.studies.contest.asked import Contest, Planned, check_alike
+from quietarm.studies.contest.imported import imported_run
 from quietarm.studies.contest.landscape import Landscape, landscape_of
 from quietarm.studies.contest.problems import Yardstick
-from quietarm.studies.contest.runs import Key, Run
-from quietarm.studies.contest.store import Store
+from quietarm.studies.contest.store import Run, Store
 
 
 def set_up(
@@ -31,41 +31,37 @@ def set_up(
     check_alike(store, contest)
     if evaluations is not None:
         number_of_evaluations(evaluations)
-    if imports and len(contest.problems) != 1:
+    problem, *others = contest.problems
+    if imports and others:
         raise ValueError(
             f"results are imported for one problem, and {len(contest.problems)} are named; give "
             "one PROBLEM with --import, then the next into the same folder"
         )
-    yardsticks = {
-        problem.name: store.yardsticks.get(problem.name) or Yardstick.of(problem)
-        for problem in contest.problems
-    }
-    imported = list[Imported]()
-    for method, files in imports.items():
-        (problem,) = contest.problems
-        for path in files:
-            run = imported_run(problem, yardsticks[problem.name], method, path, evaluations)
-            known = store.imports.get(run.key)
-            if known is None:
-                _refuse_twice(run, [*store.imports.values(), *imported])
-                imported.append(run)
-            elif (known.digest, known.evaluations) != (run.digest, run.evaluations):
-                raise ValueError(
-                    f"{store.path} has another run of {method} from a file {path.name}; "
-                    "rename one of them, or remove the folder's "
-                    f"{store.place(Imported, known.key).relative_to(store.path)}"
-                )
-    for yardstick in yardsticks.values():
-        if yardstick.problem not in store.yardsticks:
-            store.keep(yardstick)
-    for run in imported:
-        store.keep(run)
+    known = store.yardsticks
+    exact = [known.get(one.name) or Yardstick.of(one) for one in contest.problems]
+    there = [run for run in store.of(Run) if run.problem == problem.name]
+    given = [
+        imported_run(problem, exact[0], method, path, evaluations)
+        for method, paths in imports.items()
+        for path in paths
+    ]
+    for place, run in enumerate(given):
+        _check_new(run, [*there, *given[:place]], store)
+    for what in (*exact, *given):
+        if what.place not in store.kept:
+            store.keep(what)
 
 
-def _refuse_twice(run: Imported, others: Iterable[Imported]) -> None:
-    """Refuse a run that is counted already: it would pass for a second seed."""
+def _check_new(run: Run, others: Sequence[Run], store: Store) -> None:
+    """Refuse a run in the place of another one, or that stands elsewhere: it would count twice."""
     for other in others:
-        if (other.problem, other.digest) == (run.problem, run.digest):
+        alike = other.digest == run.digest
+        if other.place == run.place and not (alike and other.evaluations == run.evaluations):
+            raise ValueError(
+                f"{store.path} has another run of {run.method} from a file {run.file}; rename one "
+                f"of them, or remove the folder's {run.place}"
+            )
+        if other.place != run.place and alike:
             raise ValueError(
                 f"{run.file} of {run.method} holds the same as {other.file} of {other.method}; "
                 "give every run once"
@@ -73,40 +69,27 @@ def _refuse_twice(run: Imported, others: Iterable[Imported]) -> None:
 
 
 def pieces_of(contest: Contest, store: Store) -> list[Piece]:
-    """The work that is still to be done."""
-    pieces = list[Piece]()
-    problems = {problem.name: problem for problem in contest.problems}
+    """The work that is still to be done, by the place of what it gives."""
+    pieces, known = list[Piece](), store.yardsticks
     for problem in contest.problems if contest.explain else ():
-        if problem.name not in store.landscapes:
-            name = f"{problem.name}: local minima"
-            work = partial(_landscape, problem, contest.seed)
-            pieces.append(Piece((problem.name, "landscape"), name, work))
-    for key in contest.keys:
-        if key not in store.runs:
-            name = f"{key.problem}: {key.method}, seed {key.seed}"
-            yardstick = store.yardsticks[key.problem]
-            work = partial(_run, contest, problems[key.problem], key, yardstick)
-            pieces.append(Piece(key, name, work))
-    return pieces
+        place, work = f"landscape/{problem.name}.json", partial(_landscape, problem, contest.seed)
+        pieces.append(Piece(place, f"{problem.name}: local minima", work))
+    for place, run in contest.planned.items():
+        name = f"{run.problem.name}: {run.entry.name}, seed {run.seed}"
+        work = partial(_run, run, contest.evaluations, known[run.problem.name].scale)
+        pieces.append(Piece(place, name, work))
+    return [piece for piece in pieces if piece.key not in store.kept]
 
 
 def run_contest(
     pieces: Sequence[Piece], store: Store, workers: Workers, begin: Callable[[str], None]
 ) -> Done:
     """Do the work; every run is in the folder as soon as it is done."""
-    kept = set[Hashable]()
-
-    def keep(key: Hashable, answer: Run | Landscape) -> None:
-        with note_interrupts() as came:
-            store.keep(answer)
-            kept.add(key)
-        if came:
-            raise KeyboardInterrupt
-
-    done = run_pieces(pieces, Listener(begin, ended=keep), workers=workers, note=QuietarmError)
+    listener = Listener(begin, ended=lambda place, answer: store.keep(answer))
+    done = run_pieces(pieces, listener, workers=workers, note=QuietarmError)
     with note_interrupts():
-        for key, answer in done.answers.items():
-            if key not in kept:  # it was on its way when Ctrl-C came
+        for place, answer in done.answers.items():
+            if place not in store.kept:  # it was on its way when Ctrl-C came
                 store.keep(answer)
     return done
 
@@ -115,19 +98,26 @@ def _landscape(problem: NamedProblem, seed: int, earlier: Done, say: Say) -> Lan
     return landscape_of(problem, seed)
 
 
-def _run(
-    contest: Contest, problem: NamedProblem, key: Key, yardstick: Yardstick, earlier: Done, say: Say
-) -> Run:
-    entry = contest.entries[key.method]
+def _run(planned: Planned, evaluations: int, scale: Scale, earlier: Done, say: Say) -> Run:
+    problem, entry, seed = planned
     found = search_within(
         problem.task,
         entry.method,
-        contest.evaluations,
-        yardstick.scale,
+        evaluations,
+        scale,
         profile=problem.profile,
         bound=problem.bound,
         population=entry.population,
         settings=entry.settings,
-        seed=key.seed,
+        seed=seed,
     )
-    return Run.of(yardstick, key.method, contest.evaluations, entry.population, found)
+    return Run(
+        problem=problem.name,
+        method=entry.name,
+        evaluations=evaluations,
+        scale=scale,
+        front=found.front,
+        population=entry.population,
+        marks=found.marks,
+        visits=found.visits,
+    )

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import fields
 from math import degrees
 
 from quietarm.models import Plant
-from quietarm.ocp import PointToPoint, UncertainPlant
+from quietarm.ocp import Front, PointToPoint, UncertainPlant
 from quietarm.ocp.task.quantities import QUANTITIES
 from rich.console import Console
 
@@ -56,3 +57,12 @@ def title_of(task: PointToPoint) -> str:
         f"{name} within {value:g} {QUANTITIES[name].unit}" for name, value in task.limits.items()
     ]
     return ", ".join([plant_words(task.plant), move_of(task), *limits])
+
+
+def versions_of(fronts: Iterable[Front]) -> list[str]:
+    """Everything that computed fronts with its versions: "casadi 3.6 and 3.7"."""
+    versions: dict[str, dict[str, None]] = {}
+    for front in fronts:
+        for name, version in front.versions.items():
+            versions.setdefault(name, {})[version] = None
+    return [f"{name} {' and '.join(known)}" for name, known in versions.items()]

@@ -3,31 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
+from pkgutil import iter_modules
 
-from quietarm.ocp import (
-    CycloidGaussians,
-    CycloidNetwork,
-    CycloidPolynomial,
-    CycloidSpline,
-    JointProfile,
-    PointToPoint,
-    shaped_cycloid,
-)
+from quietarm.ocp import JointProfile, PointToPoint, profiles, shaped_cycloid
 from quietarm.ocp.profiles.cycloid import Cycloid
 from quietarm.ocp.profiles.shapers import SHAPERS
 
 POLYNOMIAL = "polynomial"
-FAMILIES: Mapping[str, type[Cycloid]] = {
-    POLYNOMIAL: CycloidPolynomial,
-    "gaussians": CycloidGaussians,
-    "network": CycloidNetwork,
-    "spline": CycloidSpline,
-}
+
+
+def _families() -> dict[str, type[Cycloid]]:
+    """The families that stand in the folder of profiles, the paper's first."""
+    modules = (
+        import_module(f"{profiles.__name__}.{it.name}") for it in iter_modules(profiles.__path__)
+    )
+    found = {
+        kind.name.removeprefix("cycloid-"): kind
+        for module in modules
+        for kind in vars(module).values()
+        if isinstance(kind, type) and issubclass(kind, Cycloid) and hasattr(kind, "name")
+    }
+    return {POLYNOMIAL: found.pop(POLYNOMIAL), **found}
+
+
+FAMILIES: Mapping[str, type[Cycloid]] = _families()
 """Profiles with coefficients to choose; each takes a number of terms and has one by default."""
 PROFILES = (*FAMILIES, *SHAPERS)
 OTHERS: Mapping[str, Cycloid] = {
-    "network": CycloidNetwork(), "Gaussians": CycloidGaussians(), "spline": CycloidSpline(),
-}  # fmt: skip
+    "network": FAMILIES["network"](),
+    "Gaussians": FAMILIES["gaussians"](),
+    "spline": FAMILIES["spline"](),
+}
 """What stands beside the polynomial in comparisons, by what tables call it, in its default size."""
 
 

@@ -6,11 +6,13 @@ import csv
 import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 
 from quietarm.ocp.base.files import write_whole
 
 Cell = str | int | float | None
+_PLAIN = "{:.4g}"
 
 
 @dataclass(frozen=True)
@@ -18,7 +20,7 @@ class Column:
     """A column: its heading (with the unit), how its numbers are written, its name in CSV."""
 
     heading: str
-    form: Callable[[float], str] = "{:.4g}".format
+    form: Callable[[float], str] = _PLAIN.format
     key: str = ""
 
     def text(self, cell: Cell) -> str:
@@ -70,3 +72,18 @@ class Table:
     def save_csv(self, path: Path) -> None:
         """Write the table as CSV, whole or not at all."""
         write_whole(path, self.csv())
+
+
+Line = tuple[str, str, Sequence[Cell]]
+"""A heading, how numbers are written under it (empty: as by `Column`), and the cells."""
+
+
+def table_of(title: str, columns: Sequence[Line]) -> Table:
+    """A table given column by column; numbers that are not finite stay empty."""
+    cells = [[_if_finite(cell) for cell in cells] for *_, cells in columns]
+    headings = [Column(heading, (form or _PLAIN).format) for heading, form, _ in columns]
+    return Table(title, headings, list(zip(*cells, strict=True)))
+
+
+def _if_finite(cell: Cell) -> Cell:
+    return None if isinstance(cell, float) and not isfinite(cell) else cell

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 from quietarm.metaheuristics import PRESETS
-from quietarm.ocp import Front
 from quietarm.ocp.base.files import write_whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.comparison.tables import how_to_read, tables, units
 from quietarm.studies.display.saving import File, inside
-from quietarm.studies.display.words import counted, millimetres, title_of
+from quietarm.studies.display.words import counted, millimetres, title_of, versions_of
 from quietarm.studies.figures.comparison import BANDS, PANELS, panel_figure
 from quietarm.studies.registry.methods import PAPERS, Method
 from quietarm.studies.report.document import (
-    Block,
     Bullets,
     Contents,
     Document,
@@ -27,6 +25,7 @@ from quietarm.studies.report.document import (
     Text,
 )
 from quietarm.studies.report.page import page
+from quietarm.studies.report.prose import told
 from quietarm.studies.study.findings import STILL_LEVEL, case_findings, findings
 from quietarm.studies.study.overview import gap_figure, overview_table
 from quietarm.studies.study.work import CaseStudy, Study, StudySettings
@@ -46,32 +45,28 @@ _CAPTIONS = {
 
 def study_document(study: Study) -> Document:
     """The study: over all tasks, for each task, and how to read it."""
-    if len(study.cases) == 1:
-        title = "Residual vibration against energy: every method on one task"
-        return Document(title, [_section(study.cases[0]), _reading(study)])
-    title = f"Residual vibration against energy: every method on {len(study.cases)} tasks"
-    blocks = [
-        Bullets(findings(study), card=True),
-        *_overview(study),
-        Contents([title_of(found.case.task) for found in study.cases]),
-        *map(_section, study.cases),
-        _reading(study),
-    ]
-    return Document(title, blocks)
-
-
-def _overview(study: Study) -> list[Block]:
+    count, sections = len(study.cases), [*map(_section, study.cases), _reading(study)]
+    tasks = "one task" if count == 1 else f"{count} tasks"
+    title = f"Residual vibration against energy: every method on {tasks}"
+    if count == 1:
+        return Document(title, sections)
     level = millimetres(study.cases[0].comparison.levels[STILL_LEVEL])
     words = (
         f"Energy above the best of all fronts at {level}, motions between points counted: one row "
         "for each task, one mark for each method. Bars: quartiles over the seeds."
     )
-    overview = Picture("overview.png", partial(gap_figure, study), words, narrow=True)
-    return [overview, overview_table(study)]
+    blocks = [
+        Bullets(findings(study), card=True),
+        Picture("overview.png", partial(gap_figure, study), words, narrow=True),
+        overview_table(study),
+        Contents([title_of(found.case.task) for found in study.cases]),
+        *sections,
+    ]
+    return Document(title, blocks)
 
 
 def _section(found: CaseStudy) -> Section:
-    title = title_of(found.case.task)
+    title, shown = title_of(found.case.task), tables(found.comparison)
     pictures = [
         Picture(
             f"{panel}.png",
@@ -81,16 +76,13 @@ def _section(found: CaseStudy) -> Section:
         )
         for panel in PANELS
     ]
-    shown = tables(found.comparison)
-    return Section(
-        title,
-        [
-            Bullets(case_findings(found), card=True),
-            Grid(pictures),
-            *(shown[table] for table in ("energies", "fronts", "coverage")),
-            Text(" ".join(units(found.comparison)), soft=True),
-        ],
-    )
+    blocks = [
+        Bullets(case_findings(found), card=True),
+        Grid(pictures),
+        *(shown[table] for table in ("energies", "fronts", "coverage")),
+        Text(" ".join(units(found.comparison)), soft=True),
+    ]
+    return Section(title, blocks)
 
 
 def _reading(study: Study) -> Section:
@@ -99,62 +91,35 @@ def _reading(study: Study) -> Section:
     asked = (
         f"Fronts of {settings.points} points by gradient, {settings.runs} seeds from "
         f"{settings.seed}, polynomials of {settings.terms} terms; {study.seconds:.0f} s in all. "
-        f"Computed with {_versions(fronts)}."
+        f"Computed with {', '.join(versions_of(fronts))}."
     )
-    return Section(
-        "Methods, and how to read it",
-        [
-            Bullets(method_lines(settings)),
-            Bullets(how_to_read(study.cases[0].comparison)),
-            Text(asked, soft=True),
-        ],
-    )
-
-
-def _versions(fronts: Sequence[Front]) -> str:
-    """What the fronts were computed with: every version, as a front from a file may have others."""
-    versions: dict[str, dict[str, None]] = {}
-    for front in fronts:
-        for name, version in front.versions.items():
-            versions.setdefault(name, {})[version] = None
-    return ", ".join(f"{name} {' and '.join(several)}" for name, several in versions.items())
+    how = Bullets(how_to_read(study.cases[0].comparison))
+    blocks = [Bullets(method_lines(settings)), how, Text(asked, soft=True)]
+    return Section("Methods, and how to read it", blocks)
 
 
 def method_lines(settings: StudySettings) -> list[str]:
     """What the methods are, and the settings that they ran with."""
     levels = ", ".join(millimetres(level) for level in LEVELS)
-    of_seeds = f"from {counted(settings.runs, 'seed')}"
-    searches = [_search_line(method, settings, of_seeds) for method in settings.searches]
-    return [
-        "epsilon constraint: the least energy at each of a series of residual limits, "
-        f"{levels} among them, by the gradient.",
-        "weighted sum: the least weighted sum of residual and energy, by the gradient, for a "
-        "series of weights.",
-        *searches,
-        "polished: each point of the first seed's front improved by the gradient at its own "
-        "residual.",
-        "floor: the least energy of any joint motion at all that arrives at rest, on a grid "
-        "refined until its energy no longer changes.",
-    ]
+    searches = [_search_line(method, settings) for method in settings.searches]
+    return told("study/methods.txt", levels=levels, searches=searches)
 
 
-def _search_line(method: Method, settings: StudySettings, of_seeds: str) -> str:
-    preset = PRESETS[method.name]
-    used = (
-        settings.population or preset.population, settings.generations or preset.generations,
-    )  # fmt: skip
-    given = settings.settings.get(method.name, {})
-    others = "".join(f", {name} {value}" for name, value in given.items())
-    asked = f"with a population of {used[0]} and {counted(used[1], 'generation')}{others}"
-    if method not in PAPERS:
-        return f"{method.label} ({preset.source}): {of_seeds}, {asked}."
-    papers = (preset.population, preset.generations)
-    beside = (
-        "as in the paper"
-        if used == papers and not given
-        else "where the paper has {} and {}".format(*papers)
+def _search_line(method: Method, settings: StudySettings) -> str:
+    preset, given = PRESETS[method.name], settings.settings.get(method.name, {})
+    papers = preset.population, preset.generations
+    used = settings.population or papers[0], settings.generations or papers[1]
+    asked = (
+        f"from {counted(settings.runs, 'seed')}, with a population of {used[0]} and "
+        f"{counted(used[1], 'generation')}"
     )
-    return f"{method.label}: the paper's search, {of_seeds}, {asked}, {beside}."
+    asked += "".join(f", {name} {value}" for name, value in given.items())
+    if method not in PAPERS:
+        return f"{method.label} ({preset.source}): {asked}."
+    as_there = "as in the paper"
+    if used != papers or given:
+        as_there = f"where the paper has {papers[0]} and {papers[1]}"
+    return f"{method.label}: the paper's search, {asked}, {as_there}."
 
 
 def page_file(study: Study, output: Path) -> File:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from quietarm.metaheuristics.algorithms.presets import preset_of
 from quietarm.metaheuristics.ensemble import one_seed, seeds_of
@@ -47,7 +47,6 @@ class StudySettings:
     fronts: tuple[Front, ...] = ()
 
     def __post_init__(self) -> None:
-        CycloidPolynomial(self.terms)
         whole("terms", self.terms, 1)
         number_of_points(self.points)
         seeds_of(self.seed, self.runs)
@@ -65,6 +64,11 @@ class StudySettings:
         """The metaheuristics."""
         return tuple(METHODS[name] for name in self.methods)
 
+    @property
+    def profile(self) -> CycloidPolynomial:
+        """The joint profile of all methods."""
+        return CycloidPolynomial(self.terms)
+
 
 class Key(NamedTuple):
     """What the answer of a piece is kept under: a front's method, a polished one's, or `FLOOR`."""
@@ -76,40 +80,41 @@ class Key(NamedTuple):
 
 def pieces_of(case: Case, settings: StudySettings) -> list[Piece]:
     """The work on one case."""
-    title, pieces = title_of(case.task), list[Piece]()
-
-    def add(key: Key, work: Callable[[Done, Say], Any], *after: Key) -> None:
-        seed = "" if key.seed is None else f", seed {key.seed}"
-        pieces.append(Piece(key, f"{title}: {key.name}{seed}", work, after))
-
-    earlier: list[Key] = []
-    for method in methods_of(Kind.GRADIENT):
-        key = Key(case, method.name)
-        add(key, partial(_swept, case, method, settings), *earlier)
-        earlier.append(key)
-    shared = {
-        "profile": CycloidPolynomial(settings.terms),
-        "bound": case.bound,
-        "population": settings.population,
-        "generations": settings.generations,
-    }
+    sweeps = [Key(case, method.name) for method in methods_of(Kind.GRADIENT)]
+    pieces = [
+        _piece(key, partial(_swept, key, settings), sweeps[:i]) for i, key in enumerate(sweeps)
+    ]
     for method in settings.searches:
-        search = {**shared, "settings": settings.settings.get(method.name)}
-        seeds = seeds_of(settings.seed, settings.runs)
-        keys = [Key(case, method.name, seed) for seed in seeds]
-        for seed, key in zip(seeds, keys, strict=True):
-            add(key, partial(one_seed, case.task, method.name, search, seed))
-        add(Key(case, method.then_polished().name), partial(_polished, method, keys), *keys)
-    add(Key(case, FLOOR), partial(_floor, case))
-    return pieces
+        asked = {
+            "profile": settings.profile,
+            "bound": case.bound,
+            "population": settings.population,
+            "generations": settings.generations,
+            "settings": settings.settings.get(method.name),
+        }
+        keys = {
+            seed: Key(case, method.name, seed) for seed in seeds_of(settings.seed, settings.runs)
+        }
+        pieces += [
+            _piece(key, partial(one_seed, case.task, method.name, asked, seed))
+            for seed, key in keys.items()
+        ]
+        searches, polished = list(keys.values()), Key(case, method.then_polished().name)
+        pieces.append(_piece(polished, partial(_polished, method, searches), searches))
+    return [*pieces, _piece(Key(case, FLOOR), partial(_floor, case))]
 
 
-def _swept(case: Case, method: Method, settings: StudySettings, earlier: Done, say: Say) -> Front:
-    for key, error in earlier.failures.items():  # they begin with the same end, and fail alike
-        if isinstance(error, InfeasibleTaskError) and isinstance(key, Key):
-            raise NotTriedError(f"not tried, as {key.name} found no motion within the limits")
-    profile = CycloidPolynomial(settings.terms)
-    return to_the_end(method.sweep(case.task, profile, bound=case.bound, points=settings.points))
+def _piece(key: Key, work: Callable[[Done, Say], object], after: Sequence[Key] = ()) -> Piece:
+    seed = "" if key.seed is None else f", seed {key.seed}"
+    return Piece(key, f"{title_of(key.case.task)}: {key.name}{seed}", work, tuple(after))
+
+
+def _swept(key: Key, settings: StudySettings, earlier: Done, say: Say) -> Front:
+    for other, error in earlier.failures.items():  # they begin with the same end, and fail alike
+        if isinstance(error, InfeasibleTaskError) and isinstance(other, Key):
+            raise NotTriedError(f"not tried, as {other.name} found no motion within the limits")
+    sweep, case = METHODS[key.name].sweep, key.case
+    return to_the_end(sweep(case.task, settings.profile, bound=case.bound, points=settings.points))
 
 
 def _polished(method: Method, keys: Sequence[Key], searches: Done, say: Say) -> Polish:

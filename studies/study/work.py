@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from quietarm.metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener, Piece
+from quietarm.metaheuristics.sharing.pieces import INTERRUPTED, Done, Listener
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import Floor, Front, Polish, QuietarmError, SolverFailedError
@@ -18,7 +18,6 @@ from quietarm.studies.display.words import title_of
 from quietarm.studies.paper.case import Case
 from quietarm.studies.paper.points import PaperPoint, paper_points
 from quietarm.studies.paper.printed import CONDITIONS
-from quietarm.studies.registry.methods import METHODS
 from quietarm.studies.study.pieces import FLOOR, Key, StudySettings, pieces_of
 
 
@@ -60,54 +59,50 @@ def run_study(
     settings = StudySettings() if settings is None else settings
     for front in settings.fronts:
         if all(front.task != case.task for case in cases):
-            where = title_of(front.task)
             raise ValueError(
-                f"the front by {front.method} is of another task, {where}; leave it out, or give "
-                "the task that it is of"
+                f"the front by {front.method} is of another task, {title_of(front.task)}; leave it "
+                "out, or give the task that it is of"
             )
     pieces = [piece for case in cases for piece in pieces_of(case, settings)]
     where = Workers(settings.workers, settings.scheduler)
     done = run_pieces(pieces, Listener(begin), workers=where, note=QuietarmError)
-    found: list[CaseStudy] = []
     with note_interrupts():  # what was found is put together to the end
-        for case in cases:
-            found += _case_study(case, settings, done)
-    floors = [words for case in cases for words in _floor_words(case, done)]
-    if not found and floors:
-        raise QuietarmError(f"{done.stopped} before there was a front; {'; '.join(floors)}")
-    if not found and done.stopped == INTERRUPTED:
-        raise KeyboardInterrupt
-    if not found:
-        raise QuietarmError(f"{done.stopped}; nothing was found before")
+        found = [_case_study(case, settings, done) for case in cases]
+    studied = tuple(case for case in found if case is not None)
+    if not studied:
+        floors = [words for case in cases for words in _floor_words(case, done)]
+        if done.stopped == INTERRUPTED and not floors:
+            raise KeyboardInterrupt
+        words = "; ".join([f"{done.stopped} before there was a front", *floors])
+        raise QuietarmError(words)
     number = done.number if done.stopped else None
-    return Study(settings, tuple(found), time.perf_counter() - began, number, done.stopped)
+    return Study(settings, studied, time.perf_counter() - began, number, done.stopped)
 
 
-def _case_study(case: Case, settings: StudySettings, done: Done) -> list[CaseStudy]:
-    """What was found for a case, if anything was before the work was stopped."""
-    pieces = pieces_of(case, settings)
-    fronts = [front for piece in pieces for front in _fronts_of(piece, done) if front.points]
-    failures = _what_is_missing(pieces, done)
+def _case_study(case: Case, settings: StudySettings, done: Done) -> CaseStudy | None:
+    """What was found for a case; None where the work was stopped before that was anything."""
+    keys = [piece.key for piece in pieces_of(case, settings) if isinstance(piece.key, Key)]
+    fronts = [front for key in keys for front in _fronts_of(key, done) if front.points]
     if not fronts and done.stopped:
-        return []
+        return None
     fronts += [front for front in settings.fronts if front.task == case.task]
+    failures, floor = _what_is_missing(keys, done), _found(Key(case, FLOOR), done)
     if len(fronts) < 2 and not done.stopped:
-        where = title_of(case.task)
         why = "; ".join([*failures, *_floor_words(case, done)])
-        raise SolverFailedError(f"{where}: no two fronts to compare; {why}")
-    floor = _found(Key(case, FLOOR), done)
+        raise SolverFailedError(f"{title_of(case.task)}: no two fronts to compare; {why}")
     polishes = {
-        m.name: done.answers.get(Key(case, m.then_polished().name)) for m in METHODS.values()
+        method.name: done.answers[key]
+        for method in settings.searches
+        if (key := Key(case, method.then_polished().name)) in done.answers
     }
-    study = CaseStudy(
+    return CaseStudy(
         case=case,
         comparison=compare_fronts(fronts, floor=None if floor is None else floor.energy, least=1),
-        polishes={name: polish for name, polish in polishes.items() if polish is not None},
+        polishes=polishes,
         floor=floor,
         paper=tuple(paper_points(case.task, {settings.terms})),
         failures=tuple(failures),
     )
-    return [study]
 
 
 def _floor_words(case: Case, done: Done) -> list[str]:
@@ -121,32 +116,30 @@ def _found(key: Hashable, done: Done) -> Any:
     return done.answers.get(key, done.parts.get(key))
 
 
-def _fronts_of(piece: Piece, done: Done) -> list[Front]:
+def _fronts_of(key: Key, done: Done) -> list[Front]:
     """The front that a piece found, whole or in part."""
-    found = _found(piece.key, done)
-    if isinstance(found, Polish):
-        return [found.front]
+    found = _found(key, done)
+    found = found.front if isinstance(found, Polish) else found
     return [found] if isinstance(found, Front) else []
 
 
-def _what_is_missing(pieces: Sequence[Piece], done: Done) -> list[str]:
+def _what_is_missing(keys: Sequence[Key], done: Done) -> list[str]:
     """What did not come to its end, and why: a line for each method and reason."""
-    names = [piece.key.name for piece in pieces if isinstance(piece.key, Key)]
-    troubles = Counter(zip(names, (_trouble(piece, done) for piece in pieces), strict=True))
-    lines = list[str]()
-    for (name, trouble), count in troubles.items():
-        seeds = f" ({count} of {names.count(name)} seeds)" if names.count(name) > 1 else ""
-        if trouble:
-            lines.append(f"{name}{seeds}: {trouble}")
-    return lines
+    seeds = Counter(key.name for key in keys)
+    troubles = Counter((key.name, _trouble(key, done)) for key in keys)
+    return [
+        f"{name}{f' ({count} of {seeds[name]} seeds)' if seeds[name] > 1 else ''}: {trouble}"
+        for (name, trouble), count in troubles.items()
+        if trouble
+    ]
 
 
-def _trouble(piece: Piece, done: Done) -> str:
+def _trouble(key: Key, done: Done) -> str:
     """Why the answer of a piece is missing; empty where it is not."""
-    if piece.key in done.failures:
-        return str(done.failures[piece.key])
-    if piece.key in done.parts:
+    if key in done.failures:
+        return str(done.failures[key])
+    if key in done.parts:
         return "interrupted, with what was found until then"
-    if piece.key not in done.answers:
+    if key not in done.answers:
         return "not done before the interruption"
-    return "found no point" if any(not f.points for f in _fronts_of(piece, done)) else ""
+    return "found no point" if any(not front.points for front in _fronts_of(key, done)) else ""

@@ -4,16 +4,16 @@ import math
 from functools import cache
 
 import pytest
-from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
+
+import quietarm as qa
 
 
 @pytest.fixture(scope="session")
 def plants(two_links):
     """The plants of the package, by a short name."""
     return {
-        "single link": SingleLinkManipulator(),
-        "arm": ArmOnFlexibleLink(),
+        "single link": qa.SingleLinkManipulator(),
+        "arm": qa.ArmOnFlexibleLink(),
         "two links": two_links,
     }
 
@@ -22,9 +22,9 @@ def plants(two_links):
 def tasks(plants):
     """A task for each plant: the first rows of Tables 3 and 6; docs/physics.md, 'A third plant'."""
     return {
-        "single link": PointToPoint(plants["single link"], math.pi / 6, 0.8),
-        "arm": PointToPoint(plants["arm"], math.pi / 2, 0.8),
-        "two links": PointToPoint(plants["two links"], math.pi / 2, 0.9),
+        "single link": qa.PointToPoint(plants["single link"], math.pi / 6, 0.8),
+        "arm": qa.PointToPoint(plants["arm"], math.pi / 2, 0.8),
+        "two links": qa.PointToPoint(plants["two links"], math.pi / 2, 0.9),
     }
 
 
@@ -34,6 +34,6 @@ def solved():
 
     @cache
     def solve(task, terms=6, starts=1, **settings):
-        return plan_move(task, CycloidPolynomial(terms), starts=starts, **settings)
+        return qa.plan_move(task, qa.CycloidPolynomial(terms), starts=starts, **settings)
 
     return solve

@@ -88,16 +88,17 @@ def contest(
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics.sharing.workers import Workers
     from quietarm.ocp import QuietarmError
+    from quietarm.ocp.base.files import check_inside
     from quietarm.studies.cli.ending import Together, finish
-    from quietarm.studies.contest import store as stores
     from quietarm.studies.contest.asked import Contest
     from quietarm.studies.contest.imported import named_files
     from quietarm.studies.contest.measures import arenas_of
     from quietarm.studies.contest.problems import problems_of
-    from quietarm.studies.contest.report.files import check_places, report_files
-    from quietarm.studies.contest.report.notes import not_alike, wrong_claims
+    from quietarm.studies.contest.report.page import PLACES, report_files
+    from quietarm.studies.contest.report.sentences import not_alike, wrong_claims
     from quietarm.studies.contest.report.tables import summary_table
     from quietarm.studies.contest.statistics import why_none
+    from quietarm.studies.contest.store import FOLDERS, Store
     from quietarm.studies.contest.work import pieces_of, run_contest, set_up
     from quietarm.studies.display.progress import progress, working
     from quietarm.studies.display.words import print_lines
@@ -112,24 +113,23 @@ def contest(
         raise ValueError("--import-evaluations says how long imported runs are; give --import too")
     files, errors = named_files(given), Console(stderr=True)
     with working("reading", errors, quiet=quiet):
-        stores.check_places(output, asked.keys)
-        check_places(output)
-        store = stores.Store(output)
+        inner = [f"{folder}/any" for folder in FOLDERS]
+        check_inside(output, [output / place for place in (*PLACES, *inner, *asked.planned)])
+        store = Store(output)
         set_up(asked, store, files, import_evaluations)
     pieces = pieces_of(asked, store)
-    if not quiet and store.runs:
-        print_lines(errors, asked.how_far(store.runs, output))
+    if not quiet and any(place.startswith("runs/") for place in store.kept):
+        print_lines(errors, asked.how_far(store))
     warn_of_workers(errors, workers, len(pieces))
     with progress(len(pieces), errors, quiet=quiet) as begin:
         done = run_contest(pieces, store, asked.workers, begin)
-    arenas = arenas_of(store)
+    arenas, trouble = arenas_of(store), _why_not_whole(done, len(pieces))
     if not arenas:
-        raise QuietarmError(_why_not_whole(done, len(pieces)) or "no run was done")
+        raise QuietarmError(trouble or "no run was done")
 
     tables = [part for one in arenas for part in (Lines([one.problem]), summary_table(one))]
     notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *asked.left_out]
     document = Document("", [*tables, Lines([*filter(None, notes)])])
-    trouble = _why_not_whole(done, len(pieces))
     page, *others = report_files(arenas, output, asked.left_out)
     finish(
         [page], document, trouble=QuietarmError(trouble) if trouble else None, quiet=quiet,

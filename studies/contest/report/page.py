@@ -1,13 +1,13 @@
-"""The contest as one page of HTML that stands alone."""
+"""The contest as a document, and what is written of it: page, tables, pictures, references."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from pathlib import Path
 
-from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
+from quietarm.ocp.base.files import write_whole
 from quietarm.studies.contest.measures import Arena, methods_in
-from quietarm.studies.contest.names import label_of
 from quietarm.studies.contest.report.citations import bibtex
 from quietarm.studies.contest.report.figures import (
     anytime_figure,
@@ -15,22 +15,31 @@ from quietarm.studies.contest.report.figures import (
     looks_of,
     ranks_figure,
 )
-from quietarm.studies.contest.report.notes import missing_words, not_alike, unequal
-from quietarm.studies.contest.report.paragraph import methods_paragraph, settings_lines
+from quietarm.studies.contest.report.sentences import (
+    explanation,
+    findings,
+    methods_paragraph,
+    settings_lines,
+    verdict,
+)
 from quietarm.studies.contest.report.tables import (
+    anytime_table,
     effects_table,
+    pairs_table,
+    ranks_table,
+    runs_table,
     summary_table,
     visits_table,
 )
 from quietarm.studies.contest.statistics import (
-    ALPHA,
     Ranking,
     pairs_on,
     ranking_on,
     ranking_over,
     why_none,
 )
-from quietarm.studies.display.words import counted, millimetres, title_of
+from quietarm.studies.display.saving import File, drawing, inside
+from quietarm.studies.display.words import counted, title_of
 from quietarm.studies.report.document import (
     Block,
     Bullets,
@@ -40,7 +49,11 @@ from quietarm.studies.report.document import (
     Section,
     Text,
 )
+from quietarm.studies.report.page import page
 
+PAGE, REFERENCES, TABLES, FIGURES = "contest.html", "references.bib", "tables", "figures"
+PLACES = (PAGE, REFERENCES, f"{TABLES}/any", f"{FIGURES}/any")
+"""What is written into the folder of a contest beside its runs."""
 _ANYTIME = (
     "Share of the exact front's hypervolume that is missing, over evaluations and over time: "
     "medians over the seeds in bands of the quartiles; dotted the targets of 1 % and 0.1 %."
@@ -55,115 +68,76 @@ _RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell
 def contest_document(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> Document:
     """The contest: what was found, a section for each problem, how it was held."""
     methods = methods_in(arenas)
-    title = f"{counted(len(methods), 'method')} against the exact front"
-    sections = [_section(arena, methods) for arena in arenas]
-    return Document(title, [*_findings(arenas, notes), *sections, _methods(arenas)])
+    blocks: list[Block] = [Bullets(findings(arenas, notes), card=True)]
+    tables = {"runs": runs_table(arenas), "anytime": anytime_table(arenas)}
+    if not why_none(arenas):
+        over = ranking_over(arenas)
+        blocks += [_ranks(over)] if over else []
+        rankings = [*map(ranking_on, arenas), over]
+        tables["pairs"] = pairs_table([pair for arena in arenas for pair in pairs_on(arena)])
+        tables["ranks"] = ranks_table([found for found in rankings if found])
+    references = bibtex(methods, statistics=not why_none(arenas)).splitlines()
+    how = [
+        Text(methods_paragraph(arenas)),
+        Bullets(settings_lines(arenas)),
+        Section("References", [Lines(references)]),
+    ]
+    blocks += [*(section(arena, methods) for arena in arenas), Section("Methods", how)]
+    return Document(f"{counted(len(methods), 'method')} against the exact front", blocks, tables)
 
 
-def _findings(arenas: Sequence[Arena], notes: Sequence[str]) -> list[Block]:
-    none, lines = why_none(arenas), list[str]()
-    for arena in arenas:
-        best = min(arena.alike, key=lambda one: one.middle)
-        lines.append(
-            f"{arena.problem}: {label_of(best.method)} ends nearest to the exact front, with "
-            f"{missing_words(best, 'its')}."
-        )
-    lines += [f"{none}."] if none else []
-    over = None if none else ranking_over(arenas)
-    stated = [*unequal(arenas), *not_alike(arenas), *notes]
-    lines += [line if line.endswith(".") else f"{line}." for line in stated]
-    found = Bullets(lines, card=True)
-    if over is None:
-        return [found]
-    words = f"{_RANKS} Over {over.blocks} problems, by medians. {_verdict(over)}"
-    return [found, Picture("ranks.png", partial(ranks_figure, over, "all problems"), words)]
-
-
-def _verdict(found: Ranking) -> str:
-    says = "the methods differ" if found.differ else "no difference is shown"
-    return (
-        f"Friedman's test: chi2 = {found.statistic:.3g}, p = {found.p_value:.2g}, {says} at "
-        f"{100 * ALPHA:g} %; Nemenyi's critical difference is {found.critical:.2f}."
-    )
-
-
-def _section(arena: Arena, methods: Sequence[str]) -> Section:
+def section(arena: Arena, methods: Sequence[str]) -> Section:
+    """What was found on a problem."""
     title, looks = title_of(arena.yardstick.front.task), looks_of(methods)
-    anytime, attainment = (
+    anytime, names = _ANYTIME, " and ".join(field.label for field in arena.imports)
+    if names:
+        anytime += f" Of {names} only the end is known, so that there are no curves."
+    drawn = [
         Picture(
-            f"{draw.__name__}.png", partial(draw, arena, looks), caption, f"{words} On {title}."
+            f"{name}-{arena.problem}.png",
+            partial(draw, arena, looks),
+            caption,
+            f"{words} On {title}.",
         )
-        for draw, caption, words in (
-            (anytime_figure, _anytime_words(arena), _ANYTIME),
-            (attainment_figure, _ATTAINMENT, _ATTAINMENT),
+        for name, draw, caption, words in (
+            ("anytime", anytime_figure, anytime, _ANYTIME),
+            ("attainment", attainment_figure, _ATTAINMENT, _ATTAINMENT),
         )
-    )
-    blocks = [
+    ]
+    none = why_none([arena])
+    found = None if none else ranking_on(arena)
+    blocks: list[Block] = [
         Text(title, soft=True),
-        anytime,
+        drawn[0],
         summary_table(arena),
-        attainment,
-        *_statistics(arena),
+        drawn[1],
+        *([_ranks(found)] if found else []),
+        Text(f"{none[0].upper()}{none[1:]}.") if none else effects_table(arena, pairs_on(arena)),
         visits_table(arena),
         *([Bullets(explanation(arena.landscape))] if arena.landscape else []),
     ]
     return Section(arena.problem, blocks)
 
 
-def _anytime_words(arena: Arena) -> str:
-    if not arena.imports:
-        return _ANYTIME
-    names = " and ".join(label_of(one.method) for one in arena.imports)
-    return f"{_ANYTIME} Of {names} only the end is known, so that there are no curves."
+def _ranks(found: Ranking) -> Picture:
+    name = f"ranks-{found.on.replace(' ', '-')}.png"
+    words = f"{_RANKS} Over {found.blocks}. {verdict(found)}"
+    return Picture(name, partial(ranks_figure, found), words)
 
 
-def explanation(found: Landscape) -> list[str]:
-    """What makes a problem hard, in sentences."""
-    level = millimetres(LEVEL)
-    lines = [
-        f"Of {found.starts} random starts in the box, the gradient ended at a minimum of the "
-        f"energy within {level} from {100 * found.solved:.0f} %, and at the best of these from "
-        f"{100 * found.best:.0f} %; {_minima_words(found.minima)}.",
-        f"Over {CANDIDATES} random candidates, energy and distance to the cheapest motion "
-        f"correlate by {found.candidates:.2f} (1 where better candidates lie nearer to it).",
-    ]
-    if found.correlation is not None:
-        lines.append(
-            f"Over the minima found, energy and distance to the best one correlate by "
-            f"{found.correlation:.2f}."
-        )
-    for share, ratio in found.boxes:
-        least = (
-            f"no motion within {level} was found"
-            if ratio is None
-            else f"the least energy within {level} is {ratio:.4g} times that in this one"
-        )
-        lines.append(f"With a box {share:g} times as large {least}.")
-    return lines
-
-
-def _minima_words(number: int) -> str:
-    if number == 1:
-        return "all these minima have the same energy, to 0.1 %"
-    return f"{number} of the minima differ by more than 0.1 % in energy"
-
-
-def _statistics(arena: Arena) -> list[Block]:
-    none = why_none([arena])
-    if none:
-        return [Text(f"{none[0].upper()}{none[1:]}.")]
-    parts, found = list[Block](), ranking_on(arena)
-    if found is not None:
-        words = f"{_RANKS} Over {found.blocks} seeds. {_verdict(found)}"
-        parts.append(Picture("ranks.png", partial(ranks_figure, found, arena.problem), words))
-    return [*parts, effects_table(arena, pairs_on(arena))]
-
-
-def _methods(arenas: Sequence[Arena]) -> Section:
+def report_files(arenas: Sequence[Arena], folder: Path, notes: Sequence[str] = ()) -> list[File]:
+    """The page, every table as CSV, every picture as PNG and PDF; and what writes each."""
+    document = contest_document(arenas, notes)
     references = bibtex(methods_in(arenas), statistics=not why_none(arenas))
-    blocks = [
-        Text(methods_paragraph(arenas)),
-        Bullets(settings_lines(arenas)),
-        Section("References", [Lines(references.splitlines())]),
+    tables = {f"{name}.csv": table.save_csv for name, table in document.data.items()}
+    pictures = {
+        picture.name.replace(".png", suffix): drawing(picture.draw)
+        for picture in document.pictures
+        for suffix in (".png", ".pdf")
+    }
+    return [
+        (folder / PAGE, lambda path: write_whole(path, page(document))),
+        (folder / REFERENCES, lambda path: write_whole(path, references)),
+        *inside(folder / TABLES, tables),
+        *inside(folder / FIGURES, pictures),
     ]
-    return Section("Methods", blocks)

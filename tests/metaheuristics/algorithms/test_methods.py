@@ -73,9 +73,13 @@ def test_what_a_run_leaves_does_not_change_the_next():
     assert exactly(search(HALF, "spea2", seed=2, **SMALL)) == exactly(first)
 
 
-def test_settings_change_the_front_and_stand_in_it():
-    plain = search(HALF, "smsemoa", seed=2, **SMALL)
-    other = search(HALF, "smsemoa", seed=2, settings={"crossover_eta": 5}, **SMALL)
+@pytest.mark.parametrize(
+    ("method", "name", "value"),
+    [("smsemoa", "crossover_eta", 5), ("gde3", "crossover", 0.95), ("nsde", "scale", 0.4),
+     ("nsder", "variant", "DE/best/1/bin"), ("moead", "neighbours", 5)],
+)  # fmt: skip
+def test_settings_change_the_front_and_stand_in_it(method, name, value):
+    plain = search(HALF, method, seed=2, **SMALL)
+    other = search(HALF, method, seed=2, settings={name: value}, **SMALL)
     assert plain.points != other.points
-    assert "eta=15.0" in plain.settings["crossover"]
-    assert "eta=5.0" in other.settings["crossover"]
+    assert other.settings == {**plain.settings, name: value} != plain.settings

@@ -102,20 +102,6 @@ def test_duplicates_are_those_with_equal_coefficients(X, others):
     assert list(kept) == expected
 
 
-def test_settings_state_every_operator_as_it_is():
-    algorithm = PaperNSGA2(30)
-    stated, mating = algorithm.settings, algorithm.mating
-    assert stated["population"] == algorithm.pop_size == 30
-    for name, operator in (("crossover", mating.crossover), ("mutation", mating.mutation)):
-        values = {key: getattr(operator, key).value for key in ("prob", "prob_var", "eta")}
-        words = ", ".join(f"{key}={value:g}" for key, value in values.items())
-        assert stated[name] == f"{type(operator).__name__}({words})"
-    assert algorithm.tournament_type == "comp_by_dom_and_crowding"
-    assert mating.selection.pressure == 2
-    for part in (mating, algorithm.initialization):
-        assert isinstance(part.eliminate_duplicates, ExactDuplicates)
-
-
 @pytest.mark.parametrize("population", [2, 3, 7, 20])
 def test_every_generation_evaluates_exactly_the_population(population):
     algorithm = PaperNSGA2(population)

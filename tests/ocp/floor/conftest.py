@@ -7,26 +7,14 @@ from quietarm.ocp import energy_floor
 from quietarm.ocp.floor import search
 
 
-@pytest.fixture
-def coarse(monkeypatch):
-    """Coarser grids, where it is not asked how low a floor is."""
-    monkeypatch.setattr(search, "FIRST_INTERVALS", 24)
-
-
-@pytest.fixture
-def coarsest(monkeypatch):
-    """The coarsest, where it is not asked what a floor is either."""
-    monkeypatch.setattr(search, "FIRST_INTERVALS", 12)
-
-
 @pytest.fixture(scope="session")
 def coarse_of():
-    """`energy_floor` on such grids, that solves nothing twice."""
+    """`energy_floor` from one start and on coarse grids, that solves nothing twice."""
 
     @cache
-    def solve(task, **settings):
+    def solve(task, starts=1, **settings):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(search, "FIRST_INTERVALS", 24)
-            return energy_floor(task, **settings)
+            return energy_floor(task, starts=starts, **settings)
 
     return solve

@@ -5,12 +5,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import pytest
-from floor_moves import SHORT
-from quietarm.models import Plant, parameter
-from quietarm.ocp import (
-    PointToPoint,
-    energy_floor,
-)
+
+import quietarm as qa
 
 
 @pytest.fixture
@@ -18,12 +14,12 @@ def rigid(_plants_of_this_test_are_forgotten):
     """A rigid joint beside a mode that nothing excites: tau = inertia theta'' + c theta'."""
 
     @dataclass(frozen=True)
-    class Rigid(Plant):
+    class Rigid(qa.Plant):
         name: ClassVar[str] = "rigid"
         modes: ClassVar[int] = 1
 
-        inertia: float = parameter(0.02, "kg m^2", "test")
-        c: float = parameter(0.03, "N m s", "test")
+        inertia: float = qa.parameter(0.02, "kg m^2", "test")
+        c: float = qa.parameter(0.03, "N m s", "test")
 
         def modal_accelerations(self, joint, W, dW):
             return [-100.0 * W[0]]
@@ -61,7 +57,7 @@ def _friction_floor(inertia, c, span, duration):
 def test_a_rigid_joint_with_friction_has_its_closed_form(rigid, smooth):
     plant = rigid()
     expected = _friction_floor(plant.inertia, plant.c, 1.5, 0.8)
-    floor = energy_floor(PointToPoint(plant, 1.5, 0.8), smooth=smooth, **SHORT)
+    floor = qa.energy_floor(qa.PointToPoint(plant, 1.5, 0.8), smooth=smooth, starts=1)
     assert floor.energy == pytest.approx(expected, rel=2e-3)
     assert floor.energy > expected * (1 - 1e-4)  # no motion is cheaper
     # A jolt takes up to 4e-5 of the move at any level.
@@ -73,8 +69,8 @@ def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form(rigid):
     # the least top speed is the trapezium's: span = v T - v^2/A.
     limit, span, duration = 15.0, 1.5, 0.8
     v = (limit * duration - math.sqrt((limit * duration) ** 2 - 4 * limit * span)) / 2
-    task = PointToPoint(rigid(c=0.0), span, duration, acceleration_limit=limit)
-    floor = energy_floor(task, **SHORT)
+    task = qa.PointToPoint(rigid(c=0.0), span, duration, acceleration_limit=limit)
+    floor = qa.energy_floor(task, starts=1)
     assert floor.energy == pytest.approx(task.plant.inertia * v**2, rel=1e-3)
     assert floor.motion.peak_speed == pytest.approx(v, rel=2e-3)
     assert floor.motion.peak_acceleration <= limit * (1 + 1e-9)

@@ -7,52 +7,37 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import (
-    CycloidPolynomial,
-    FailedPoint,
-    Front,
-    PointToPoint,
-    UncertainPlant,
-    epsilon_front,
-    polish_front,
-    resimulate,
-    weighted_front,
-    with_errors,
-)
-from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.ocp.front import robust
-from quietarm.ocp.front.robust import EXCESS, held_between, on_same_samples
-from quietarm.ocp.front.sweep import Sweep
-from quietarm.ocp.robustness.uncertain import on_assumed, with_samples
-from quietarm.studies.comparison.measures import compare_fronts
+from quietarm.ocp.front.robust import EXCESS
+from quietarm.ocp.robustness.uncertain import on_assumed
+
+import quietarm as qa
 
 RANGE, POINTS = 0.15, 3
-PROFILE = CycloidPolynomial(4)
+PROFILE = qa.CycloidPolynomial(4)
 
 
 @pytest.fixture(scope="module")
 def task():
-    plant = UncertainPlant(SingleLinkManipulator(), {"frequency": RANGE})
-    return PointToPoint(plant, target=pi / 6, duration=0.8)
+    plant = qa.UncertainPlant(qa.SingleLinkManipulator(), {"frequency": RANGE})
+    return qa.PointToPoint(plant, target=pi / 6, duration=0.8)
 
 
 @pytest.fixture(scope="module")
 def at_samples(task):
-    return epsilon_front(task, PROFILE, points=POINTS, starts=1, between=False)
+    return qa.epsilon_front(task, PROFILE, points=POINTS, starts=1, between=False)
 
 
 @pytest.fixture(scope="module")
 def front(task):
-    return epsilon_front(task, PROFILE, points=POINTS, starts=1)
+    return qa.epsilon_front(task, PROFILE, points=POINTS, starts=1)
 
 
 def worst(front, point):
     """By CVODES on errors beside the grid that the front's own search looks at."""
     task = on_assumed(front.task)
     return max(
-        resimulate(
-            replace(task, plant=with_errors(task.plant, {"frequency": error})),
+        qa.resimulate(
+            replace(task, plant=qa.with_errors(task.plant, {"frequency": error})),
             front.profile,
             point.coefficients,
         ).residual
@@ -81,75 +66,27 @@ def test_all_points_are_found(front, task):
 
 
 def test_the_cheapest_point_is_the_assumed_plant_s(front):
-    alone = epsilon_front(on_assumed(front.task), PROFILE, points=2, starts=1)
+    alone = qa.epsilon_front(on_assumed(front.task), PROFILE, points=2, starts=1)
     assert front.cheapest().energy == pytest.approx(alone.cheapest().energy, rel=1e-6)
 
 
 def test_residuals_are_those_at_the_samples_of_the_saved_plant(front, tmp_path):
     front.save(tmp_path / "front.json")
-    loaded = Front.load(tmp_path / "front.json")
+    loaded = qa.Front.load(tmp_path / "front.json")
     assert loaded == front
     for point in loaded.points:
-        residual = resimulate(loaded.task, PROFILE, point.coefficients).residual
+        residual = qa.resimulate(loaded.task, PROFILE, point.coefficients).residual
         assert residual == pytest.approx(point.residual, rel=1e-4)
 
 
 def test_a_weighted_sum_holds_as_well(task):
-    front = weighted_front(task, PROFILE, weights=[(1, 1)], starts=1)
+    front = qa.weighted_front(task, PROFILE, weights=[(1, 1)], starts=1)
     assert front.settings[EXCESS] <= 0.05
     for point in front.points:
         assert worst(front, point) <= point.residual * (1 + front.settings[EXCESS] + 1e-4)
 
 
 def test_a_polished_front_holds_as_well(front):
-    polished = polish_front(replace(front, points=front.points[1:2])).front
+    polished = qa.polish_front(replace(front, points=front.points[1:2])).front
     for point in polished.points:
         assert worst(polished, point) <= point.residual * (1 + polished.settings[EXCESS] + 1e-4)
-
-
-def test_ctrl_c_keeps_the_round_before(at_samples, monkeypatch):
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(robust, "_solved_again", interrupted)
-    sweep = Sweep(at_samples.task, PROFILE, SolveSettings(starts=1))
-    found, excess, complete = held_between(sweep, at_samples.points)
-    assert (tuple(found), excess, complete) == (at_samples.points, None, False)
-    assert sweep.task == at_samples.task
-
-
-def test_a_missing_point_is_found_from_its_neighbour(front):
-    missing = FailedPoint({"residual_limit": front.points[1].residual}, "no luck")
-    sweep = Sweep(front.task, PROFILE, SolveSettings(starts=1))
-    found, _, _ = held_between(sweep, [front.points[0], missing, *front.points[2:]])
-    assert not [one for one in found if isinstance(one, FailedPoint)]
-    energies = sorted(one.energy for one in found)
-    assert energies == pytest.approx(sorted(front.energies), rel=1e-3)
-
-
-def test_fronts_with_other_samples_are_compared_at_those_of_all(front, at_samples):
-    same = on_same_samples([front, at_samples])
-    assert same[0].task == same[1].task
-    assert same[1].points[0].residual == pytest.approx(
-        resimulate(same[1].task, PROFILE, at_samples.points[0].coefficients).residual, rel=1e-4
-    )
-    compared = compare_fronts([front, at_samples], fill=0)
-    assert sum(len(group.runs) for group in compared.groups) == 2
-
-
-def test_fronts_of_other_ranges_or_plants_stay_as_they_are(front):
-    wider = UncertainPlant(SingleLinkManipulator(), {"frequency": 2 * RANGE})
-    other = replace(front, task=replace(front.task, plant=wider))
-    assert on_same_samples([front, other]) == [front, other]
-    plain = replace(front, task=on_assumed(front.task))
-    assert on_same_samples([front, plain]) == [front, plain]
-
-
-def test_without_an_uncertain_plant_nothing_happens(front):
-    sweep = Sweep(on_assumed(front.task), PROFILE, SolveSettings(starts=1))
-    assert held_between(sweep, front.points) == (list(front.points), None, True)
-
-
-def test_samples_of_the_sweep_begin_with_none(task):
-    sweep = Sweep(with_samples(task, [[0.05]]), PROFILE, SolveSettings(starts=1))
-    assert sweep.samples == [(0.0,), (-RANGE,), (RANGE,), (0.05,)]

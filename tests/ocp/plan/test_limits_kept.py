@@ -52,16 +52,11 @@ def densely(plan):
     return peaks
 
 
-# Every quantity with two modes and with one: of the plants of one mode, each takes its share.
 CASES = [
     *(("two links, 30deg", quantity) for quantity in SHARES),
-    *(("single link, back", quantity) for quantity in ("torque", "acceleration", "deflection")),
-    *(("arm, 135deg", quantity) for quantity in ("speed", "jerk")),
+    *(("single link, back", quantity) for quantity in ("torque", "acceleration")),
+    ("arm, 135deg", "jerk"),
 ]
-
-
-def test_every_quantity_has_its_cases():
-    assert [*SHARES] == [*QUANTITIES]
 
 
 @pytest.mark.parametrize(("move", "quantity"), CASES)
@@ -74,6 +69,8 @@ def test_a_limit_is_kept_and_its_peak_told(plants, solved, move, quantity):
         plants[plant], target, duration, start, **{QUANTITIES[quantity].limit: limit}
     )
     plan = plan_move(task, CycloidPolynomial(6), starts=1)
+    assert plan.residual < 1e-7
+    assert plan.energy > free.energy
     peaks = densely(plan)
     assert peaks[quantity] <= limit
     for name, peak in peaks.items():  # the README's tolerance

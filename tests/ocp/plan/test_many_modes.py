@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from quietarm.models import Plant
-from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move, resimulate
+
+import quietarm as qa
 
 EXAMPLES = [(1, 0), (2, 1), (4, 0), (8, 0)]
 
@@ -25,7 +25,7 @@ def _plant(modes, seed):
     share = random.uniform(0.1, 0.9, modes) / modes / a
 
     @dataclass(frozen=True)
-    class Links(Plant):
+    class Links(qa.Plant):
         name: ClassVar[str] = f"links-of-a-test-{modes}-{seed}"
 
         def modal_accelerations(self, joint, W, dW):
@@ -49,7 +49,10 @@ def _plant(modes, seed):
 @pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 def test_as_many_modes_as_the_terms_can_still_come_to_rest(modes, seed):
     # Rest of the modes is two conditions for each; four more terms are left to save energy.
-    task, profile = PointToPoint(_plant(modes, seed), 1.0, 1.2), CycloidPolynomial(2 * modes + 4)
-    plain = resimulate(task, profile, np.zeros(profile.size))
-    plan = plan_move(task, profile, starts=1)
+    task, profile = (
+        qa.PointToPoint(_plant(modes, seed), 1.0, 1.2),
+        qa.CycloidPolynomial(2 * modes + 4),
+    )
+    plain = qa.resimulate(task, profile, np.zeros(profile.size))
+    plan = qa.plan_move(task, profile, starts=1)
     assert plan.residual < 1e-6 * plain.residual

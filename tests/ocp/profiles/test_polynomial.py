@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from quietarm.ocp import MAX_TERMS, CycloidPolynomial
+from quietarm.ocp import CycloidPolynomial
 
 angles = st.floats(-2 * math.pi, 2 * math.pi)
 durations = st.floats(0.1, 10.0)
@@ -28,7 +28,7 @@ def _scale(start, target, duration, order):
 
 
 @pytest.mark.parametrize("start", [0.0, -1.2])
-@pytest.mark.parametrize("fraction", [0.0, 0.1, 0.25, 0.5, 0.75, 0.93, 1.0])
+@pytest.mark.parametrize("fraction", [0.0, 0.1, 0.5, 0.93])
 def test_plain_cycloid_in_closed_form(start, fraction):
     span, duration = 2.5, 0.8
     path = _path([], start, start + span, duration)
@@ -39,14 +39,6 @@ def test_plain_cycloid_in_closed_form(start, fraction):
     assert path(t, 1) == pytest.approx(span / duration * (1 - math.cos(x)), abs=1e-12)
     assert path(t, 2) == pytest.approx(span / duration * rate * math.sin(x), abs=1e-11)
     assert path(t, 3) == pytest.approx(span / duration * rate**2 * math.cos(x), abs=1e-10)
-
-
-def test_plain_cycloid_peaks():
-    # From the closed form: speed 2 span/T halfway, acceleration 2 pi span/T^2 at a quarter.
-    path = _path([], 0.0, math.pi / 6, 0.8)
-    assert path(0.4, 1) == pytest.approx(2 * (math.pi / 6) / 0.8)
-    assert path(0.2, 2) == pytest.approx(2 * math.pi * (math.pi / 6) / 0.8**2)
-    assert path(0.4) == pytest.approx(math.pi / 12)
 
 
 # -- eqs (1), (6), (7) typed afresh --
@@ -86,9 +78,6 @@ def test_joint_rests_before_and_after_the_move(a, order, outside):
     assert path(times, order).tolist() == [0.0, 0.0]
 
 
-# -- derivatives --
-
-
 @settings(max_examples=25)
 @given(a=coefficients, start=angles, target=angles, duration=durations, fraction=st.floats(0, 1))
 def test_derivatives_are_those_of_the_angle(a, start, target, duration, fraction):
@@ -107,111 +96,10 @@ def test_derivatives_are_those_of_the_angle(a, start, target, duration, fraction
         )
 
 
-@pytest.mark.parametrize("order", [1, 2, 3])
-def test_derivatives_are_the_limits_of_differences(order):
-    # Independent of casadi: central differences of the order below, N = 6 of the paper's Table 1.
-    a = [-1.889e-3, -1.427e-1, -4.247e-2, -1.187e-1, 4.800e-2, -1.890e-1]
-    path, t, h = _path(a, 0.0, math.pi / 6, 0.8), np.linspace(0.05, 0.75, 29), 1e-5
-    differences = (path(t + h, order - 1) - path(t - h, order - 1)) / (2 * h)
-    size = np.abs(path(t, order)).max()
-    assert path(t, order) == pytest.approx(differences, abs=1e-7 * size)
-
-
-# -- symmetries --
-
-
-@settings(max_examples=25)
-@given(a=coefficients, factor=st.floats(0.1, 10.0), fraction=st.floats(0, 1))
-def test_a_slower_move_is_the_same_in_stretched_time(a, factor, fraction):
-    fast, slow = _path(a, -1.0, 2.0, 1.0), _path(a, -1.0, 2.0, factor)
-    for order in range(4):
-        stretched = slow(fraction * factor, order) * factor**order
-        assert stretched == pytest.approx(float(fast(fraction, order)), rel=1e-9, abs=1e-9)
-
-
-@settings(max_examples=40)
-@given(a=coefficients, fraction=st.floats(0, 1), order=st.integers(0, 3))
-def test_the_move_is_proportional_to_its_span(a, fraction, order):
-    one, three = _path(a, 0.0, 1.0), _path(a, 0.7, -2.3)
-    expected = -3 * one(fraction, order) + (0.7 if order == 0 else 0.0)
-    assert three(fraction, order) == pytest.approx(expected, rel=1e-9, abs=1e-9)
-
-
-@settings(max_examples=40)
-@given(a=coefficients, fraction=st.floats(0, 1), order=st.integers(0, 3))
-def test_alternating_signs_run_the_move_backwards(a, fraction, order):
-    # T -> -T in eq (6): U -> 1 - U when a_n -> (-1)^n a_n, n = 1, 2, ...
-    forwards = _path(a, 0.4, 1.9)
-    backwards = _path([(-1) ** n * a_n for n, a_n in enumerate(a, start=1)], 1.9, 0.4)
-    expected = (-1) ** order * forwards(1.0 - fraction, order)
-    assert backwards(fraction, order) == pytest.approx(expected, rel=1e-9, abs=1e-7)
-
-
-@settings(max_examples=40)
-@given(a=coefficients, fraction=st.floats(0, 1), order=st.integers(0, 3))
-def test_a_term_of_coefficient_zero_changes_nothing(a, fraction, order):
-    assert _path([*a, 0.0])(fraction, order) == _path(a)(fraction, order)
-
-
-# -- one set of lines for symbols, matrices and numbers --
-
-
-def test_numbers_symbols_and_matrices_give_the_same():
-    rows, columns, terms = 3, 5, 4
-    values = np.random.default_rng(3).uniform(-0.5, 0.5, (terms + 1, rows, columns))
-    values[0] = np.abs(values[0]) * 2  # the fraction, in [0, 1]
-    profile, move = CycloidPolynomial(terms), (-0.5, 1.3, 0.9)
-
-    def derivatives(arguments):
-        return list(profile.derivatives(arguments[1:], arguments[0], *move))
-
-    scalars = [ca.SX.sym(f"x{i}") for i in range(terms + 1)]
-    of_scalars = ca.Function("scalars", scalars, [ca.vertcat(*derivatives(scalars))])
-    matrices = [ca.MX.sym(f"X{i}", rows, columns) for i in range(terms + 1)]
-    of_matrices = ca.Function("matrices", matrices, derivatives(matrices))
-    by_matrix = [value.full() for value in of_matrices.call([ca.DM(v) for v in values])]
-    for row in range(rows):
-        for column in range(columns):
-            one = values[:, row, column].tolist()
-            by_number = np.array([float(value) for value in derivatives(one)])
-            assert of_scalars(*one).full().ravel() == pytest.approx(by_number, rel=1e-13)
-            here = np.array([matrix[row, column] for matrix in by_matrix])
-            assert here == pytest.approx(by_number, rel=1e-13)
-
-
-def test_motion_is_angle_speed_and_acceleration():
-    profile = CycloidPolynomial(2)
-    arguments = ([0.1, -0.2], 0.3, 0.0, 1.0, 0.8)
-    assert profile.motion(*arguments) == (*profile.derivatives(*arguments), None)
-
-
-# -- the callable --
-
-
-@pytest.mark.parametrize("shape", [(), (0,), (1,), (7,), (2, 3), (2, 3, 4)])
-@pytest.mark.parametrize("order", [0, 1, 2, 3])
-def test_path_keeps_the_shape_of_the_times(shape, order):
+@pytest.mark.parametrize("shape", [(), (0,), (2, 3)])
+def test_path_keeps_the_shape_of_the_times(shape):
     t = np.linspace(-0.1, 1.1, math.prod(shape)).reshape(shape)
-    result = _path([0.1, -0.1])(t, order)
+    result = _path([0.1, -0.1])(t, 3)
     assert result.shape == shape
-    each = [_path([0.1, -0.1])(one, order).item() for one in t.ravel()]
+    each = [_path([0.1, -0.1])(one, 3).item() for one in t.ravel()]
     assert result.ravel().tolist() == each
-
-
-# -- terms and coefficients --
-
-
-@pytest.mark.parametrize("terms", [0, 1, 6, 20, np.int64(3)])
-def test_terms_are_the_number_of_coefficients(terms):
-    assert CycloidPolynomial(terms).size == terms
-    assert type(CycloidPolynomial(terms).terms) is int
-
-
-# -- families by name --
-
-
-def test_the_most_terms_still_tell_the_powers_apart():
-    # The doc of MAX_TERMS: the condition number of the powers of T on [-1, 1] leaves four digits.
-    T = np.cos(np.linspace(0, np.pi, 400))
-    condition = np.linalg.cond(np.vander(T, MAX_TERMS))
-    assert condition * np.finfo(float).eps < 1e-4

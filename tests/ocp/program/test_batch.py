@@ -5,26 +5,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp import (
-    CycloidGaussians,
-    CycloidNetwork,
-    CycloidPolynomial,
-    CycloidSpline,
-    rollout,
-    with_errors,
-)
 from quietarm.ocp.program.batch import batch
 from quietarm.ocp.program.sqp import WIDTHS
 from quietarm.ocp.task.point_to_point import LIMITS
+
+import quietarm as qa
 
 QUANTITIES = tuple(limit.removesuffix("_limit") for limit in LIMITS)
 MOVES = np.array([[0.0, math.pi / 2, 0.8], [-0.4, 1.1, 0.7], [0.3, -1.0, 1.0]])
 ERRORS = {"frequency": 0.1, "damping": -0.3}
 PROFILES = {
-    "polynomial": CycloidPolynomial(4),
-    "spline": CycloidSpline(6),
-    "gaussians": CycloidGaussians(2),
-    "network": CycloidNetwork(2),
+    "polynomial": qa.CycloidPolynomial(4),
+    "spline": qa.CycloidSpline(6),
+    "gaussians": qa.CycloidGaussians(2),
+    "network": qa.CycloidNetwork(2),
 }
 
 
@@ -52,18 +46,15 @@ def _derivatives(made, candidates, width=0.0, weights=None):
     return made.derivatives(*candidates, np.full(rows, width), weights)
 
 
-# -- figures --
-
-
 @pytest.mark.parametrize("errors", [{}, ERRORS], ids=["as assumed", "with errors"])
 def test_figures_are_those_of_the_rollout(task, errors):
-    profile, steps = CycloidPolynomial(4), 40
+    profile, steps = qa.CycloidPolynomial(4), 40
     task = replace(task, start=-0.2, **dict.fromkeys(LIMITS, 1.0))
     made = batch(task.plant, profile, steps, QUANTITIES, tuple(errors))
     a = _candidates(1, profile)[0]
     inputs = a, np.array([task.move]), np.array([list(errors.values())])
-    wrong = replace(task, plant=with_errors(task.plant, errors))
-    expected = rollout(wrong, profile, a[0], steps=steps)
+    wrong = replace(task, plant=qa.with_errors(task.plant, errors))
+    expected = qa.rollout(wrong, profile, a[0], steps=steps)
     for found in (made.values(*inputs), _derivatives(made, inputs)):
         assert found.arrival[0] == pytest.approx(np.array(expected.arrival), rel=1e-8, abs=1e-12)
         for name, part in made.parts:
@@ -75,10 +66,9 @@ def test_figures_are_those_of_the_rollout(task, errors):
     assert _derivatives(made, inputs).energy[0] == pytest.approx(energy, rel=25 / steps**4)
 
 
-@pytest.mark.parametrize("rows", [1, 3, 9, 60])
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize(("rows", "threads"), [(3, 1), (20, 2)])
 def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
-    profile = CycloidPolynomial(4)
+    profile = qa.CycloidPolynomial(4)
     made = batch(plants["arm"], profile, 12, ("torque",), ("frequency",))
     candidates = _candidates(rows, profile, made.kind.errors)
     weights = _weights(made, rows)
@@ -97,7 +87,7 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
 
 
 def test_more_rows_than_a_call_takes(plants):
-    made = batch(plants["single link"], CycloidPolynomial(2), 12)
+    made = batch(plants["single link"], qa.CycloidPolynomial(2), 12)
     candidates = _candidates(250, made.kind.profile)
     found = made.values(*candidates, threads=2)
     for row in (0, 99, 100, 249):
@@ -105,18 +95,13 @@ def test_more_rows_than_a_call_takes(plants):
         assert found.energy[row] == pytest.approx(alone.energy[0], rel=1e-12)
 
 
-# -- derivatives --
-
 CASES = [
     ("single link", "polynomial", QUANTITIES, ()),
     ("arm", "polynomial", ("torque", "jerk"), ("frequency", "damping")),
     ("two links", "polynomial", ("deflection", "acceleration"), ("frequency",)),
-    ("two links", "spline", ("torque", "deflection"), ()),
     ("arm", "spline", ("acceleration", "jerk"), ("omega",)),
     ("arm", "gaussians", ("torque", "jerk"), ()),
     ("single link", "network", ("acceleration", "deflection"), ("frequency",)),
-    ("two links", "network", (), ()),
-    ("single link", "polynomial", ("torque",), ("frequency", "beta1")),
 ]
 
 
@@ -173,9 +158,9 @@ def test_curvature_is_the_limit_of_differences_of_the_lagrangians_gradient(case,
     assert found == pytest.approx(found.swapaxes(1, 2), abs=1e-10 * np.abs(found).max())
 
 
-@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+@pytest.mark.parametrize("name", ["arm", "two links"])
 def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants, name):
-    made = batch(plants[name], CycloidPolynomial(3), 30)
+    made = batch(plants[name], qa.CycloidPolynomial(3), 30)
     candidates = _candidates(2, made.kind.profile, seed=5)
     weights = np.ones(2), np.zeros((2, 2 * made.kind.plant.modes)), np.zeros((2, 0))
     found = _derivatives(made, candidates, 0.0, weights).curvature
@@ -185,7 +170,7 @@ def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants,
 
 def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
     # Rounded off, |power| is seen at the nodes only: of 80 steps they miss less than 2e-3 of it.
-    made = batch(task.plant, CycloidPolynomial(4), 80)
+    made = batch(task.plant, qa.CycloidPolynomial(4), 80)
     candidates = _candidates(4, made.kind.profile)
     sharp = _derivatives(made, candidates).energy
     shares = []
@@ -197,21 +182,3 @@ def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
     assert np.max(np.diff(shares, axis=0)) < 0
     assert np.abs(shares[-1]).max() < WIDTHS[-2]
     assert _derivatives(made, candidates, 1e-9).energy == pytest.approx(sharp, rel=2e-3)
-
-
-@pytest.mark.parametrize("terms", [3, 12, 20])
-def test_along_even_axes_the_inputs_speed_changes_alike_and_independently(plants, terms):
-    # U moves by (1 - T^2) T^n along coefficient n, n from 0, so its derivative by
-    # n T^(n-1) - (n + 2) T^(n+1). The Gram matrix is that of the integrals over the move; that of
-    # the first, -2 T, is 8/3.
-    axes = batch(plants["arm"], CycloidPolynomial(terms), 80).even_axes()
-    T, weights = np.polynomial.legendre.leggauss(40)
-    n = np.arange(terms)[:, None]
-    speeds = (n * T ** np.maximum(n - 1, 0) - (n + 2) * T ** (n + 1)).T @ axes
-    gram = (speeds * weights[:, None]).T @ speeds
-    assert gram == pytest.approx(8 / 3 * np.eye(terms), abs=0.05)
-
-
-def test_axes_of_coefficients_that_enter_nonlinearly_are_their_own(plants):
-    made = batch(plants["arm"], PROFILES["network"], 12)
-    assert made.even_axes().tolist() == np.eye(made.kind.profile.size).tolist()

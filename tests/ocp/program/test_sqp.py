@@ -4,7 +4,6 @@
 with their published minima.
 """
 
-import signal
 from functools import partial
 
 import casadi as ca
@@ -65,22 +64,11 @@ KNOWN = {
         partial(Problem, 2, _rosenbrock, [], [lambda x, y: y], [-1.5], [INF]),
         [-2, 1], [1, 1], 0.0,
     ),
-    "HS 6": (
-        partial(Problem, 2, lambda x, y: (1 - x) ** 2, [lambda x, y: 10 * (y - x**2)]),
-        [-1.2, 1], [1, 1], 0.0,
-    ),
     "HS 7": (
         partial(
             Problem, 2, lambda x, y: ca.log(1 + x**2) - y, [lambda x, y: (1 + x**2) ** 2 + y**2 - 4]
         ),
         [2, 2], [0, np.sqrt(3)], -np.sqrt(3),
-    ),
-    "HS 26": (
-        partial(
-            Problem, 3, lambda x, y, z: 1 + (x - y) ** 2 + (y - z) ** 4,  # the 1 is added
-            [lambda x, y, z: (1 + y**2) * x + z**4 - 3],
-        ),
-        [-2.6, 2, 2], None, 1.0,
     ),
     "HS 71": (
         partial(
@@ -112,8 +100,7 @@ def test_it_finds_the_published_minimum(known):
     assert found.ends == [End.SOLVED]
     assert found.f[0] == pytest.approx(f, abs=1e-7)
     assert found.violation[0] < 1e-9
-    if at is not None:  # HS 26 is flat around its own
-        assert found.x[0] == pytest.approx(np.array(at), abs=1e-4)
+    assert found.x[0] == pytest.approx(np.array(at), abs=1e-4)
 
 
 @pytest.mark.parametrize("name", ["HS 1", "HS 7", "HS 71", "linear on a disc"])
@@ -139,15 +126,6 @@ def test_a_step_that_only_restores_feasibility_is_not_the_last():
     assert found.x[0] == pytest.approx(np.array([np.log(2), 2.0]), abs=1e-4)
 
 
-def test_the_price_of_a_bound_is_its_multiplier():
-    # The least of -3x - 4y on a disc of radius r is -5r, and its price by r^2 is 5/(2r).
-    make, start, *_ = KNOWN["linear on a disc"]
-    assert make().solved(start, reach=1.0).of_v[0, 0] == pytest.approx(2.5, rel=1e-6)
-
-
-# -- where there is no motion --
-
-
 def test_what_cannot_be_met_ends_at_the_least_largest_violation():
     # x^2 + y^2 <= 1 and x >= 3: at (x, 0) both are missed alike where x^2 - 1 = 3 - x.
     problem = Problem(
@@ -160,34 +138,10 @@ def test_what_cannot_be_met_ends_at_the_least_largest_violation():
     assert found.x[0] == pytest.approx(np.array([x, 0.0]), abs=1e-2)
 
 
-def test_linear_bounds_are_kept_from_the_start_on_where_others_are_not():
-    # y = 5 + x^2 cannot be met in the box; that is kept, and the equation missed by the least.
-    problem = Problem(
-        2, lambda x, y: x**2 + y**2, [lambda x, y: y - 5 - x**2],
-        [lambda x, y: x, lambda x, y: y], [-1, -1], [1, 1],
-    )  # fmt: skip
-    seen = []
-    evaluate = problem.evaluate
-
-    def noted(rows, x, *rest):
-        seen.append(np.abs(x).max())
-        return evaluate(rows, x, *rest)
-
-    problem.evaluate = noted
-    found = problem.solved([0.9, -0.9], linear=2)
-    assert found.ends == [End.INFEASIBLE]
-    assert max(seen) <= 1 + 1e-9
-    assert found.x[0] == pytest.approx(np.array([0.0, 1.0]), abs=1e-2)
-    assert found.violation[0] == pytest.approx(4.0, abs=1e-4)
-
-
 def test_it_says_that_the_iterations_ran_out():
     make, start, *_ = KNOWN["HS 7"]
     found = make().solved(start, most=2)
     assert (found.ends, found.iterations.tolist()) == ([End.UNFINISHED], [2])
-
-
-# -- rows --
 
 
 def test_rows_end_independently():
@@ -217,50 +171,3 @@ def test_rows_of_a_group_are_left_once_half_of_them_agree():
     # Rows of other groups are other programs, however alike.
     apart = Problem(2, _above_zero).solved(starts, groups=np.arange(4))
     assert apart.ends == alone.ends
-
-
-def test_rows_that_meet_past_the_first_stage_go_on_as_one():
-    starts, of_one = [[1.3, 1.6], [1.3, 1.6001]], np.zeros(2, dtype=int)
-    problem = Problem(2, _above_zero)
-    found = problem.solved(starts, groups=of_one, widths=(0.5, 0.15, 0.05, 0.0))
-    assert sorted(end.name for end in found.ends) == ["AGREED", "SOLVED"]
-    assert found.f.min() == pytest.approx(1.0, abs=1e-9)
-
-
-def test_the_width_shrinks_to_none_stage_by_stage():
-    # sqrt(x^2 + w^2) + (x - 1)^2 for w > 0; at w = 0 it is |x| + (x - 1)^2, least at 1/2.
-    seen = []
-
-    def evaluate(rows, x, of_c, of_v, width):
-        seen.append(width.tolist())
-        x, none = x[:, 0], np.zeros((len(x), 0))
-        root = np.sqrt(x**2 + width**2) + 1e-300
-        second = width**2 / root**3 + 2
-        return Model(
-            root + (x - 1) ** 2, (x / root + 2 * (x - 1))[:, None], none, none[..., None], none,
-            none[..., None], second[:, None, None],
-        )  # fmt: skip
-
-    none = np.zeros((1, 0))
-    found = minimise(evaluate, np.array([[-2.0]]), none, none, widths=(0.5, 0.1, 0.0))
-    assert found.ends == [End.SOLVED]
-    assert found.x[0, 0] == pytest.approx(0.5, abs=1e-6)
-    widths = [width for (width,) in seen]
-    assert widths == sorted(widths, reverse=True)
-    assert set(widths) == {0.5, 0.1, 0.0}
-
-
-def test_ctrl_c_leaves_the_rows_where_they_are():
-    make, start, *_ = KNOWN["HS 7"]
-    problem = make()
-    evaluate = problem.evaluate
-
-    def interrupted(*given):
-        if len(problem.calls) == 3:
-            signal.raise_signal(signal.SIGINT)
-        return evaluate(*given)
-
-    problem.evaluate = interrupted
-    found = problem.solved([start, [0.0, 1.7]])
-    assert End.STOPPED in found.ends
-    assert np.isfinite(found.x).all()

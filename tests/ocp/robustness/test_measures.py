@@ -5,19 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.models import DualLinkManipulator, SingleLinkManipulator
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    evaluate_robustness,
-    resimulate,
-    shaped_cycloid,
-    with_errors,
-)
-from quietarm.ocp.robustness.population import ErrorPopulation
 from scipy.optimize import brentq
 
-LINEAR = SingleLinkManipulator(beta2=0.0, zeta=0.0)
+import quietarm as qa
+
+LINEAR = qa.SingleLinkManipulator(beta2=0.0, zeta=0.0)
 RANGES = {
     "single link": {"frequency": 0.2, "damping": 0.5, "beta1": 0.1, "alpha1": 0.1, "phi": 0.05},
     "arm": {"frequency": 0.2, "alpha1": 0.5, "alpha3": 0.1, "beta2": 0.3, "c": 0.2},
@@ -26,13 +18,13 @@ RANGES = {
 
 
 def of_plan(plan, ranges, **settings):
-    return evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, **settings)
+    return qa.evaluate_robustness(plan.task, plan.profile, plan.coefficients, ranges, **settings)
 
 
 def alone(plan, errors):
     """The figures of a plan on one plant with errors, by CVODES."""
-    task = replace(plan.task, plant=with_errors(plan.task.plant, errors))
-    return resimulate(task, plan.profile, plan.coefficients)
+    task = replace(plan.task, plant=qa.with_errors(plan.task.plant, errors))
+    return qa.resimulate(task, plan.profile, plan.coefficients)
 
 
 @pytest.fixture(scope="module")
@@ -45,9 +37,6 @@ def evaluated(request, plans):
     """A plan, its ranges, and its robustness with samples in two blocks, the last not full."""
     plan, ranges = plans[request.param], RANGES[request.param]
     return plan, ranges, of_plan(plan, ranges, samples=150, seed=4)
-
-
-# -- against single evaluations --
 
 
 def test_samples_are_what_cvodes_finds_one_by_one(evaluated):
@@ -75,29 +64,6 @@ def test_sweeps_change_one_thing_alone(evaluated):
         assert sweep.figures.residual[-1] == pytest.approx(single.residual, rel=6e-5, abs=1e-7)
         assert sweep.figures.energy[-1] == pytest.approx(single.energy, rel=1e-6)
         assert sweep.figures.residual[100] == found.assumed.residual[0]
-
-
-def test_the_figures_of_docs_physics(tasks, solved):
-    # 'The published optima are not optimal': the arm's plan, omega 10 % lower and higher, 2.9 mm.
-    task = replace(tasks["arm"])
-    found = of_plan(solved(task, bound=0.5), {"omega": 0.1}, samples=1)
-    assert found.sweeps[0].figures.residual[[0, -1]] == pytest.approx([2.9e-3, 2.9e-3], abs=5e-5)
-    assert found.cycloid == pytest.approx(15.0e-3, abs=5e-5)
-
-
-def test_faster_modes_are_resolved(two_links):
-    # A mode of 19 periods in the move, and 1.9 times as fast at the end of the range.
-    plant = replace(two_links, omega1=200.0)
-    task = PointToPoint(plant, 1.0, 0.6)
-    found = evaluate_robustness(task, CycloidPolynomial(0), [], {"omega1": 0.9}, samples=1)
-    single = resimulate(
-        replace(task, plant=replace(plant, omega1=200.0 * 1.9)), CycloidPolynomial(0), []
-    )
-    assert found.sweeps[0].figures.residual[-1] == pytest.approx(single.residual, rel=1e-4)
-    assert found.sweeps[0].figures.energy[-1] == pytest.approx(single.energy, rel=1e-4)
-
-
-# -- the insensitivity range --
 
 
 def of_cycloid(r, task, length):
@@ -134,9 +100,9 @@ def ends(excess, step=1e-3):
 
 @pytest.mark.parametrize(("shaper", "duration"), [("zv", 0.9), ("zvd", 0.9)])
 def test_the_insensitivity_of_shapers_is_that_of_the_closed_form(shaper, duration):
-    task = PointToPoint(LINEAR, 1.0, duration)
-    profile = shaped_cycloid(task, shaper)
-    found = evaluate_robustness(task, profile, [], {"frequency": 0.6}, samples=1)
+    task = qa.PointToPoint(LINEAR, 1.0, duration)
+    profile = qa.shaped_cycloid(task, shaper)
+    found = qa.evaluate_robustness(task, profile, [], {"frequency": 0.6}, samples=1)
     sweep, plain = found.sweeps[0], of_cycloid(1.0, task, duration)
     assert found.cycloid == pytest.approx(plain, rel=1e-5)
     expected = [left(shaper, 1 + error, task, profile) for error in sweep.errors]
@@ -148,34 +114,13 @@ def test_the_insensitivity_of_shapers_is_that_of_the_closed_form(shaper, duratio
     assert sweep.open_ends == (False, False)
 
 
-@pytest.mark.parametrize(
-    ("plant", "target", "duration", "shaper"),
-    [
-        (DualLinkManipulator(), math.pi / 2, 1.148, "ei"),  # nine short cycloids
-        (SingleLinkManipulator(), math.pi / 6, 0.3171, "zv"),
-    ],
-)
-def test_the_shortest_shaped_moves_leave_what_cvodes_says(plant, target, duration, shaper):
-    task = PointToPoint(plant, target, duration)
-    profile = shaped_cycloid(task, shaper)
-    errors = [0.0, 0.07, -0.1]
-    found = ErrorPopulation(task, profile, [], {"frequency": 0.1})([[error] for error in errors])
-    wrong = [with_errors(plant, {"frequency": error}) for error in errors]
-    motions = [resimulate(replace(task, plant=one), profile, []) for one in wrong]
-    assert found.residual == pytest.approx([m.residual for m in motions], rel=2e-4)
-    assert found.energy == pytest.approx([m.energy for m in motions], rel=2e-4)
-
-
 def test_a_range_that_is_not_left_is_open():
-    task = PointToPoint(DualLinkManipulator(), 1.0, 0.9)
-    profile = shaped_cycloid(task, "zv")
-    found = evaluate_robustness(task, profile, [], {"g1": 0.1, "c": 0.3}, samples=1)
+    task = qa.PointToPoint(qa.DualLinkManipulator(), 1.0, 0.9)
+    profile = qa.shaped_cycloid(task, "zv")
+    found = qa.evaluate_robustness(task, profile, [], {"g1": 0.1, "c": 0.3}, samples=1)
     for sweep, size in zip(found.sweeps, (0.1, 0.3), strict=True):  # of the torque alone
         assert sweep.insensitivity == (-size, size)
         assert sweep.open_ends == (True, True)
-
-
-# -- samples --
 
 
 def test_samples_come_from_the_seed_and_fill_the_ranges(plans):

@@ -1,21 +1,14 @@
 """The independent integrator: the paper's tables, many points at once, bad input."""
 
 import math
-from dataclasses import replace
 
 import pytest
-from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    SolverFailedError,
-    resimulate,
-    with_errors,
-)
 from third_opinion import COEFFICIENTS
 
+import quietarm as qa
+
 pi = math.pi
-PLAIN = CycloidPolynomial(0)
+PLAIN = qa.CycloidPolynomial(0)
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +17,7 @@ def motion(tasks):
 
     def of(name, row):
         a = COEFFICIENTS[name][row]
-        return resimulate(tasks[name], CycloidPolynomial(len(a)), a)
+        return qa.resimulate(tasks[name], qa.CycloidPolynomial(len(a)), a)
 
     return of
 
@@ -75,51 +68,7 @@ def test_the_printed_energies_are_found_again(motion, name, row, printed, digit)
     assert motion(name, row).energy == pytest.approx(printed, abs=digit)
 
 
-def test_table_4_has_a_misprint(motion):
-    # a_5 as printed misses Table 5's energy by six units of its last digit and rings five times
-    # as much as mended (docs/physics.md).
-    assert motion("arm", "6 as printed").energy > 1.54e-1
-    assert motion("arm", "6 as printed").residual > 4 * motion("arm", "6 mended").residual
-
-
-def test_the_plain_cycloid_rings_at_about_7_7_cm(motion):
-    # Section 3.1: 'a large residual vibration with an amplitude of about 7.7 cm'.
-    assert motion("single link", "cycloid").residual == pytest.approx(0.077, abs=0.0005)
-
-
-def test_more_terms_keep_the_single_link_straighter(motion):
-    # Section 3.1: 'with an increase in the number of terms, the maximum tip displacement during the
-    # PTP motion reduces'.
-    peaks = [motion("single link", row).peak_deflection for row in ("2", "4", "6")]
-    assert peaks == sorted(peaks, reverse=True)
-
-
-def test_a_longer_window_never_shows_less(plants):
-    def residual(window):
-        task = PointToPoint(plants["arm"], pi / 2, 0.8, residual_window=window)
-        return resimulate(task, PLAIN, []).residual
-
-    residuals = [residual(window) for window in (0.05, 0.1, 0.2, 1.0)]
-    assert residuals == sorted(residuals)
-    assert residuals[0] < residuals[-1]
-
-
-# -- many points of one plant and profile --
-
-
-def test_a_plant_with_errors_is_simulated_as_well(tasks):
-    # whose own entries are a plant and factors, not parameters
-    plant = with_errors(SingleLinkManipulator(), {"frequency": 0.1})
-    there = replace(tasks["single link"], plant=plant)
-    assert resimulate(there, CycloidPolynomial(1), [0.1]).energy > 0
-
-
-def test_coefficients_a_thousand_times_those_of_a_plan_are_followed(tasks):
-    figures = resimulate(tasks["single link"], CycloidPolynomial(1), [1000.0])
-    assert figures.energy > 1e7
-
-
 def test_a_motion_beyond_all_scale_may_have_no_coefficients():
-    wild = SingleLinkManipulator(beta1=1e100)
-    with pytest.raises(SolverFailedError, match=r"CVODES .*far out of scale.*coefficient is 0"):
-        resimulate(PointToPoint(wild, 1e5, 1e-3), PLAIN, [])
+    wild = qa.SingleLinkManipulator(beta1=1e100)
+    with pytest.raises(qa.SolverFailedError, match=r"CVODES .*far out of scale.*coefficient is 0"):
+        qa.resimulate(qa.PointToPoint(wild, 1e5, 1e-3), PLAIN, [])

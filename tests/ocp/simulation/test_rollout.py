@@ -5,22 +5,19 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, PointToPoint, resimulate, rollout, symbolic_rollout
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
 
-pi = math.pi
-PLAIN = CycloidPolynomial(0)
+import quietarm as qa
 
-# -- closed forms --
+pi = math.pi
+PLAIN = qa.CycloidPolynomial(0)
 
 
 def _undamped(omega, **changes):
-    return SingleLinkManipulator(omega=omega, zeta=0.0, beta2=0.0, **changes)
+    return qa.SingleLinkManipulator(omega=omega, zeta=0.0, beta2=0.0, **changes)
 
 
 @pytest.mark.parametrize("omega", [3.0, 10.43, 2 * pi / 0.8 * 1.5, 25.0])
@@ -32,21 +29,14 @@ def test_an_undamped_oscillator_driven_by_the_plain_cycloid(omega):
     gain = -2.555e-1 * A / (omega**2 - O**2)
     W = -gain * O / omega * math.sin(omega * T)
     dW = gain * O * (1 - math.cos(omega * T))
-    arrival = rollout(PointToPoint(_undamped(omega), span, T), PLAIN, []).arrival
+    arrival = qa.rollout(qa.PointToPoint(_undamped(omega), span, T), PLAIN, []).arrival
     assert arrival == pytest.approx([W, dW], rel=1e-9, abs=1e-10)
-
-
-@pytest.mark.parametrize("periods", [2, 3, 4])
-def test_whole_periods_of_the_plain_cycloid_leave_an_undamped_arm_still(periods):
-    # The closed form above vanishes at omega T = 2 pi k, k = 2, 3, ...
-    task = PointToPoint(_undamped(2 * pi * periods / 0.8), pi / 6, 0.8)
-    assert rollout(task, PLAIN, []).motion.residual < 1e-8
 
 
 def test_energy_of_a_rigid_body_is_what_it_takes_to_start_and_to_stop():
     # torque = alpha1 theta'': alpha1 v^2/2 to start and again to stop, v = 2 span/T halfway.
-    rigid = SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
-    motion = rollout(PointToPoint(rigid, pi / 6, 0.8), PLAIN, []).motion
+    rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
+    motion = qa.rollout(qa.PointToPoint(rigid, pi / 6, 0.8), PLAIN, []).motion
     assert motion.energy == pytest.approx(0.02 * (2 * (pi / 6) / 0.8) ** 2, rel=1e-9)
     assert motion.net_work == pytest.approx(0.0, abs=1e-12)
     # alpha1 times the largest theta'' = 2 pi span/T^2.
@@ -55,8 +45,8 @@ def test_energy_of_a_rigid_body_is_what_it_takes_to_start_and_to_stop():
 
 def test_energy_of_friction_alone():
     # torque = c theta': c span^2/T^2 times the integral of (1 - cos)^2, 3/2 T; all of it is lost.
-    friction = SingleLinkManipulator(alpha1=0.0, alpha2=0.0, c=0.03)
-    motion = rollout(PointToPoint(friction, pi / 6, 0.8), PLAIN, []).motion
+    friction = qa.SingleLinkManipulator(alpha1=0.0, alpha2=0.0, c=0.03)
+    motion = qa.rollout(qa.PointToPoint(friction, pi / 6, 0.8), PLAIN, []).motion
     assert motion.energy == pytest.approx(1.5 * 0.03 * (pi / 6) ** 2 / 0.8, rel=1e-12)
     assert motion.net_work == pytest.approx(motion.energy, rel=1e-12)
 
@@ -68,10 +58,8 @@ BOXES = {"single link": 0.2, "arm": 0.5}
 CONDITIONS = [
     # Tables 3 and 6: start, target, duration.
     ("single link", 0.0, pi / 6, 0.8),
-    ("single link", 0.0, pi / 2, 1.0),
     ("single link", 0.0, pi / 2, 1.1),
     ("arm", 0.0, pi / 2, 0.8),
-    ("arm", -pi / 2, pi / 4, 1.0),
     ("arm", -pi / 2, pi / 2, 1.2),
 ]
 
@@ -79,12 +67,12 @@ CONDITIONS = [
 @pytest.mark.parametrize(("name", "start", "target", "duration"), CONDITIONS)
 def test_default_steps_are_as_accurate_as_stated(plants, name, start, target, duration):
     # F2 within 1e-5 relative and W at arrival within 1e-7 m of CVODES, coefficients in the box.
-    task = PointToPoint(plants[name], target, duration, start=start)
-    random, profile, box = np.random.default_rng(20), CycloidPolynomial(6), BOXES[name]
-    inside, corners = random.uniform(-box, box, (8, 6)), random.choice([-box, box], (4, 6))
+    task = qa.PointToPoint(plants[name], target, duration, start=start)
+    random, profile, box = np.random.default_rng(20), qa.CycloidPolynomial(6), BOXES[name]
+    inside, corners = random.uniform(-box, box, (4, 6)), random.choice([-box, box], (2, 6))
     energy, arrival = [], []
     for a in np.vstack([inside, corners]):
-        fixed = rollout(task, profile, a)
+        fixed = qa.rollout(task, profile, a)
         reference = resimulated(task, PiecewiseMotion.of_profile(task, profile, a))
         energy.append(abs(fixed.motion.energy / reference.motion.energy - 1))
         W = slice(task.plant.modes)
@@ -93,24 +81,14 @@ def test_default_steps_are_as_accurate_as_stated(plants, name, start, target, du
     assert max(arrival) < 1e-7
 
 
-@pytest.mark.parametrize("terms", [0, 1, 4, 10])
-@pytest.mark.parametrize("name", ["single link", "arm"])
-def test_default_steps_are_accurate_for_any_number_of_terms(tasks, name, terms):
-    task, profile, random = tasks[name], CycloidPolynomial(terms), np.random.default_rng(terms)
-    for a in random.uniform(-BOXES[name], BOXES[name], (3, terms)):
-        fixed, reference = rollout(task, profile, a), resimulate(task, profile, a)
-        assert fixed.motion.energy == pytest.approx(reference.energy, rel=1e-5)
-        # Sampling misses 5e-5 of a peak at most (`residual`), beside 1e-7 m of the state.
-        close = 6e-5 * reference.residual + 1e-6
-        assert fixed.motion.residual == pytest.approx(reference.residual, abs=close)
-
-
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
 def test_the_diagnostics_are_those_of_the_other_integrator(tasks, name):
     a = [0.02, -0.15, 0.05, -0.1]
-    fixed = rollout(tasks[name], CycloidPolynomial(4), a).motion
-    reference = resimulate(tasks[name], CycloidPolynomial(4), a)
+    fixed = qa.rollout(tasks[name], qa.CycloidPolynomial(4), a).motion
+    reference = qa.resimulate(tasks[name], qa.CycloidPolynomial(4), a)
     assert fixed.net_work == pytest.approx(reference.net_work, rel=1e-7)
+    # Sampling misses 5e-5 of a peak at most (`residual`), beside 1e-7 m of the state.
+    assert fixed.residual == pytest.approx(reference.residual, rel=6e-5, abs=1e-6)
     for quantity in ("torque", "speed", "acceleration", "deflection"):
         # Sampled at different times: a smooth peak differs in second order of the spacing.
         assert fixed.peak(quantity) == pytest.approx(reference.peak(quantity), rel=1e-4)
@@ -118,100 +96,57 @@ def test_the_diagnostics_are_those_of_the_other_integrator(tasks, name):
 
 def test_the_error_falls_with_the_sixth_power_of_the_step():
     # Gauss with three nodes is of order six: a factor 64 for half the step.
-    task = PointToPoint(ArmOnFlexibleLink(), pi / 2, 0.8)
-    a, profile = [-0.1, -0.4], CycloidPolynomial(2)
-    exact = np.array(rollout(task, profile, a, steps=320).arrival)
-    errors = [np.abs(rollout(task, profile, a, steps=k).arrival - exact).max() for k in (20, 40)]
+    task = qa.PointToPoint(qa.ArmOnFlexibleLink(), pi / 2, 0.8)
+    a, profile = [-0.1, -0.4], qa.CycloidPolynomial(2)
+    exact = np.array(qa.rollout(task, profile, a, steps=320).arrival)
+    errors = [np.abs(qa.rollout(task, profile, a, steps=k).arrival - exact).max() for k in (20, 40)]
     assert errors[0] / errors[1] == pytest.approx(64, rel=0.25)
-
-
-# -- how many steps --
 
 
 def test_default_steps_resolve_the_profile_and_the_fastest_mode():
     # ROLLOUT_STEPS at least; two a radian of the fastest mode.
-    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8)) == ROLLOUT_STEPS
-    assert default_steps(PointToPoint(SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 400
-    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 10.0)) == 209  # 2 * 104.3
-    assert default_steps(PointToPoint(SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
+    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8)) == ROLLOUT_STEPS
+    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 400
+    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 10.0)) == 209  # 2 * 104.3
+    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
 
 
 def test_a_rollout_says_how_many_steps_it_took():
-    task = PointToPoint(SingleLinkManipulator(), 1.0, 0.8)
-    assert rollout(task, PLAIN, []).steps == ROLLOUT_STEPS
-    assert rollout(task, PLAIN, [], steps=50).steps == 50
-    assert rollout(task, PLAIN, [], steps=1).steps == 1
-
-
-# -- symmetries --
-
-four = st.lists(st.floats(-0.4, 0.4), min_size=4, max_size=4)
-
-
-@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-@settings(max_examples=15)
-@given(a=four)
-def test_energy_is_at_least_the_net_work(tasks, name, a):
-    motion = rollout(tasks[name], CycloidPolynomial(4), a).motion
-    assert motion.energy >= abs(motion.net_work) * (1 - 1e-9)
-
-
-@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-@settings(max_examples=15)
-@given(a=four, start=st.floats(-2.0, 2.0), target=st.floats(2.1, 4.0))
-def test_the_mirrored_move_costs_the_same(plants, name, a, start, target):
-    profile, plant = CycloidPolynomial(4), plants[name]
-    there = rollout(PointToPoint(plant, target, 0.8, start=start), profile, a)
-    back = rollout(PointToPoint(plant, -target, 0.8, start=-start), profile, a)
-    assert back.arrival == pytest.approx([-x for x in there.arrival], rel=1e-12, abs=1e-15)
-    assert back.motion.energy == pytest.approx(there.motion.energy, rel=1e-12)
-    assert back.motion.overshoot == pytest.approx(there.motion.overshoot, abs=1e-12)
-
-
-@settings(max_examples=15)
-@given(a=four, shift=st.floats(-3.0, 3.0))
-def test_only_the_span_counts_for_the_single_link(a, shift):
-    # Section 3.1: 'not dependent on the initial angle'.
-    plant, profile = SingleLinkManipulator(), CycloidPolynomial(4)
-    here = rollout(PointToPoint(plant, 1.0, 0.8), profile, a)
-    there = rollout(PointToPoint(plant, 1.0 + shift, 0.8, start=shift), profile, a)
-    assert there.arrival == pytest.approx(here.arrival, rel=1e-9, abs=1e-12)
-    assert there.motion.energy == pytest.approx(here.motion.energy, rel=1e-9)
-
-
-@pytest.mark.parametrize("plant_class", [SingleLinkManipulator, ArmOnFlexibleLink])
-@pytest.mark.parametrize("slower", [0.5, 5.0])
-def test_a_slower_plant_moves_the_same_in_stretched_time(plant_class, slower):
-    # With omega and c divided by s and time multiplied by s, eqs (8), (9), (13), (14) keep W(t/T)
-    # and divide the torque, and so the energy, by s^2.
-    a, profile, plant = [0.02, -0.15, 0.05, -0.1], CycloidPolynomial(4), plant_class()
-    stretched = plant_class(omega=plant.omega / slower, c=plant.c / slower)
-    fast = rollout(PointToPoint(plant, 1.0, 0.8), profile, a)
-    task = PointToPoint(stretched, 1.0, 0.8 * slower, residual_window=slower)
-    slow = rollout(task, profile, a, steps=fast.steps)
-    W, dW = fast.arrival
-    assert slow.arrival == pytest.approx([W, dW / slower], rel=1e-9)
-    assert slow.motion.energy == pytest.approx(fast.motion.energy / slower**2, rel=1e-9)
-    assert slow.motion.residual == pytest.approx(fast.motion.residual, rel=1e-9)
-    assert slow.motion.peak_torque == pytest.approx(fast.motion.peak_torque / slower**2, rel=1e-9)
-    assert slow.motion.peak_speed == pytest.approx(fast.motion.peak_speed / slower, rel=1e-9)
-
-
-# -- a population at once --
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8)
+    assert qa.rollout(task, PLAIN, []).steps == ROLLOUT_STEPS
+    assert qa.rollout(task, PLAIN, [], steps=50).steps == 50
+    assert qa.rollout(task, PLAIN, [], steps=1).steps == 1
 
 
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
 def test_a_population_is_simulated_as_each_of_its_members(tasks, name):
     candidates, terms, steps = 6, 3, 60
-    task, profile = tasks[name], CycloidPolynomial(terms)
+    task, profile = tasks[name], qa.CycloidPolynomial(terms)
     population = np.random.default_rng(8).uniform(-0.3, 0.3, (candidates, terms))
     a, move = ca.MX.sym("a", candidates, terms), ca.MX.sym("move", 3)
     columns = [ca.repmat(column, 1, steps) for column in ca.horzsplit(a)]
-    together = symbolic_rollout(task.plant, profile, columns, ca.vertsplit(move), steps, candidates)
+    together = qa.symbolic_rollout(
+        task.plant, profile, columns, ca.vertsplit(move), steps, candidates
+    )
     function = ca.Function("population", [a, move], [together.arrival, together.energy])
     arrival, energy = (value.full() for value in function(population, ca.DM(task.move)))
     assert arrival.shape == (candidates, 2 * task.plant.modes)
     for row, member in enumerate(population):
-        alone = rollout(task, profile, member, steps=steps)
+        alone = qa.rollout(task, profile, member, steps=steps)
         assert arrival[row] == pytest.approx(alone.arrival, rel=1e-11)
         assert energy[row, 0] == pytest.approx(alone.motion.energy, rel=1e-11)
+
+
+@pytest.mark.parametrize("power", range(2 * NODES))
+def test_the_weights_integrate_up_to_degree_five_exactly(power):
+    integral = sum(w * x**power for w, x in zip(GAUSS_WEIGHTS, GAUSS_NODES, strict=True))
+    assert integral == pytest.approx(1 / (power + 1), abs=1e-15)
+
+
+def test_the_steps_are_finer_at_the_ends_and_the_same_from_both():
+    lengths = np.array([float(mesh(k, 100)[1]) for k in range(100)])
+    assert lengths == pytest.approx(lengths[::-1], rel=1e-9)
+    assert np.all(np.diff(lengths[:50]) > 0)
+    # Half even, half Chebyshev: 1/2 + pi/4 times the even length in the middle, 1/2 at the ends.
+    assert lengths[50] == pytest.approx((1 / 2 + math.pi / 4) / 100, rel=1e-3)
+    assert lengths[0] == pytest.approx(1 / 2 / 100, rel=0.05)

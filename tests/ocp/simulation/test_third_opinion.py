@@ -5,15 +5,10 @@ from functools import cache
 
 import numpy as np
 import pytest
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    resimulate,
-    sample_trajectory,
-)
-from quietarm.ocp.simulation.cvodes import rest_of
-from scipy.integrate import simpson, solve_ivp
-from third_opinion import ARM, SINGLE_LINK, ThirdOpinion, two_links
+from scipy.integrate import simpson
+from third_opinion import ARM, SINGLE_LINK, ThirdOpinion
+
+import quietarm as qa
 
 pi = math.pi
 _RANDOM = np.random.default_rng(20)
@@ -42,13 +37,13 @@ def third_opinion(case):
 def case(request, plants):
     """A task, coefficients of the polynomial, and the third opinion of them."""
     name, a, start, target, duration = CASES[request.param]
-    task = PointToPoint(plants[name], target, duration, start=start)
+    task = qa.PointToPoint(plants[name], target, duration, start=start)
     return task, a, third_opinion(request.param)
 
 
 def test_scipy_agrees(case):
     task, a, other = case
-    motion = resimulate(task, CycloidPolynomial(len(a)), a)
+    motion = qa.resimulate(task, qa.CycloidPolynomial(len(a)), a)
     assert motion.energy == pytest.approx(other.energy, rel=1e-9)
     # The samples after arrival miss 1.2e-6 of a peak at most.
     assert motion.residual == pytest.approx(other.residual, rel=3e-6)
@@ -56,7 +51,7 @@ def test_scipy_agrees(case):
 
 def test_scipy_agrees_on_the_diagnostics(case):
     task, a, other = case
-    motion = resimulate(task, CycloidPolynomial(len(a)), a)
+    motion = qa.resimulate(task, qa.CycloidPolynomial(len(a)), a)
     times = np.linspace(0.0, task.duration, 4001)
     joint, states = np.array(other.joint(times)).T, other.during.sol(times)
     torque = np.ravel(other.torque(joint.T, states))
@@ -79,7 +74,7 @@ def test_scipy_agrees_at_every_sample(case):
     (task, a, other), duration = case, case[0].duration
     moving, resting = np.linspace(0, duration, 50), np.linspace(duration + 0.01, duration + 1, 50)
     times = np.concatenate([moving, resting])
-    found = sample_trajectory(task, CycloidPolynomial(len(a)), a, times)
+    found = qa.sample_trajectory(task, qa.CycloidPolynomial(len(a)), a, times)
     states = np.hstack([other.during.sol(moving), other.after.sol(resting)])
     joint = np.vstack([np.array(other.joint(moving)).T, [(task.target, 0.0, 0.0)] * 50])
     torque = np.ravel(other.torque(joint.T, states))
@@ -88,20 +83,3 @@ def test_scipy_agrees_at_every_sample(case):
     assert found.tips == pytest.approx(other.phi * states[: other.modes].T, abs=3e-9)
     assert found.torque == pytest.approx(torque, abs=1e-8)
     assert found.power == pytest.approx(torque * joint[:, 1], abs=1e-7)
-
-
-def test_the_rest_by_matrices_is_that_by_one_run(tasks):
-    task, arrival = tasks["two links"], [2e-3, -1e-3, 0.03, 0.1]
-    rest = rest_of(task, arrival)
-    assert rest.time[[0, -1]] == pytest.approx([0.9, 1.9], abs=1e-15)
-    assert np.ptp(np.diff(rest.time)) < 1e-14
-    assert np.diff(rest.time).max() * 12.68 * 0.993 <= 0.003  # radians of the faster link
-    run = solve_ivp(
-        lambda t, x: [*x[2:], *two_links(pi / 2, 0, 0, x[:2], x[2:])[0]],
-        (0.9, 1.9), arrival, "DOP853", rest.time, rtol=1e-13, atol=1e-15,
-    )  # fmt: skip
-    torque = [two_links(pi / 2, 0, 0, x[:2], x[2:])[1] for x in run.y.T]
-    assert rest.modes == pytest.approx(run.y[:2].T, abs=1e-11)
-    assert rest.tips == pytest.approx(2.7244 * run.y[:2].T, abs=1e-11)
-    assert rest.torque == pytest.approx(torque, abs=1e-9)
-    assert rest.joint[[0, -1]].tolist() == [[pi / 2, 0.0, 0.0]] * 2

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 from quietarm.studies.contest import problems
-from quietarm.studies.contest.report import files, page
+from quietarm.studies.contest.report import page
 from quietarm.studies.report.document import Section
 from small_contest import LINE
 
@@ -21,8 +21,7 @@ def _small_problems(monkeypatch):
 @pytest.fixture
 def no_pictures(monkeypatch):
     """Those of the contest that is held once are enough: they take long to draw."""
-    monkeypatch.setattr(page, "_section", lambda arena, methods: Section(arena.problem, []))
-    monkeypatch.setattr(files, "_pictures", lambda arenas, tests: {})
+    monkeypatch.setattr(page, "section", lambda arena, methods: Section(arena.problem, []))
 
 
 @pytest.fixture

@@ -77,8 +77,6 @@ def test_a_contest_goes_on_after_a_stop_to_the_same_runs(call, folder, held, mon
         (LINE.replace("vepso", "vepso+polsh"), "give vepso+polish or vepso+seeds"),
         (LINE.replace("--runs 2", "--runs 0"), "runs is 0"),
         (LINE.replace("130", "0"), "evaluations is 0"),
-        (LINE.replace("--population 20", "--population 1"), "population is 1"),
-        (f"{LINE} --seed -1", "seed is -1"),
     ],
 )
 def test_bad_input_is_refused_before_any_work(call, folder, line, words, searches):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from quietarm.studies.contest.measures import arenas_of
 from quietarm.studies.contest.report.citations import bibtex
-from quietarm.studies.contest.report.paragraph import methods_paragraph
+from quietarm.studies.contest.report.sentences import methods_paragraph
 from quietarm.studies.contest.statistics import pairs_on
 from quietarm.studies.contest.store import Store
 from small_contest import LINE, NAME, OTHER, TINY, area, least_energy, rows_of
@@ -85,9 +85,9 @@ def arena_of(copy, evaluations, seeds=5):
     contents = Store(copy)
     (one,) = arenas_of(contents)
     imports = [replace(run, evaluations=evaluations) for run in one.imports[0].runs]
-    fields = [replace(field, runs=(field.runs * seeds)[:seeds]) for field in one.fields]
-    outcome = replace(one.imports[0], runs=tuple((imports * seeds)[:seeds]))
-    return replace(one, fields=tuple(fields), imports=(outcome,))
+    fields = [*one.own, replace(one.imports[0], runs=tuple(imports))]
+    fields = [replace(field, runs=(field.runs * seeds)[:seeds]) for field in fields]
+    return replace(one, fields=tuple(fields))
 
 
 def test_tests_compare_those_of_as_many_evaluations_alone(call, copy, results):
@@ -141,7 +141,7 @@ REFUSED = [
     ("--import empty", "empty has no files"),
     ("--import 'nsga2=results'", "'nsga2' is a method that is run here"),
     ("--import '../a=results'", "the name '../a' does not do for a method"),
-    ("--import wide.csv", "wide.csv has 3 coefficients a motion, and single-link"),
+    ("--import wide.csv", "wide.csv: motion 1: got 3 coefficients for a profile of 2"),
     ("--import beyond.csv", "beyond the stated bound of 0.2"),
     ("--import text.csv", "text.csv: line 2"),
     ("--import a=results --import a=other", "a has two files run0.csv"),

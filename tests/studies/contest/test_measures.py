@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.studies.contest.measures import Field, Outcome, arenas_of
+from quietarm.studies.contest.measures import Field, arenas_of
 from quietarm.studies.contest.store import Store
 from small_contest import METHODS, NAME, area, documents, least_energy, median_of, rows_of, scaled
 
@@ -20,7 +20,7 @@ class Hand(Field):
         object.__setattr__(self, "evaluations", np.array(evaluations))
         object.__setattr__(self, "missing", np.array(missing))
         spent = type("Front", (), {"evaluations": evaluations[-1]})
-        run = type("Run", (), {"front": spent})
+        run = type("Run", (), {"front": spent, "file": None})
         object.__setattr__(self, "runs", (run,) * len(missing))
 
 
@@ -102,7 +102,7 @@ def test_a_run_that_found_nothing_misses_everything(arena):
     # as under limits that no candidate keeps
     field = arena.fields[0]
     empty = replace(field.runs[0], front=replace(field.runs[0].front, points=()))
-    nothing = Outcome("nothing", field.yardstick, (empty,))
+    nothing = Field("nothing", field.yardstick, (replace(empty, file="nothing.csv"),))
     assert nothing.final.tolist() == [1.0]
     assert nothing.energies.tolist() == [[math.inf] * len(LEVELS)]
     assert nothing.missing_by_thirds.tolist() == [[1.0] * 3]

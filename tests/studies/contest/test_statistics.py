@@ -65,7 +65,7 @@ class Field:
 
     def __init__(self, method, final):
         self.method, self.final = method, np.array(final, dtype=float)
-        self.runs = [type("Run", (), {"key": type("Key", (), {"seed": seed})})
+        self.runs = [type("Run", (), {"front": type("Front", (), {"seed": seed})})
                      for seed in range(len(final))]  # fmt: skip
 
 
@@ -76,7 +76,7 @@ class Arena:
 
     def __init__(self, **finals):
         self.fields = [Field(name, final) for name, final in finals.items()]
-        self.outcomes = self.alike = self.fields
+        self.own = self.alike = self.fields
 
 
 def test_the_effect_is_how_likely_the_first_misses_less():

@@ -5,8 +5,7 @@ import re
 import signal
 
 import pytest
-from quietarm.studies.contest.runs import Run
-from quietarm.studies.contest.store import Store
+from quietarm.studies.contest.store import Run, Store
 from small_contest import LINE, found
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
@@ -18,7 +17,7 @@ def test_it_stops_and_one_process_goes_on_to_the_same_runs(call, folder, held, m
     def keep_and_interrupt(self, what):
         keep(self, what)
         if isinstance(what, Run):
-            kept.append(what.key)
+            kept.append((what.method, what.front.seed))
             if len(kept) == 1:
                 signal.raise_signal(signal.SIGINT)
 
@@ -35,7 +34,7 @@ def test_it_stops_and_one_process_goes_on_to_the_same_runs(call, folder, held, m
     # what was on its way when Ctrl-C came is kept as well
     there = set(found(folder / "shared"))
     assert 1 <= int(said[1]) == len(there) < 4
-    assert {(key.method, key.seed) for key in kept} <= there
+    assert set(kept) <= there
     assert (folder / "shared/contest.html").exists()
     code, _, err = call(f"{LINE.removesuffix(' --quiet')} --output shared")
     assert code == 0

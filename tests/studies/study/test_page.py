@@ -2,6 +2,7 @@
 
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 
 import pytest
 from quietarm.studies.report.page import page as page_of
@@ -35,6 +36,16 @@ def test_the_page_loads_and_runs_nothing(text, root):
             assert value.startswith(("#", "data:image/svg+xml;base64,")), value[:60]
     assert "http:" not in text
     assert "https:" not in text
+
+
+def test_every_version_that_computed_a_front_is_named(small, no_pictures):
+    found = small.cases[0]
+    (run, *others), *_ = (group.runs for group in found.comparison.groups)
+    other = replace(run, front=replace(run.front, versions={"casadi": "0.1"}))
+    first = replace(found.comparison.groups[0], runs=(other, *others))
+    groups = (first, *found.comparison.groups[1:])
+    case = replace(found, comparison=replace(found.comparison, groups=groups))
+    assert "casadi 0.1 and " in study_page(replace(small, cases=(case,)))
 
 
 def test_every_picture_has_words_and_every_link_its_place(root):

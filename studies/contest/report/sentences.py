@@ -1,0 +1,125 @@
+"""What a contest found and how it was held, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
+from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
+from quietarm.studies.contest.measures import Arena, Field, methods_in
+from quietarm.studies.contest.names import is_own, label_of, method_in
+from quietarm.studies.contest.report.tables import evaluations_words
+from quietarm.studies.contest.statistics import ALPHA, Ranking, why_none
+from quietarm.studies.display.words import counted, versions_of
+from quietarm.studies.report.prose import told
+
+_EXACT = "the exact front's"
+
+
+def findings(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> list[str]:
+    """What is to be read first."""
+    lines = [
+        f"{arena.problem}: {arena.best.label} ends nearest to the exact front, with "
+        f"{_missing_words(arena.best, 'its')}."
+        for arena in arenas
+    ]
+    none = why_none(arenas)
+    lines += [f"{none}."] if none else []
+    for arena in arenas:
+        lines += [f"{arena.problem}: {line}." for line in _unequal(arena)]
+    return [*lines, *not_alike(arenas), *(f"{note}." for note in notes)]
+
+
+def _unequal(arena: Arena) -> list[str]:
+    """What is to be known of runs that are not as many, as long or of the same versions."""
+    lines, fields = list[str](), arena.own
+    if len({len(field.runs) for field in fields}) > 1:
+        stated = ", ".join(f"{field.label} {len(field.runs)}" for field in fields)
+        lines.append(f"the methods have unequal numbers of runs: {stated}")
+    lines += [
+        f"{field.label} ended before its evaluations were spent"
+        for field in fields
+        if any(run.front.evaluations < (run.evaluations or 0) for run in field.runs)
+    ]
+    versions = versions_of(run.front for field in fields for run in field.runs)
+    mixed = [words for words in versions if " and " in words]
+    return lines + [f"the runs are of different versions: {', '.join(mixed)}"] * bool(mixed)
+
+
+def not_alike(arenas: Sequence[Arena]) -> list[str]:
+    """Results from elsewhere that are shown and not compared by tests, and why, in sentences."""
+    return [
+        f"{arena.problem}: {one.label} ends with {_missing_words(one, _EXACT)}. It does not "
+        f"compare: its evaluations are {evaluations_words(one)}, those of the others "
+        f"{' or '.join(sorted({evaluations_words(field) for field in arena.own}))}."
+        for arena in arenas
+        for one in arena.imports
+        if one not in arena.alike
+    ]
+
+
+def wrong_claims(arenas: Sequence[Arena]) -> list[str]:
+    """What files from elsewhere state otherwise than their coefficients give, in words."""
+    runs = [run for arena in arenas for field in arena.fields for run in field.runs]
+    return [f"{run.words}: {claim}" for run in runs for claim in run.claims]
+
+
+def _missing_words(one: Field, whose: str) -> str:
+    """What the middle run has not found, in words."""
+    runs = f"the middle run of {len(one.runs)}" if len(one.runs) > 1 else "its only run"
+    return f"{100 * one.middle:.3g} % of {whose} hypervolume missing in {runs}"
+
+
+def verdict(found: Ranking) -> str:
+    """What the tests say of a ranking."""
+    says = "the methods differ" if found.differ else "no difference is shown"
+    return (
+        f"Friedman's test: chi2 = {found.statistic:.3g}, p = {found.p_value:.2g}, {says} at "
+        f"{100 * ALPHA:g} %; Nemenyi's critical difference is {found.critical:.2f}."
+    )
+
+
+def explanation(found: Landscape) -> list[str]:
+    """What makes a problem hard, in sentences."""
+    figures = {"found": found, "level": LEVEL, "candidates": CANDIDATES}
+    return told("contest/report/landscape.txt", **figures)
+
+
+def methods_paragraph(arenas: Sequence[Arena]) -> str:
+    """How the contest was held, ready for a paper."""
+    runs = [run for arena in arenas for field in arena.own for run in field.runs]
+    methods = [method for method in methods_in(arenas) if is_own(method)]
+    parts = [parts_of(method_in(method)) for method in methods]
+    imports = [
+        f"{one.label} on {arena.problem} ({counted(len(one.runs), 'run')}, evaluations "
+        f"{evaluations_words(one)})"
+        for arena in arenas
+        for one in arena.imports
+    ]
+    (paragraph,) = told(
+        "contest/report/methods.txt",
+        methods="; ".join(map(label_of, methods)),  # some have a comma
+        problems=counted(len(arenas), "problem"),
+        first=min(run.front.seed or 0 for run in runs),
+        last=max(run.front.seed or 0 for run in runs),
+        budgets=" or ".join(map(str, sorted({run.evaluations or 0 for run in runs}))),
+        gradient=any(helped is not Help.NONE or search == MULTISTART for search, helped in parts),
+        helps={helped.value for _, helped in parts},
+        tests="" if why_none(arenas) else f"{100 * ALPHA:g}",
+        imports=", ".join(imports),
+        versions=", ".join(versions_of(run.front for run in runs)),
+    )
+    return paragraph
+
+
+def settings_lines(arenas: Sequence[Arena]) -> list[str]:
+    """The settings of every method, as its runs state them."""
+    lines = list[str]()
+    for method in filter(is_own, methods_in(arenas)):
+        fields = [field for arena in arenas for field in arena.own if field.method == method]
+        fronts = [field.runs[0].front for field in fields]
+        bounds = dict.fromkeys(f"{front.settings['bound']:g}" for front in fronts)
+        settings = {**fronts[0].settings, "bound": " or ".join(bounds)}
+        stated = ", ".join(f"{name} {value}" for name, value in settings.items())
+        lines.append(f"{label_of(method)}: {stated}.")
+    return [*lines, *(f"{claim}." for claim in wrong_claims(arenas))]

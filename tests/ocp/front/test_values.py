@@ -1,0 +1,104 @@
+"""Fronts as values: which points stay, what is selected from them, their files."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from moves import ARM
+
+import quietarm as qa
+
+
+def _points(*figures):
+    """Points of the given (residual, energy); the coefficient tells them apart."""
+    return tuple(qa.FrontPoint((float(i), -0.5), r, e) for i, (r, e) in enumerate(figures))
+
+
+def _front(points, **changes):
+    content = {
+        "task": ARM,
+        "profile": qa.CycloidPolynomial(2),
+        "points": points,
+        "method": "nsga2",
+        "settings": {"bound": 0.5, "population": 20, "generations": None},
+        "seed": 3,
+        "reference": (0.015, 0.25),
+        "evaluations": 60,
+        "failed": 2,
+        "complete": False,
+        "seconds": 1.25,
+        **changes,
+    }
+    return qa.Front(**content)
+
+
+def _by_definition(points):
+    """Finite, no other at least as good in both and better in one, and the first of its equals."""
+    finite = [p for p in points if math.isfinite(p.residual) and math.isfinite(p.energy)]
+
+    def beats(one, other):
+        no_worse = one.residual <= other.residual and one.energy <= other.energy
+        return no_worse and (one.residual, one.energy) != (other.residual, other.energy)
+
+    kept = {}
+    for p in finite:
+        if not any(beats(q, p) for q in finite):
+            kept.setdefault((p.residual, p.energy), p)
+    return tuple(sorted(kept.values(), key=lambda p: p.residual))
+
+
+values = st.one_of(
+    st.floats(0, 1),
+    st.sampled_from([0.0, -0.0, 0.25, 0.5, math.nan, math.inf, -math.inf, 5e-324, 1e308]),
+)
+
+
+@given(st.lists(st.tuples(values, values), max_size=25))
+def test_the_points_that_stay_are_those_of_the_definition(figures):
+    points = _points(*figures)
+    assert qa.non_dominated(points) == _by_definition(points)
+
+
+@pytest.mark.parametrize(
+    ("limit", "index"), [(1e-4, 0), (1.9e-4, 0), (2e-4, 1), (7e-4, 1), (8e-4, 2), (math.inf, 2)]
+)
+def test_the_cheapest_within_a_residual(limit, index):
+    front = _front(_points((1e-4, 0.5), (2e-4, 0.2), (8e-4, 0.1)))
+    assert front.cheapest(limit) is front.points[index]
+    with pytest.raises(ValueError, match=r"0\.0001"):  # the least there is
+        front.cheapest(9.9e-5)
+
+
+@given(st.lists(st.tuples(st.floats(1e-6, 1e-2), st.floats(0.01, 1.0)), min_size=3, max_size=12))
+def test_the_knee_is_farthest_below_the_line_between_the_ends(figures):
+    front = _front(qa.non_dominated(_points(*figures)))
+    if len(front.points) < 3:
+        assert front.knee() is front.points[0]
+        return
+    F = np.column_stack([front.residuals, front.energies])
+    F = (F - F[-1]) / (F[0] - F[-1])  # the ends at (1, 1) and (0, 0)
+    below = (1 - F[:, 1] - (1 - F[:, 0])) / math.sqrt(2)
+    assert below[front.points.index(front.knee())] >= below.max() - 1e-9
+
+
+figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energies
+
+
+@given(
+    st.lists(st.tuples(figures, figures), max_size=6),
+    st.integers(0, 2**63),
+    st.floats(0, 1),
+    st.booleans(),
+)
+def test_a_front_comes_back_as_it_was(tmp_path_factory, figures, seed, share, complete):
+    path = tmp_path_factory.mktemp("front") / "front.json"
+    history = (qa.Generation(20, share),)
+    points = qa.non_dominated(_points(*figures))
+    front = _front(points, seed=seed, complete=complete, history=history)
+    front.save(path)
+    assert qa.Front.load(path) == front
+    assert qa.Front.load(path).seconds == front.seconds
+    with pytest.raises(qa.FileFormatError, match="quietarm-front"):
+        qa.Plan.load(path)

@@ -1,1 +1,0 @@
-"""Derivatives that a program assembles by hand, against casadi's own and against differences."""
