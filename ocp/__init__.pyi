@@ -29,12 +29,12 @@ from .plan.shaping import shaped_cycloid as shaped_cycloid
 from .plan.solver import plan_move as plan_move
 from .profiles.joint_profile import JointPath as JointPath
 from .profiles.joint_profile import JointProfile as JointProfile
+from .profiles.networks import CycloidGaussians as CycloidGaussians
+from .profiles.networks import CycloidNetwork as CycloidNetwork
 from .profiles.polynomial import MAX_TERMS as MAX_TERMS
 from .profiles.polynomial import CycloidPolynomial as CycloidPolynomial
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
 from .profiles.spline import CycloidSpline as CycloidSpline
-from .profiles.units import CycloidGaussians as CycloidGaussians
-from .profiles.units import CycloidNetwork as CycloidNetwork
 from .robustness.measures import Robustness as Robustness
 from .robustness.measures import Sweep as Sweep
 from .robustness.measures import evaluate_robustness as evaluate_robustness
