@@ -25,6 +25,9 @@ class Cycloid(JointProfile):
     least_terms: ClassVar[int] = 1
     most_terms: ClassVar[int] = 32
     why_no_more: ClassVar[str] = ""
+    constants: ClassVar[int] = 0
+    each: ClassVar[int] = 1
+    """Coefficients that every member has, and those of each term."""
     terms: int = 6
 
     def __post_init__(self) -> None:
@@ -39,13 +42,21 @@ class Cycloid(JointProfile):
     @classmethod
     def of_size(cls, size: int) -> Self:
         """The family's member that has so many coefficients; ValueError where none has."""
-        if not cls.least_terms <= size <= cls.most_terms:
-            why = cls.why_no_more if size > cls.most_terms else ""
+        terms, rest = divmod(size - cls.constants, cls.each)
+        if rest or not cls.least_terms <= terms <= cls.most_terms:
+            least, most = (cls.constants + cls.each * n for n in (cls.least_terms, cls.most_terms))
+            step = f" in steps of {cls.each}" if cls.each > 1 else ""
+            why = f": {cls.why_no_more}" if size > most and cls.why_no_more else ""
             raise ValueError(
-                f"got {size} coefficients; {cls.name} has {cls.least_terms} to {cls.most_terms}"
-                f"{why and f': {why}'}; give so many numbers"
+                f"got {size} coefficients; {cls.name} has {least} to {most}{step}{why}; give so "
+                "many numbers"
             )
-        return cls(size)
+        return cls(terms)
+
+    @property
+    def size(self) -> int:
+        """How many coefficients the profile has."""
+        return self.constants + self.each * self.terms
 
     @abstractmethod
     def input(

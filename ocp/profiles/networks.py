@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -62,25 +62,10 @@ class CycloidOfUnits(Cycloid):
     default_bound: ClassVar[float | None] = 0.5
     sharp: ClassVar[bool] = True
     random_starts: ClassVar[int] = 4
+    constants: ClassVar[int] = 1
+    each: ClassVar[int] = 3
     sharpness: ClassVar[str]
     """What y is called in a message."""
-
-    @property
-    def size(self) -> int:
-        """How many coefficients the profile has: a constant, and three for each unit."""
-        return 1 + 3 * self.terms
-
-    @classmethod
-    def of_size(cls, size: int) -> Self:
-        """The family's member that has so many coefficients; ValueError where none has."""
-        terms, rest = divmod(size - 1, 3)
-        if rest or not cls.least_terms <= terms <= cls.most_terms:
-            most = 1 + 3 * cls.most_terms
-            raise ValueError(
-                f"got {size} coefficients; {cls.name} has one and three for each unit: give 4, 7, "
-                f"10, ... or {most} numbers"
-            )
-        return cls(terms)
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
         """As every profile's; ValueError, too, where a unit is sharper than `SHARPEST`."""

@@ -37,11 +37,6 @@ class CycloidPolynomial(Cycloid):
         "beyond that double precision no longer tells the powers of T apart"
     )
 
-    @property
-    def size(self) -> int:
-        """How many coefficients the profile has: the number of terms."""
-        return self.terms
-
     def input(
         self, coefficients: Sequence[Expression], fraction: Expression
     ) -> tuple[Expression, Expression, Expression]:

@@ -39,11 +39,6 @@ class CycloidSpline(Cycloid):
     least_terms: ClassVar[int] = DEGREE - 1
 
     @property
-    def size(self) -> int:
-        """How many coefficients the profile has: the control points that may move."""
-        return self.terms
-
-    @property
     def knots(self) -> list[float]:
         """Where the pieces meet, as fractions of the duration; the ends with their multiplicity."""
         pieces = self.terms + 2 - DEGREE
