@@ -79,13 +79,7 @@ class Derivatives(Values):
 
 
 class Batch:
-    """A plant's motion along a profile in a number of steps, for many candidates at once.
-
-    Parameters
-    ----------
-    kind : Kind
-        What the candidates have in common.
-    """
+    """A plant's motion along a profile in a number of steps, for many candidates at once."""
 
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
@@ -150,14 +144,10 @@ class Batch:
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:
-        """Evaluate candidates without derivatives, the energy a little more exactly.
+        """Evaluate candidates without derivatives, a block of them for each thread at a time.
 
-        Other arguments as for `derivatives`; the energy takes in what neighbouring steps say.
-
-        Parameters
-        ----------
-        threads : int
-            Blocks of candidates that are evaluated at the same time.
+        Arguments as for `derivatives`; the energy takes in what neighbouring steps say, and is a
+        little more exact.
         """
         blocks = _blocks((coefficients, move, errors), _MANY)
         if threads > 1 and len(blocks) > 1:
@@ -189,21 +179,9 @@ class Batch:
     ) -> Derivatives:
         """Evaluate candidates with first derivatives, and second ones of a weighted sum.
 
-        Parameters
-        ----------
-        coefficients : ndarray, shape (rows, profile.size)
-            One candidate a row.
-        move : ndarray, shape (rows, 3)
-            Start, target [rad], duration [s].
-        errors : ndarray, shape (rows, len(errors))
-            Relative errors of the plant.
-        weights : tuple of ndarray, shapes (rows,), (rows, 2 * modes), (rows, values)
-            Of energy, arrival and limited quantities in `curvature`.
-
-        Returns
-        -------
-        Derivatives
-            Figures and derivatives.
+        A row is a candidate: coefficients, move (start, target [rad], duration [s]), relative
+        errors of the plant, the power [W] over which |power| is rounded off, and the weights of
+        energy, arrival (2 * modes) and limited values in `curvature`.
         """
         inputs = [coefficients, move, errors, width[:, None], weights[0][:, None], *weights[1:]]
         parts = [self._block(block) for block in _blocks(inputs, _BLOCKS[-1])]

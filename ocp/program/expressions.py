@@ -53,19 +53,9 @@ class Kind(NamedTuple):
 
 
 def function_of_values(kind: Kind, rows: int) -> ca.Function:
-    """Compile the values of candidates.
+    """Compile the values of so many candidates.
 
-    Parameters
-    ----------
-    kind : Kind
-        Of the rows.
-    rows : int
-        Number of candidates.
-
-    Returns
-    -------
-    Function
-        (coefficients, moves, errors) -> energy, arrival, limited quantities; a row a candidate.
+    (coefficients, moves, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
     plant, profile, steps, quantities, names = kind
     inputs = [ca.MX.sym("x", rows, count) for count in (profile.size, 3, len(names))]
@@ -86,15 +76,12 @@ def function_of_values(kind: Kind, rows: int) -> ca.Function:
 
 
 def function_of_derivatives(kind: Kind, rows: int) -> ca.Function:
-    """Compile the values of candidates with their derivatives; arguments as for the values alone.
+    """Compile the values of candidates with their derivatives.
 
-    Returns
-    -------
-    Function
-        (coefficients, moves, errors, width over which |power| is rounded off, weights of energy,
-        arrival and limited quantities) -> energy, arrival, limited quantities, gradient, arrival by
-        the coefficients, limited quantities by them, two factors whose product is the curvature of
-        the weighted sum, and what the path's own curvature adds where it is not linear.
+    (coefficients, moves, errors, width over which |power| is rounded off, weights of energy,
+    arrival and limited quantities) -> energy, arrival, limited quantities, gradient, arrival by the
+    coefficients, limited quantities by them, two factors whose product is the curvature of the
+    weighted sum, and what the path's own curvature adds where it is not linear.
     """
     return _Differentiated(kind, rows).function()
 

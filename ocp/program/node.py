@@ -122,19 +122,10 @@ def _nonzeros(matrix: ca.SX) -> Places:
 
 
 def elementwise(function: ca.Function, *inputs: Sequence[Expression]) -> list[list[ca.MX]]:
-    """Apply a function of SX entry by entry: every operation is done for all entries at once.
+    """Apply a function of SX columns entry by entry, each operation to all entries at once.
 
-    Parameters
-    ----------
-    function : Function
-        Of SX columns.
-    inputs : sequence of Expression
-        For each argument its entries: arrays of one shape, or scalars.
-
-    Returns
-    -------
-    list of list of MX
-        For each result its nonzeros, in the order of its sparsity.
+    For each argument its entries, arrays of one shape or scalars; for each result its nonzeros, in
+    the order of its sparsity.
     """
     shape = next((x.shape for of in inputs for x in of if isinstance(x, ca.MX)), (1, 1))
     results = [[ca.MX()] * function.nnz_out(i) for i in range(function.n_out())]

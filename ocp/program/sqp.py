@@ -112,32 +112,13 @@ def minimise(
     reach: float = 0.25,
     most: int = 500,
 ) -> Rows:
-    """Minimise every row from its start.
+    """Minimise every row from its start, with lower <= v <= upper.
 
-    Parameters
-    ----------
-    evaluate : callable
-        The rows' model.
-    x : ndarray, shape (rows, n)
-        Starts.
-    lower, upper : ndarray, shape (rows, k)
-        Bounds of v.
-    linear : int
-        How many entries of v, the last, are linear and kept from the start on.
-    groups : ndarray of int, shape (rows,), optional
-        Rows of one number are starts of one program: once half of them, and more than one, agree on
-        the least f, the others are left.
-    widths : tuple of float
-        Widths over which f is rounded off, the last of them 0.
-    reach : float
-        Radius of the trust regions at first.
-    most : int
-        Most iterations of a row.
-
-    Returns
-    -------
-    Rows
-        Where they ended; after Ctrl-C where they were.
+    The last `linear` entries of v are linear and kept from the start on. Rows of one number in
+    `groups` are starts of one program: once half of them, and more than one, agree on the least f,
+    the others are left. The objective is rounded off over the widths, one after another, the last
+    of them 0; trust regions have the radius `reach` at first, rows at most `most` iterations. After
+    Ctrl-C the rows are where they were.
     """
     with note_interrupts() as came:
         run = _Run(evaluate, x.copy(), lower, upper, linear, groups, np.array(widths), reach)

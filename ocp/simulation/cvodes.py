@@ -75,22 +75,7 @@ class Trajectory:
     def from_outputs(
         cls, plant: Plant, time: NDArray[np.float64], outputs: NDArray[np.float64]
     ) -> Trajectory:
-        """Name the rows of `outputs_of`.
-
-        Parameters
-        ----------
-        plant : Plant
-            What moves.
-        time : ndarray, shape (samples,)
-            Times [s].
-        outputs : ndarray, shape (4 + modes + tips + 1, samples)
-            Values of `outputs_of` at these times.
-
-        Returns
-        -------
-        Trajectory
-            The samples.
-        """
+        """Name the rows of `outputs_of`, whose columns are samples at these times [s]."""
         rows, m = outputs.T.copy(), 4 + plant.modes
         return cls(
             time=time.copy(),

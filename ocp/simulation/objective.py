@@ -179,23 +179,9 @@ class Motion(WithPeaks):
     ) -> Motion:
         """Take the peaks from samples during the move.
 
-        Parameters
-        ----------
-        task : PointToPoint
-            The move.
-        joint : JointMotion of ndarray, shape (samples,)
-            How the joint moves; its jerk is None where the acceleration jumps.
-        tips : ndarray, shape (samples, tips)
-            Tip displacements [m].
-        torque : ndarray, shape (samples,)
-            Joint torque [N m].
-        residual, energy, net_work : float
-            As in the attributes.
-
-        Returns
-        -------
-        Motion
-            The figures.
+        Every entry of the joint, and the torque [N m], has shape (samples,), the tips [m] (samples,
+        tips). The joint's jerk is None where the acceleration jumps. The rest is as in the
+        attributes.
         """
         past_target = (joint.angle - task.target) * np.sign(task.span)
         of = {q.peak: q.of(joint, list(tips.T), torque) for q in QUANTITIES.values()}
