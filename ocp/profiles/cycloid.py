@@ -13,6 +13,9 @@ from quietarm.models import Expression, JointMotion
 from quietarm.ocp.base.checks import whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
 
+Input = tuple[Expression, Expression, Expression]
+"""U, and its first two derivatives by the fraction of the duration."""
+
 
 @dataclass(frozen=True)
 class Cycloid(JointProfile):
@@ -59,9 +62,7 @@ class Cycloid(JointProfile):
         return self.constants + self.each * self.terms
 
     @abstractmethod
-    def input(
-        self, coefficients: Sequence[Expression], fraction: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
         """U, 0 and 1 at the ends, and its first two derivatives by the fraction."""
 
     def derivatives(
@@ -95,9 +96,7 @@ class Cycloid(JointProfile):
         )
 
 
-def with_bump(
-    fraction: Expression, p: Expression, dp: Expression, ddp: Expression
-) -> tuple[Expression, Expression, Expression]:
+def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expression) -> Input:
     """U = t/TE + (1 - T^2) p, whose bump holds the ends, and its derivatives by the fraction."""
     T = 2 * fraction - 1  # eq (7)
     bump = 1 - T * T

@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression
-from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
+from quietarm.ocp.profiles.cycloid import Cycloid, Input, with_bump
 
 REACH = 1.25
 """At first the units lie in even cells of T between plus and minus this: the outermost have their
@@ -85,9 +85,7 @@ class CycloidOfUnits(Cycloid):
 
     @staticmethod
     @abstractmethod
-    def unit(
-        x: Expression, y: Expression, T: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def unit(x: Expression, y: Expression, T: Expression) -> Input:
         """One unit g and its first two derivatives by T; finite for all x and y."""
 
     @property
@@ -110,9 +108,7 @@ class CycloidOfUnits(Cycloid):
         around = np.concatenate([weights, *(kind.spread for kind in self.ranges)])
         return np.maximum(lower, self.plain - around), np.minimum(upper, self.plain + around)
 
-    def input(
-        self, coefficients: Sequence[Expression], fraction: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
         """U and its derivatives; the weights alone enter linearly."""
         n, T = self.terms, 2 * fraction - 1  # eq (7)
         constant, *weights = coefficients[: 1 + n]
@@ -168,9 +164,7 @@ class CycloidGaussians(CycloidOfUnits):
         )
 
     @staticmethod
-    def unit(
-        x: Expression, y: Expression, T: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def unit(x: Expression, y: Expression, T: Expression) -> Input:
         """A Gaussian of centre x and inverse width y, and its derivatives."""
         z = y * (T - x)
         g = ca.exp(-z * z)
@@ -216,9 +210,7 @@ class CycloidNetwork(CycloidOfUnits):
         )
 
     @staticmethod
-    def unit(
-        x: Expression, y: Expression, T: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def unit(x: Expression, y: Expression, T: Expression) -> Input:
         """A hidden node of bias x and gain y, and its derivatives."""
         g = ca.tanh(x + y * T)
         slope = y * (1 - g * g)

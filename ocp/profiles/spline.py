@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import ClassVar
 
 from quietarm.models import Expression
-from quietarm.ocp.profiles.cycloid import Cycloid
+from quietarm.ocp.profiles.cycloid import Cycloid, Input
 
 DEGREE = 5
 """Quintic: the joint's jerk is continuous, and the integrators' fixed steps keep their order where
@@ -44,9 +44,7 @@ class CycloidSpline(Cycloid):
         pieces = self.terms + 2 - DEGREE
         return [0.0] * DEGREE + [i / pieces for i in range(pieces + 1)] + [1.0] * DEGREE
 
-    def input(
-        self, coefficients: Sequence[Expression], fraction: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
         """U and its derivatives: linear in the coefficients.
 
         The derivative of a spline is one of a degree less, whose control points are the differences

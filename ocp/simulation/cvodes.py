@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.joint_motion import Modes
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import silent_errors
@@ -110,9 +111,7 @@ def rates_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression
     return ca.vertcat(*dW, *ddW)
 
 
-def _modes(
-    plant: Plant, joint: JointMotion, states: Expression
-) -> tuple[Sequence[Expression], Sequence[Expression], Sequence[Expression]]:
+def _modes(plant: Plant, joint: JointMotion, states: Expression) -> tuple[Modes, Modes, Modes]:
     rows = ca.vertsplit(states)
     W, dW = rows[: plant.modes], rows[plant.modes :]
     return W, dW, plant.modal_accelerations(joint, W, dW)

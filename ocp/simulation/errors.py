@@ -12,6 +12,7 @@ import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.contract import outputs_of
+from quietarm.models.joint_motion import Modes
 from quietarm.ocp.base.checks import finite, positive
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.names import has_no
@@ -41,9 +42,7 @@ class ScaledModes(Plant):
         for name in ("name", "modes", "small_deflection"):
             object.__setattr__(self, name, getattr(self.plant, name))
 
-    def modal_accelerations(
-        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
-    ) -> Sequence[Expression]:
+    def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """The plant's own, and what its other stiffness and damping add [m/s^2]."""
         resting, modes = modal_system(self.plant, JointMotion(joint.angle, 0.0, 0.0)), range(len(W))
         less_stiff = 1 - self.frequency * self.frequency
@@ -55,17 +54,11 @@ class ScaledModes(Plant):
             for i, assumed in enumerate(self.plant.modal_accelerations(joint, W, dW))
         ]
 
-    def torque(
-        self,
-        joint: JointMotion,
-        W: Sequence[Expression],
-        dW: Sequence[Expression],
-        ddW: Sequence[Expression],
-    ) -> Expression:
+    def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque by the plant's own equation [N m]."""
         return self.plant.torque(joint, W, dW, ddW)
 
-    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+    def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """Those of the plant [m]."""
         return self.plant.tip_displacements(W)
 
