@@ -78,7 +78,7 @@ def _check_equations(plant: Plant) -> None:
     )
     # an angle at which no motion has a value is none to move to
     defined = np.isfinite(values).all(axis=2).any(axis=1)
-    kept = defined | ~defined.any()
+    kept = defined if defined.any() else np.full(_ANGLES, True)
     points, values, slopes = points[kept], values[kept], slopes[kept]
     _check_finite(plant, points, values, slopes)
     _check_side_by_side(plant, values, beside[kept])

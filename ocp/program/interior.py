@@ -82,7 +82,9 @@ def _one(functions: _RowFunctions, found: Rows, row: int, warm: bool) -> None:
     bounds = functions.lower, functions.upper
     for width in _STAGES[-1:] if warm else _STAGES:
         solver = functions.solver(_FIRST if width else _LAST)
-        point, status, iterations = run_ipopt(solver, point, (-free, free), bounds, [width])
+        point, status, iterations = run_ipopt(
+            solver, point, (-free, free), bounds, np.array([width])
+        )
         found.iterations[row] += iterations
         end = _ENDS.get(status)
         if end is End.STOPPED or (end is End.INFEASIBLE and width > 0):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import silent_errors
 
@@ -31,6 +31,7 @@ OPTIONS: dict[str, str | int | float] = {
     "expect_infeasible_problem": "yes",
 }
 _THREADS = "OPENBLAS_NUM_THREADS"
+_UNKNOWN = np.empty(0)
 
 
 class Point(NamedTuple):
@@ -40,8 +41,8 @@ class Point(NamedTuple):
     """
 
     unknowns: NDArray[np.float64]
-    bound_multipliers: NDArray[np.float64] | None = None
-    multipliers: NDArray[np.float64] | None = None
+    bound_multipliers: NDArray[np.float64] = _UNKNOWN
+    multipliers: NDArray[np.float64] = _UNKNOWN
 
 
 class Stop(NamedTuple):
@@ -87,11 +88,11 @@ def run_ipopt(
     start: Point,
     bounds: Bounds,
     constraint_bounds: Bounds,
-    parameters: ArrayLike,
+    parameters: NDArray[np.float64],
 ) -> Stop:
     """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""
     known = {}
-    if start.multipliers is not None:
+    if start.multipliers.size:
         known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
     with keep_interrupts(), silent_errors():  # casadi warns of every failure
         result = solver(
