@@ -150,6 +150,7 @@ class CycloidGaussians(CycloidOfUnits):
     """
 
     name: ClassVar[str] = "cycloid-gaussians"
+    term: ClassVar[str] = "Gaussian"
     sharpness: ClassVar[str] = "the inverse width of a Gaussian"
     terms: int = 5
 
@@ -196,6 +197,7 @@ class CycloidNetwork(CycloidOfUnits):
     """
 
     name: ClassVar[str] = "cycloid-network"
+    term: ClassVar[str] = "node"
     sharpness: ClassVar[str] = "the gain of a hidden node"
     terms: int = 5
 

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 from quietarm.ocp import Front
 from quietarm.ocp.answers.documents import plain
-from quietarm.ocp.front.robust import EXCESS
 from quietarm.studies.paper.tasks import task_difference
 from quietarm.studies.registry.methods import method_of
 
@@ -51,8 +50,7 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 
 def _settings(front: Front) -> dict[str, object]:
     profile = plain(front.profile)
-    asked = {name: value for name, value in front.settings.items() if name != EXCESS}
-    return {**asked, "profile": profile.pop("name"), **profile, "whole": front.complete}
+    return {**front.settings, "profile": profile.pop("name"), **profile, "whole": front.complete}
 
 
 def _label(front: Front, alike: Sequence[Front]) -> str:
