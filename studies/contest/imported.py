@@ -11,8 +11,7 @@ from quietarm.ocp import SolverFailedError
 from quietarm.ocp.answers.provenance import Setting
 from quietarm.ocp.base.files import read_bytes
 from quietarm.studies.contest.names import name_given
-from quietarm.studies.contest.problems import Yardstick
-from quietarm.studies.contest.store import Run
+from quietarm.studies.contest.store import Run, Yardstick
 from quietarm.studies.reading.foreign import read_found
 from quietarm.studies.reading.importing import import_front
 

@@ -17,8 +17,7 @@ from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.studies.contest.asked import Contest, Planned, check_alike
 from quietarm.studies.contest.imported import imported_run
 from quietarm.studies.contest.landscape import Landscape, landscape_of
-from quietarm.studies.contest.problems import Yardstick
-from quietarm.studies.contest.store import Run, Store
+from quietarm.studies.contest.store import Run, Store, Yardstick
 
 
 def set_up(

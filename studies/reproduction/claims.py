@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import pairwise
 
 from quietarm.ocp import Plan
-from quietarm.studies.paper.case import Case
-from quietarm.studies.paper.printed import EARLIER
+from quietarm.studies.paper.printed import EARLIER, Case
 from quietarm.studies.report.document import Verdict
-from quietarm.studies.reproduction.pieces import BEYOND_SIX, STUDIED
-from quietarm.studies.reproduction.recompute import Reproduction
+from quietarm.studies.reproduction.recompute import BEYOND_SIX, STUDIED, Reproduction
 
 _AT_REST = 1e-7
 """A residual below this [m] counts as cancelled."""
@@ -28,10 +25,6 @@ def claims(result: Reproduction) -> list[Verdict]:
     ]
 
 
-def _verdict(claim: str, holds: bool, evidence: Sequence[str]) -> Verdict:
-    return Verdict(claim, "supported" if holds else "refuted", holds, tuple(evidence))
-
-
 def _name(condition: Case) -> str:
     return f"{condition.task.plant.name} {condition.label}"
 
@@ -44,7 +37,7 @@ def _printed(result: Reproduction, condition: Case, terms: int) -> Plan:
 
 def _two_terms_suffice(result: Reproduction) -> Verdict:
     gradient = {case: result.more_terms[case, 2, True].residual for case in STUDIED}
-    return _verdict(
+    return Verdict(
         "Two terms suffice to cancel the residual vibration.",
         max(gradient.values()) < _AT_REST,
         [
@@ -63,7 +56,7 @@ def _more_terms_lower_the_energy(result: Reproduction) -> Verdict:
         gradient = [result.more_terms[case, n, True].energy for n in (2, 4, 6)]
         energies[f"{_name(case)}, printed coefficients"] = printed
         energies[f"{_name(case)}, gradient in the box"] = gradient
-    return _verdict(
+    return Verdict(
         "More terms lower the energy.",
         all(more < fewer for each in energies.values() for fewer, more in pairwise(each)),
         [
@@ -85,7 +78,7 @@ def _no_gain_above_six(result: Reproduction) -> Verdict:
                 f"{_name(case)}, gradient {name}: {six:.4f} J at N = 6; "
                 + ", ".join(f"{gain:.1%} less at N = {n}" for n, gain in gains.items())
             )
-    return _verdict("The energy does not fall further above six terms.", holds, evidence)
+    return Verdict("The energy does not fall further above six terms.", holds, evidence)
 
 
 def _against_the_earlier_studies(result: Reproduction) -> list[Verdict]:
@@ -108,6 +101,6 @@ def _against_the_earlier_studies(result: Reproduction) -> list[Verdict]:
         )
     optimal = "The tuned coefficients are optimal in their search space (implied)."
     return [
-        _verdict("The proposed method beats refs [23] and [24].", beaten, beats),
-        _verdict(optimal, above <= _GAIN, tuned),
+        Verdict("The proposed method beats refs [23] and [24].", beaten, beats),
+        Verdict(optimal, above <= _GAIN, tuned),
     ]

@@ -4,24 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import isfinite
+from operator import attrgetter
 from typing import Any
 
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, Spread
 from quietarm.metaheuristics.sharing.pieces import Done, Piece
 from quietarm.ocp import Floor, Front, Plan
-from quietarm.studies.paper.case import Case
-from quietarm.studies.paper.printed import CONDITIONS, EARLIER
+from quietarm.studies.paper.printed import CONDITIONS, EARLIER, Case
 from quietarm.studies.report.table import Cell, Column, Table
-from quietarm.studies.reproduction.pieces import TERMS
-from quietarm.studies.reproduction.recompute import Reproduction, RowResult
-from quietarm.studies.reproduction.systems import (
-    FREQUENCY_ERROR,
-    SEARCHES,
-    System,
-    Systems,
-    peak_acceleration,
-    residual,
-)
+from quietarm.studies.reproduction.recompute import TERMS, Reproduction, RowResult
+from quietarm.studies.reproduction.systems import FREQUENCY_ERROR, SEARCHES, System, Systems
 
 _Columns = list[tuple[Column, Callable[[Any], Cell]]]
 """Columns, each with how its cell is read off what a row is of."""
@@ -72,45 +64,36 @@ def paper_table(result: Reproduction, number: int) -> Table:
         energy = row.searched_by(method).median
         return energy if isfinite(energy) else "none"
 
+    def seconds(row: RowResult) -> float:
+        return Spread.of([front.seconds for front in row.fronts[method]]).median
+
     def once(read: Callable[[RowResult], Any]) -> Callable[[tuple[RowResult, bool]], Any]:
         return lambda row: None if row[1] else read(row[0])
 
-    earlier = _of_plan(
-        f"{profile}, ref. [{reference}] as read here, by gradient",
-        "earlier_study_as_read_here",
-        lambda row: row[0].earlier,
-    )
-    coefficients = _of_plan(
+    read_here = f"{profile}, ref. [{reference}] as read here, by gradient"
+    energy, residual, _ = _of_plan(
         "printed coefficients",
         "printed_coefficients",
         lambda row: row[0].mended if row[1] else row[0].printed,
     )
     columns: _Columns = [
-        (Column("move", key="move"), lambda row: row[0].row.condition.label),
+        (Column("move"), lambda row: row[0].row.condition.label),
         (Column("terms N", key="terms"), lambda row: f"{row[0].row.terms}{_MENDED * row[1]}"),
-        (
-            Column("F2 [J] earlier study", _J, "earlier_study_J"),
-            lambda row: row[0].row.earlier_energy,
-        ),
-        *earlier,
+        (Column("F2 [J] earlier study", _J, "earlier_study_J"),
+         lambda row: row[0].row.earlier_energy),
+        *_of_plan(read_here, "earlier_study_as_read_here", lambda row: row[0].earlier),
         (Column("F2 [J] printed", _J, "printed_J"), lambda row: row[0].row.energy),
-        *coefficients[:2],
+        energy,
+        residual,
         *_of_plan(_IN_BOX, "gradient_in_box", once(lambda row: row.in_box)),
         *_of_plan(_FREE, "gradient_no_box", once(lambda row: row.free)),
         (Column(f"F2 [J] {name}, in the box", _J, f"{name}_in_box_J"), once(median)),
         (Column("  quartiles over seeds", key=f"{name}_quartiles_J"), once(quartiles)),
-        (Column("  residual limit [mm]", _MM, f"{name}_residual_limit_mm"), once(_level)),
-        (Column("  time of a run [s]", _S, f"{name}_run_s"), once(_seconds)),
-    ]
+        (Column("  residual limit [mm]", _MM, f"{name}_residual_limit_mm"),
+         once(lambda row: row.residual_level * 1e3)),
+        (Column("  time of a run [s]", _S, f"{name}_run_s"), once(seconds)),
+    ]  # fmt: skip
     return _table(TITLES[number], rows, columns)
-
-
-def _level(row: RowResult) -> float:
-    return row.residual_level * 1e3
-
-
-def _seconds(row: RowResult) -> float:
-    return Spread.of([front.seconds for front in row.fronts[row.own_search]]).median
 
 
 def _of_plan(words: str, key: str, plan_of: Callable[[Any], Plan | None]) -> _Columns:
@@ -121,12 +104,10 @@ def _of_plan(words: str, key: str, plan_of: Callable[[Any], Plan | None]) -> _Co
 
     return [
         (Column(f"F2 [J] {words}", _J, f"{key}_J"), read(lambda plan: plan.energy)),
-        (
-            Column("  residual [mm]", _MM, f"{key}_residual_mm"),
-            read(lambda plan: plan.residual * 1e3),
-        ),
+        (Column("  residual [mm]", _MM, f"{key}_residual_mm"),
+         read(lambda plan: plan.residual * 1e3)),
         (Column("  time [s]", _S, f"{key}_s"), read(lambda plan: plan.provenance.seconds)),
-    ]
+    ]  # fmt: skip
 
 
 # Side by side
@@ -143,23 +124,22 @@ def _three_digits(value: float) -> str:
     return f"{value:.3g}" if value < 1000 else f"{value:.0f}"
 
 
-def _mm(read: Callable[[System], float | None]) -> Callable[[System], float | None]:
+def _mm(name: str) -> Callable[[System], Cell]:
     """A length of a system in millimetres."""
-    return lambda found: None if (length := read(found)) is None else 1e3 * length
+    return lambda found: None if (length := getattr(found, name)) is None else 1e3 * length
 
 
-_WRONG = Column(f"{_ERROR} off [mm]", "{:.2f}".format, "residual_frequency_wrong_mm")
-_TORQUE = Column("peak torque [N m]", _three_digits, "peak_torque_Nm")
-_ACCELERATION = Column("peak accel. [1/s^2]", _three_digits, "peak_acceleration_rad_s2")
 _OF_SYSTEM: _Columns = [
-    (Column("size", str, "parameters"), lambda found: found.parameters),
-    (Column("energy [J]", "{:.4f}".format, "energy_J"), lambda found: found.energy),
-    (Column("residual [mm]", "{:.2f}".format, "residual_mm"), _mm(residual)),
-    (_WRONG, _mm(lambda found: found.wrong_residual)),
-    (_TORQUE, lambda found: found.motion and found.motion.peak_torque),
-    (_ACCELERATION, peak_acceleration),
-    (Column("time [s]", seconds_in_words, "seconds"), lambda found: found.seconds),
-]
+    (Column("size", str, "parameters"), attrgetter("parameters")),
+    (Column("energy [J]", "{:.4f}".format, "energy_J"), attrgetter("energy")),
+    (Column("residual [mm]", "{:.2f}".format, "residual_mm"), _mm("residual")),
+    (Column(f"{_ERROR} off [mm]", "{:.2f}".format, "residual_frequency_wrong_mm"),
+     _mm("wrong_residual")),
+    (Column("peak torque [N m]", _three_digits, "peak_torque_Nm"), attrgetter("peak_torque")),
+    (Column("peak accel. [1/s^2]", _three_digits, "peak_acceleration_rad_s2"),
+     attrgetter("peak_acceleration")),
+    (Column("time [s]", seconds_in_words, "seconds"), attrgetter("seconds")),
+]  # fmt: skip
 
 
 def systems_table(case: Case, systems: Sequence[System]) -> Table:
@@ -172,11 +152,11 @@ def systems_table(case: Case, systems: Sequence[System]) -> Table:
 def all_systems(systems: Systems) -> Table:
     """Every system on every move, for CSV."""
     columns: _Columns = [
-        (Column("plant", key="plant"), lambda row: row[0].task.plant.name),
-        (Column("move", key="move"), lambda row: row[0].label),
-        (Column("system", key="system"), lambda row: row[1].name),
+        (Column("plant"), lambda row: row[0].task.plant.name),
+        (Column("move"), lambda row: row[0].label),
+        (Column("system"), lambda row: row[1].name),
         *((column, lambda row, read=read: read(row[1])) for column, read in _OF_SYSTEM),
-        (Column("why", key="why"), lambda row: row[1].why or None),
+        (Column("why"), lambda row: row[1].why or None),
     ]
     rows = [(case, found) for case, every in systems.items() for found in every]
     return _table("Side by side", rows, columns)
@@ -208,11 +188,6 @@ def multiples(result: Reproduction, condition: Case) -> Multiples:
 
 def floor_table(result: Reproduction) -> Table:
     """The multiples as a table, one row for each condition."""
-    places = [
-        (series, terms)
-        for series in SERIES
-        for terms in (TERMS if series in (_IN_BOX, _FREE) else (2, 4, 6))
-    ]
     found = {case: multiples(result, case) for case in CONDITIONS}
     floors = result.floors
 
@@ -220,15 +195,18 @@ def floor_table(result: Reproduction) -> Table:
         return f"{floors[case].agreeing()} of {len(floors[case].starts)}"
 
     columns: _Columns = [
-        (Column("plant", key="plant"), lambda case: case.task.plant.name),
-        (Column("move", key="move"), lambda case: case.label),
+        (Column("plant"), lambda case: case.task.plant.name),
+        (Column("move"), lambda case: case.label),
         (Column("floor F2 [J]", _J, "floor_J"), lambda case: floors[case].energy),
         (Column("  left [J], about", "{:.1g}".format, "left_J"), lambda case: floors[case].left),
         (Column("  starts that agree", key="starts_that_agree"), agreement),
     ]
-    for place in places:
-        column = Column(f"{place[0]}, N = {place[1]}", "{:.3f}".format, _key(*place))
-        columns.append((column, lambda case, place=place: found[case].get(place, (None,))[0]))
+    columns += [
+        (Column(f"{series}, N = {terms}", "{:.3f}".format, _key(series, terms)),
+         lambda case, place=(series, terms): found[case].get(place, (None,))[0])
+        for series in SERIES
+        for terms in (TERMS if series in (_IN_BOX, _FREE) else (2, 4, 6))
+    ]  # fmt: skip
     return _table("Energies as multiples of the floor, at rest on arrival", CONDITIONS, columns)
 
 
@@ -271,8 +249,8 @@ def checks_table(result: Reproduction) -> Table:
     """How far the two solvers of the gradient differ along the exact fronts."""
     difference = Column("largest difference", "{:.0e}".format, "largest_difference")
     columns: _Columns = [
-        (Column("move", key="move"), lambda row: row[0].name),
-        (Column("points", key="points"), lambda row: str(len(row[1].points))),
+        (Column("move"), lambda row: row[0].name),
+        (Column("points"), lambda row: str(len(row[1].points))),
         (difference, lambda row: row[1].largest),
     ]
     return _table("Exact fronts by both solvers", list(result.checks.items()), columns)

@@ -3,15 +3,11 @@
 import json
 import math
 import shutil
-from dataclasses import replace
 from html import unescape
 
 import numpy as np
 import pytest
 from quietarm.studies.contest.measures import arenas_of
-from quietarm.studies.contest.report.citations import bibtex
-from quietarm.studies.contest.report.sentences import methods_paragraph
-from quietarm.studies.contest.statistics import pairs_on
 from quietarm.studies.contest.store import Store
 from small_contest import LINE, NAME, OTHER, TINY, area, least_energy, rows_of
 
@@ -78,27 +74,6 @@ def test_runs_of_other_evaluations_are_marked(call, copy, results, given, words)
     assert f"{NAME}: results ends with" in out
     assert words in out
     assert words in unescape((copy / "contest.html").read_text())
-
-
-def arena_of(copy, evaluations, seeds=5):
-    """The arena of a contest of five runs of each, made of two."""
-    contents = Store(copy)
-    (one,) = arenas_of(contents)
-    imports = [replace(run, evaluations=evaluations) for run in one.imports[0].runs]
-    fields = [*one.own, replace(one.imports[0], runs=tuple(imports))]
-    fields = [replace(field, runs=(field.runs * seeds)[:seeds]) for field in fields]
-    return replace(one, fields=tuple(fields))
-
-
-def test_tests_compare_those_of_as_many_evaluations_alone(call, copy, results):
-    assert call(f"{LINE} --import=results --output held")[0] == 0
-    for evaluations, expected in ((130, True), (131, False), (None, False)):
-        arena = arena_of(copy, evaluations)
-        compared = {name for pair in pairs_on(arena) for name in (pair.one, pair.other)}
-        assert ("results" in compared) is expected
-        assert {"nsga2", "vepso"} <= compared
-    assert "results on" in methods_paragraph([arena])
-    assert "results: results from elsewhere" in bibtex(["nsga2", "results"], statistics=False)
 
 
 def test_motions_all_along_the_exact_front_miss_nothing_of_it(call, copy, folder):
