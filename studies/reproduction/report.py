@@ -7,6 +7,7 @@ from functools import partial
 from quietarm.studies.display.words import title_of
 from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
 from quietarm.studies.report.document import Block, Bullets, Document, Picture, Section, Text
+from quietarm.studies.report.prose import told
 from quietarm.studies.reproduction.claims import claims
 from quietarm.studies.reproduction.pictures import (
     against_earlier,
@@ -27,46 +28,10 @@ from quietarm.studies.reproduction.tables import (
     systems_table,
 )
 
-_ERROR = f"{100 * FREQUENCY_ERROR:g} %"
-_TABLES = (
-    "Printed: as in the paper; printed coefficients: the same recomputed here. Gradient: the least "
-    "energy at rest on arrival, within the paper's bound on the coefficients or without one; "
-    "arriving at rest may cost a little more than the paper's small residual does. VEPSO, NSGA-II: "
-    "the cheapest point of a front found with the paper's settings whose residual is no larger "
-    "than that of the paper's own coefficients (where none are printed, of its N = 6 row for the "
-    "same plant). Energies F2 and residuals F1 (at the tip) of coefficients and gradient are by "
-    "CVODES. Network, Gaussians: what refs [23] and [24] move the joint with, as this project "
-    "reads these references, with 16 parameters; the least energy at rest on arrival, in this "
-    "project's box. They are no recomputation of the references' own figures, whose parameters are "
-    "not published."
+_TABLES, _SYSTEMS, _FLOOR, _CHECKS = told(
+    "reproduction/reading.txt", error=f"{100 * FREQUENCY_ERROR:g} %"
 )
-_SYSTEMS = (
-    "Size: how many numbers are chosen. Residual, energy and peaks are by CVODES. "
-    f"{_ERROR} off: the residual with all natural frequencies {_ERROR} lower or higher than "
-    "assumed, the larger of the two, the joint moving as planned. Accel.: of the joint. Time: of "
-    "one solve with its starts, or of one search, here; with the plain cycloid and the shapers "
-    "nothing is looked for. ZV, ZVD, EI: input shapers for the plant's modes; their cycloid is "
-    "shorter, so that the whole takes the duration. Paper: its coefficients for N = 6, a misprint "
-    "mended; where it prints none, its printed energy. Network, Gaussians: what refs [23] and [24] "
-    "move the joint with, as this project reads them; these and the spline by the gradient, at "
-    "rest on arrival, weights up to 0.5. VEPSO, NSGA-II: the paper's polynomial, box and settings; "
-    "the cheapest point that leaves no more than the paper's own coefficients for the plant, with "
-    "two links no more than 1 mm. Boxed gradient: the same polynomial in the same box, at rest on "
-    "arrival; gradient: without the box. Robust plan: the same, within 5 % of the plain cycloid's "
-    f"residual whatever the frequencies within {_ERROR}. Floor: any joint motion; it starts and "
-    "stops with jolts. The move of two links is not of this paper, and its box is this project's."
-)
-_FLOOR = (
-    "Floor: the least energy over all joint motions that start and end at rest, joint and "
-    "structure, without limits; it starts and stops with jolts. Left: an estimate of what finer "
-    "grids would still lower it. Starts that agree: how many of the solver's starts end within "
-    "0.5 % of the best. The paper's energies are the printed ones, with the paper's residual; "
-    "VEPSO and NSGA-II are judged at that residual, the gradient and the floor at rest."
-)
-_CHECKS = (
-    "Both ends and five points between them of the front by sequential quadratic programs, solved "
-    "again by IPOPT from the plain cycloid: by which share the energies differ at most."
-)
+"""How to read the paper's tables, those of systems, the floor's and that of both solvers."""
 _FIGURES = (
     (2, redrawn, SINGLE_LINK_SIXTH),
     (3, against_earlier, SINGLE_LINK_SIXTH),
