@@ -88,18 +88,6 @@ def test_motions_all_along_the_exact_front_miss_nothing_of_it(call, copy, folder
     assert (found.missing_by_thirds > -1e-4).all()
 
 
-def test_the_same_line_again_changes_nothing(call, copy, results):
-    line = f"{LINE} --import=results --output held"
-    assert call(line)[0] == 0
-    before = {path: path.read_bytes() for path in (copy / "imports").rglob("*.json")}
-    assert len(before) == 2
-    assert call(line)[0] == 0
-    assert {path: path.read_bytes() for path in (copy / "imports").rglob("*.json")} == before
-    # and without the option they stay
-    assert call(f"{LINE} --output held")[0] == 0
-    assert len(rows_of(copy, "runs")) == 4 + 2
-
-
 def test_what_a_file_states_otherwise_is_said(call, copy, folder):
     energies = np.array([point.energy for point in EXACT.points[::6]])
     energies[1] *= 2

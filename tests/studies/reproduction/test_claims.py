@@ -8,7 +8,7 @@ from quietarm.studies.paper.printed import (
     ARM_WHOLE,
     SINGLE_LINK_SIXTH,
 )
-from quietarm.studies.reproduction.claims import claims
+from quietarm.studies.reproduction.report import claims
 
 
 def costing(plan, **figures):

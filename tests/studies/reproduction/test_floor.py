@@ -28,17 +28,6 @@ def test_nothing_is_below_the_floor(reproduction, condition):
     assert gradient == sorted(gradient, reverse=True)
 
 
-def test_every_row_and_every_number_of_terms_has_its_multiple(reproduction):
-    for row in ROWS:
-        found = medians(reproduction, row.condition)
-        floor = reproduction.floors[row.condition].energy
-        assert found[PAPER, row.terms] == pytest.approx(row.energy / floor)
-        for terms in TERMS:
-            for series, boxed in ((IN_BOX, True), (FREE, False)):
-                plan = reproduction.more_terms[row.condition, terms, boxed]
-                assert found[series, terms] == pytest.approx(plan.energy / floor)
-
-
 def test_the_table_has_a_row_a_condition_and_csv_all_of_it(reproduction):
     table = floor_table(reproduction)
     rows = list(csv.DictReader(io.StringIO(table.csv())))

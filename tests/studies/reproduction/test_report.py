@@ -12,9 +12,8 @@ from quietarm.studies.paper.printed import (
 )
 from quietarm.studies.report.files import document_files
 from quietarm.studies.report.terminal import show
-from quietarm.studies.reproduction.claims import claims
 from quietarm.studies.reproduction.pictures import redrawn
-from quietarm.studies.reproduction.report import reproduction_document
+from quietarm.studies.reproduction.report import claims, reproduction_document
 from rich.console import Console
 
 # The report
