@@ -70,8 +70,7 @@ class MoveFunction:
         if bound is None:
             raise ValueError("give a bound on the coefficients: the box that is searched")
         bound = coefficient_bound(bound)
-        if profile.size == 0:
-            raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+        profile.refuse_no_choice()
         self.task, self.profile, self.bound = task, profile, bound
         self.peaks = tuple(_known(name) for name in peaks)
         self.lower, self.upper = (np.array(side, dtype=float) for side in profile.box(bound))

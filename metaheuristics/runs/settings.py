@@ -54,8 +54,7 @@ class SearchSpec:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "seed", whole("seed", self.seed, 0))
-        if self.profile.size == 0:
-            raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+        self.profile.refuse_no_choice()
 
 
 def search_versions() -> dict[str, str]:

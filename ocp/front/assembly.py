@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.ocp.front.answer import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
-from quietarm.ocp.front.robust import EXCESS, held_between
+from quietarm.ocp.front.robust import held_between
 from quietarm.ocp.front.sweep import Sweep
 
 
@@ -32,20 +32,20 @@ def front_of(
         reference = reference_corner(sweep.task)
     failures = tuple(point for point in found if isinstance(point, FailedPoint))
     settings = sweep.settings
-    stated = {} if excess is None else {EXCESS: excess}
     return Front(
         task=sweep.task,
         profile=sweep.profile,
         points=non_dominated(point for point in found if isinstance(point, FrontPoint)),
         method=method,
         settings={"bound": settings.bound, "points": points, "starts": settings.starts,
-                  "steps": sweep.steps, "solver": settings.solver, **stated},
+                  "steps": sweep.steps, "solver": settings.solver},
         seed=settings.seed,
         reference=reference,
         iterations=sweep.iterations + iterations,
         failed=len(failures),
         failures=failures,
         gaps=tuple(gaps),
+        excess=excess,
         complete=complete,
         seconds=seconds + time.perf_counter() - sweep.began,
     )  # fmt: skip

@@ -15,7 +15,6 @@ from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.assembly import front_of
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.robust import EXCESS
 from quietarm.ocp.front.sweep import Report, Sweep, no_report
 from quietarm.ocp.program.solution import Solution
 
@@ -153,15 +152,11 @@ def _together(front: Front, sweep: Sweep, tried: Sequence[_Tried], complete: boo
         [found for one in tried for found in one.found],
         len(front.points),
         iterations=front.iterations, complete=complete, seconds=front.seconds,
-        between=EXCESS in front.settings,
+        between=front.excess is not None,
     )  # fmt: skip
-    of_front = {name: value for name, value in front.settings.items() if name != EXCESS}
-    found_anew = {
-        name: value for name, value in polished.settings.items() if name in ("steps", EXCESS)
-    }
     with_origin = replace(
         polished,
-        settings={**of_front, **found_anew},
+        settings={**front.settings, "steps": polished.settings["steps"]},
         seed=front.seed,
         reference=front.reference,
         evaluations=front.evaluations,

@@ -16,9 +16,6 @@ from quietarm.ocp.front.sweep import Sweep
 from quietarm.ocp.robustness.uncertain import UncertainPlant
 from quietarm.ocp.robustness.worst import peaks_between, worst_at
 
-EXCESS = "excess"
-"""Among the settings of a front: the share by which the residual between the samples may pass that
-of a point, by CVODES, at the point where it does so most."""
 _SOLVED, _STATED = 0.02, 1e-3
 """Shares by which it may do so before points are solved again, and before their residual is."""
 _ROUNDS, _ADDED, _PEAKS = 4, 3, 4

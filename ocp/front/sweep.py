@@ -64,8 +64,7 @@ class Sweep:
     began: float = field(default_factory=time.perf_counter)
 
     def __post_init__(self) -> None:
-        if self.profile.size == 0:
-            raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+        self.profile.refuse_no_choice()
         self.steps = first_steps(self.task, self.profile, self.settings)
         self.guesses = start_coefficients(self.profile, self.settings)
         self._program: Program | None = None

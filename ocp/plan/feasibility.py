@@ -99,13 +99,12 @@ def explain(
     program: Program, ask: Ask, tried: Sequence[Solution], least: Mapping[str, Solution]
 ) -> SolverFailedError:
     """The error for a program that no start solved; other arguments as for `unmet`."""
-    size = program.profile.size
     return unmet(
-        f"motion of {size} term{'s' if size > 1 else ''}",
+        f"motion of {program.profile.amount}",
         ask.limits,
         tried,
         true_peaks(least, lambda found: Checked(program, found)),
-        "more terms or a longer duration",
+        f"more {program.profile.term}s or a longer duration",
         "" if ask.bound is None else f", coefficients within +-{ask.bound:g}",
     )
 

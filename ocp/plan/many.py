@@ -288,8 +288,7 @@ def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
             raise ValueError(
                 f"move {i} has another plant or other limits than move 1; plan them apart"
             )
-    if profile.size == 0:
-        raise ValueError("a profile of 0 terms has nothing to choose; give 1 term or more")
+    profile.refuse_no_choice()
 
 
 def _preferred(found: Solution) -> tuple[bool, float]:

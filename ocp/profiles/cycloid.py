@@ -22,6 +22,7 @@ class Cycloid(JointProfile):
     and 1 on arrival, so the joint is at its ends there, with speed and acceleration zero, eq (5).
     """
 
+    term: ClassVar[str] = "term"
     least_terms: ClassVar[int] = 1
     most_terms: ClassVar[int] = 32
     why_no_more: ClassVar[str] = ""
@@ -38,9 +39,14 @@ class Cycloid(JointProfile):
         object.__setattr__(self, "terms", int(terms))
 
     @property
+    def amount(self) -> str:
+        """As 6 terms."""
+        return f"{self.terms} {self.term}{'s' if self.terms != 1 else ''}"
+
+    @property
     def label(self) -> str:
         """The family and its size."""
-        return f"{self.name} of {self.terms} term{'s' if self.terms != 1 else ''}"
+        return f"{self.name} of {self.amount}"
 
     @classmethod
     def of_size(cls, size: int) -> Self:

@@ -35,6 +35,7 @@ class CycloidGaussians(CycloidOfUnits):
     """
 
     name: ClassVar[str] = "cycloid-gaussians"
+    term: ClassVar[str] = "Gaussian"
     sharpness: ClassVar[str] = "the inverse width of a Gaussian"
     terms: int = 5
 

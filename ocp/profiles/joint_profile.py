@@ -28,6 +28,9 @@ class JointProfile(ABC):
     name: ClassVar[str]
     """The name by which files know the family."""
 
+    term: ClassVar[str] = "coefficient"
+    """What there is more of in a larger profile."""
+
     default_bound: ClassVar[float | None] = None
     """Bound of a search where the user gives none; None where one must be given."""
 
@@ -47,9 +50,22 @@ class JointProfile(ABC):
         """How many coefficients the profile has."""
 
     @property
+    def amount(self) -> str:
+        """How large the profile is, as 6 coefficients."""
+        return f"{self.size} {self.term}{'s' if self.size != 1 else ''}"
+
+    @property
     def label(self) -> str:
         """What the profile is called in a message."""
         return f"{self.name} profile"
+
+    def refuse_no_choice(self) -> None:
+        """ValueError where the profile has a single motion, and so nothing to choose."""
+        if self.size == 0:
+            raise ValueError(
+                f"the {self.label} has one motion for a move, and nothing to choose; give a "
+                "profile with coefficients"
+            )
 
     @property
     def least_duration(self) -> float:

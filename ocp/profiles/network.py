@@ -35,6 +35,7 @@ class CycloidNetwork(CycloidOfUnits):
     """
 
     name: ClassVar[str] = "cycloid-network"
+    term: ClassVar[str] = "node"
     sharpness: ClassVar[str] = "the gain of a hidden node"
     terms: int = 5
 

@@ -35,6 +35,7 @@ class CycloidSpline(Cycloid):
     """
 
     name: ClassVar[str] = "cycloid-spline"
+    term: ClassVar[str] = "control point"
     default_bound: ClassVar[float | None] = 0.5
     least_terms: ClassVar[int] = DEGREE - 1
 

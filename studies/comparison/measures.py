@@ -16,7 +16,7 @@ from quietarm.ocp import Front, PointToPoint
 from quietarm.ocp.answers.documents import plain
 from quietarm.ocp.base.checks import not_negative, positive, whole
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.front.robust import EXCESS, on_same_samples
+from quietarm.ocp.front.robust import on_same_samples
 from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
 from quietarm.studies.paper.points import task_difference
@@ -270,8 +270,7 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 
 def _settings(front: Front) -> dict[str, object]:
     profile = plain(front.profile)
-    asked = {name: value for name, value in front.settings.items() if name != EXCESS}
-    return {**asked, "profile": profile.pop("name"), **profile, "whole": front.complete}
+    return {**front.settings, "profile": profile.pop("name"), **profile, "whole": front.complete}
 
 
 def _label(front: Front, alike: Sequence[Front]) -> str:

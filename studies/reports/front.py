@@ -14,7 +14,6 @@ from quietarm.metaheuristics.ensemble import (
 from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, UncertainPlant
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.front.robust import EXCESS
 from quietarm.ocp.robustness.worst import worst_of
 from quietarm.studies.display.words import counted, millimetres
 from quietarm.studies.report.document import Document, Lines
@@ -112,12 +111,11 @@ def _excess_lines(front: Front) -> list[str]:
     """Of an uncertain plant, how well the residuals hold between its samples."""
     if not isinstance(front.task.plant, UncertainPlant):
         return []
-    excess = front.settings.get(EXCESS)
-    if not isinstance(excess, float):
+    if front.excess is None:
         return ["residuals hold at the samples of the plant alone; between them more may be left"]
     ranges = front.task.plant.ranges
     errors = ", ".join(f"{name} within {100 * most:g} %" for name, most in ranges.items())
-    more = f"at most {100 * excess:.2g} % more" if excess > 0 else "no more"
+    more = f"at most {100 * front.excess:.2g} % more" if front.excess > 0 else "no more"
     return [
         f"residuals hold for any {errors}: between the samples CVODES finds {more} at any point"
     ]

@@ -7,7 +7,6 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.ocp.front.robust import EXCESS
 from quietarm.ocp.robustness.uncertain import on_assumed
 
 import quietarm as qa
@@ -46,15 +45,15 @@ def worst(front, point):
 
 
 def test_no_point_leaves_more_between_the_samples_than_it_states(front):
-    assert front.settings[EXCESS] <= 0.05
+    assert front.excess <= 0.05
     for point in front.points:
-        assert worst(front, point) <= point.residual * (1 + front.settings[EXCESS] + 1e-4)
+        assert worst(front, point) <= point.residual * (1 + front.excess + 1e-4)
 
 
 def test_with_the_first_samples_alone_points_leave_more(at_samples, task):
     # else the test above tests nothing
     assert at_samples.task == task
-    assert EXCESS not in at_samples.settings
+    assert at_samples.excess is None
     assert max(worst(at_samples, one) / one.residual for one in at_samples.points) > 1.05
 
 
@@ -81,12 +80,12 @@ def test_residuals_are_those_at_the_samples_of_the_saved_plant(front, tmp_path):
 
 def test_a_weighted_sum_holds_as_well(task):
     front = qa.weighted_front(task, PROFILE, weights=[(1, 1)], starts=1)
-    assert front.settings[EXCESS] <= 0.05
+    assert front.excess <= 0.05
     for point in front.points:
-        assert worst(front, point) <= point.residual * (1 + front.settings[EXCESS] + 1e-4)
+        assert worst(front, point) <= point.residual * (1 + front.excess + 1e-4)
 
 
 def test_a_polished_front_holds_as_well(front):
     polished = qa.polish_front(replace(front, points=front.points[1:2])).front
     for point in polished.points:
-        assert worst(polished, point) <= point.residual * (1 + polished.settings[EXCESS] + 1e-4)
+        assert worst(polished, point) <= point.residual * (1 + polished.excess + 1e-4)
