@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -12,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp import Front, PointToPoint
+from quietarm.ocp.answers.documents import plain
 from quietarm.ocp.base.checks import not_negative, positive, whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.robust import on_same_samples
 from quietarm.ocp.robustness.uncertain import on_assumed
-from quietarm.studies.comparison.groups import check_alike, check_apart, grouped
 from quietarm.studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
+from quietarm.studies.paper.points import task_difference
 from quietarm.studies.registry.methods import Method, method_of
 
 FILL, MOST_FILL = 1000, 100_000
@@ -226,3 +228,60 @@ def _frozen(values: object) -> Array:
     array = np.array(values, dtype=float)
     array.setflags(write=False)
     return array
+
+
+def check_alike(fronts: Sequence[Front], names: Sequence[str]) -> None:
+    """Refuse fronts without points, or of several tasks."""
+    for front, name in zip(fronts, names, strict=True):
+        if not front.points:
+            raise ValueError(f"{name} has no finite point; leave it out, or search longer")
+        difference = task_difference(front.task, fronts[0].task)
+        if difference:
+            raise ValueError(
+                f"{name} is of another task than {names[0]}: its {difference}; compare fronts of "
+                "one task"
+            )
+
+
+def check_apart(fronts: Sequence[Front], names: Sequence[str]) -> None:
+    """Refuse a front that is given twice, and two of one name."""
+    for i, (front, name) in enumerate(zip(fronts, names, strict=True)):
+        if front in fronts[:i]:
+            first = names[list(fronts).index(front)]
+            twin = "given twice" if name == first else f"the same front as {first}"
+            raise ValueError(f"{name} is {twin}; give every front once")
+        if name in names[:i]:
+            raise ValueError(f"{name!r} is the name of two fronts; give each one of its own")
+
+
+def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
+    """Which fronts are runs of one method with one set of settings."""
+    groups: dict[str, list[int]] = {}
+    for i, front in enumerate(fronts):
+        stated = {name: value for name, value in _settings(front).items() if value is not None}
+        key = json.dumps([front.method, stated], sort_keys=True)
+        groups.setdefault(key, []).append(i)
+    firsts = [fronts[members[0]] for members in groups.values()]
+    return {
+        _label(front, [other for other in firsts if other.method == front.method]): members
+        for front, members in zip(firsts, groups.values(), strict=True)
+    }
+
+
+def _settings(front: Front) -> dict[str, object]:
+    profile = plain(front.profile)
+    return {**front.settings, "profile": profile.pop("name"), **profile, "whole": front.complete}
+
+
+def _label(front: Front, alike: Sequence[Front]) -> str:
+    """The method, with the settings in which it differs from others of the same method."""
+    words, others = [method_of(front.method).label], [_settings(other) for other in alike]
+    for name, value in _settings(front).items():
+        if all(other.get(name) == value for other in others):
+            continue
+        if name == "whole":
+            words += [] if value else ["interrupted"]
+        else:
+            shown = str(value).removesuffix(".0")  # every digit: two groups never share a label
+            words.append(f"no {name}" if value is None else f"{name} {shown}")
+    return ", ".join(words)

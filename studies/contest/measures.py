@@ -15,8 +15,7 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.comparison.staircase import objectives, within
 from quietarm.studies.contest.landscape import Landscape
 from quietarm.studies.contest.names import label_of
-from quietarm.studies.contest.problems import Yardstick
-from quietarm.studies.contest.store import Run, Store
+from quietarm.studies.contest.store import Run, Store, Yardstick
 
 Array = NDArray[np.float64]
 TARGETS = (1e-2, 1e-3)

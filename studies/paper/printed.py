@@ -8,10 +8,34 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
+from quietarm.metaheuristics import PAPER_BOX
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
 from quietarm.ocp import PointToPoint
-from quietarm.studies.paper.case import Case
+from quietarm.ocp.base.checks import positive
 from quietarm.studies.registry.methods import NSGA2, VEPSO
+
+
+@dataclass(frozen=True)
+class Case:
+    """A task and the box that its coefficients stay in."""
+
+    task: PointToPoint
+    bound: float | None = None
+    label: str = ""
+
+    def __post_init__(self) -> None:
+        bound = PAPER_BOX.get(self.task.plant.name) if self.bound is None else self.bound
+        if bound is None:
+            raise ValueError(
+                f"give a bound on the coefficients: the paper has none for {self.task.plant.name}"
+            )
+        object.__setattr__(self, "bound", positive("bound on the coefficients", bound))
+
+    @property
+    def name(self) -> str:
+        """Plant and move."""
+        return f"{self.task.plant.name}, {self.label}"
+
 
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()
 

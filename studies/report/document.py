@@ -6,7 +6,7 @@ more file beside these.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -65,9 +65,13 @@ class Verdict:
     """A claim, whether it holds, and why."""
 
     claim: str
-    word: str
     holds: bool
     evidence: Sequence[str]
+
+    @property
+    def word(self) -> str:
+        """What the figures say of it."""
+        return "supported" if self.holds else "refuted"
 
 
 @dataclass(frozen=True)
@@ -108,16 +112,17 @@ class Document:
     @property
     def pictures(self) -> list[Picture]:
         """Every picture, in order."""
-        return _pictures(self.blocks)
+        return list(_pictures(self.blocks))
 
 
-def _pictures(blocks: Sequence[Block]) -> list[Picture]:
-    found: list[Picture] = []
+def _pictures(blocks: Sequence[Block]) -> Iterator[Picture]:
     for block in blocks:
-        if isinstance(block, Picture):
-            found.append(block)
-        elif isinstance(block, Grid):
-            found += block.pictures
-        elif isinstance(block, Section):
-            found += _pictures(block.blocks)
-    return found
+        match block:
+            case Picture():
+                yield block
+            case Grid(pictures):
+                yield from pictures
+            case Section(_, inner):
+                yield from _pictures(inner)
+            case _:
+                pass

@@ -40,21 +40,19 @@ def show_block(console: Console, block: Block) -> None:
     """Print a block; nothing for a picture."""
     match block:
         case Text(words, soft):
-            style = "dim" if soft else None
-            console.print(words, style=style, markup=False, highlight=False)
+            _show_line(console, words, soft)
         case Bullets(lines, soft):
             for line in lines:
-                style = "dim" if soft else None
-                console.print(f"- {line}", style=style, markup=False, highlight=False)
+                _show_line(console, f"- {line}", soft)
         case Lines(lines) if lines:
             print_lines(console, *lines)
         case Facts(rows):
             _show_facts(console, rows)
         case Table():
             show_table(console, block)
-        case Verdict(claim, word, holds, evidence):
+        case Verdict(claim, holds, evidence):
             style = "bold green" if holds else "bold red"
-            console.print(ScreenText.assemble((word, style), f"  {claim}"))
+            console.print(ScreenText.assemble((block.word, style), f"  {claim}"))
             for line in evidence:
                 indent = 11 if console.width >= 60 else 2
                 console.print(Padding(ScreenText(line), (0, 0, 0, indent)))
@@ -63,6 +61,10 @@ def show_block(console: Console, block: Block) -> None:
                 show(console, Document(f"\n{title}", blocks))
         case _:
             pass
+
+
+def _show_line(console: Console, words: str, soft: bool) -> None:
+    console.print(words, style="dim" if soft else None, markup=False, highlight=False)
 
 
 def _show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
@@ -83,25 +85,22 @@ def show_table(console: Console, table: Table) -> None:
     """Print a table, in pieces below each other where the console is too narrow for it."""
     wide = console.options.update(max_width=_WIDEST)
 
-    def too_wide(shown: ScreenTable) -> bool:
-        return console.measure(shown, options=wide).maximum > console.width
+    def fits(drawn: ScreenTable) -> bool:
+        return console.measure(drawn, options=wide).maximum <= console.width
 
-    whole = _drawn(table)
-    if not too_wide(whole):
+    whole, rows = _drawn(table), list(table.rows)
+    if fits(whole):
         console.print(whole)
         return
-    rows = list(table.rows)
     while rows:
-        count = len(rows)
-        while too_wide(_drawn(replace(table, rows=rows[:count]), narrow=True)) and count > 1:
-            count -= 1
-        piece = replace(table, rows=rows[:count])
-        drawn = _drawn(piece, narrow=True)
-        if too_wide(drawn):  # a single row
+        pieces = (replace(table, rows=rows[:count]) for count in range(len(rows), 0, -1))
+        piece = next((piece for piece in pieces if fits(_drawn(piece, narrow=True))), None)
+        if piece is None:
+            piece = replace(table, rows=rows[:1])
             print_lines(console, table.title, *(f"  {name}: {text}" for name, text in piece.lines))
         else:
-            console.print(drawn)
-        rows = rows[count:]
+            console.print(_drawn(piece, narrow=True))
+        rows = rows[len(piece.rows) :]
 
 
 def _drawn(table: Table, *, narrow: bool = False) -> ScreenTable:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
-from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,8 +14,7 @@ from quietarm.studies.display.words import move_of, title_of
 from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
 from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
 from quietarm.studies.figures.looks import COLOURS, ORANGE, PINK
-from quietarm.studies.paper.case import Case
-from quietarm.studies.paper.printed import CONDITIONS, EARLIER
+from quietarm.studies.paper.printed import CONDITIONS, EARLIER, Case
 from quietarm.studies.reproduction.recompute import Reproduction, RowResult
 from quietarm.studies.reproduction.systems import (
     CYCLOID,
@@ -24,8 +22,6 @@ from quietarm.studies.reproduction.systems import (
     FREQUENCY_ERROR,
     System,
     Systems,
-    peak_acceleration,
-    residual,
 )
 from quietarm.studies.reproduction.tables import SERIES, Multiples, multiples
 
@@ -43,6 +39,12 @@ def _tick(ax: Axes, ticks: Mapping[float, float]) -> None:
     ax.set_xticklabels([f"{number:g}" for number in shown.values()])
     ax.grid(axis="x", alpha=0.35)
     ax.tick_params(axis="y", length=0)
+
+
+def _legend(figure: Figure, handles: Sequence[Line2D], columns: int) -> None:
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=9
+    )
 
 
 # The paper's figures
@@ -88,34 +90,33 @@ _SPREAD = 0.62
 """Share of a row's height over which the dots of the moves are spread, so that all are seen."""
 
 
-class _Panel(NamedTuple):
-    """One figure of merit, in units of what a system has on the same move."""
-
-    title: str
-    ticks: Sequence[float]
-    of: Callable[[System], float | None]
-    of_system: str
-    unit: Callable[[System], float | None]
+_Move = Mapping[str, System]
+"""The systems on a move, by their names."""
 
 
-def _energy(found: System) -> float | None:
-    return found.energy
+def _over(value: float | None, unit: float | None) -> float | None:
+    return None if value is None or not unit else value / unit
 
 
-def _share(cycloid: System) -> float | None:
-    left = residual(cycloid)
-    return left and left / 100
+def _of_cycloid(value: float | None, move: _Move) -> float | None:
+    """A residual in per cent of the plain cycloid's."""
+    left = move[CYCLOID].residual
+    return _over(value, left and left / 100)
 
 
-_WRONG = f"residual, frequency {100 * FREQUENCY_ERROR:g} % wrong\n[% of the plain cycloid's]"
-_ACCELERATION = "peak acceleration\n[times the plain cycloid's]"
-_PANELS = (
-    _Panel("energy\n[times the floor]", (1, 1.5, 2, 3, 5, 10), _energy, FLOOR, _energy),
-    _Panel("residual\n[% of the plain cycloid's]", (0, 25, 50, 75, 100), residual, CYCLOID, _share),
-    _Panel(_WRONG, (0, 50, 100, 150, 200, 250, 300), lambda of: of.wrong_residual, CYCLOID, _share),
-    _Panel(_ACCELERATION, (1, 10, 100, 1000, 10000), peak_acceleration, CYCLOID, peak_acceleration),
-    _Panel("time to find\n[s]", (0.1, 1, 10, 100), lambda of: of.seconds, FLOOR, lambda of: 1.0),
-)
+_PANELS: tuple[tuple[str, Sequence[float], Callable[[System, _Move], float | None]], ...] = (
+    ("energy\n[times the floor]", (1, 1.5, 2, 3, 5, 10),
+     lambda found, move: _over(found.energy, move[FLOOR].energy)),
+    ("residual\n[% of the plain cycloid's]", (0, 25, 50, 75, 100),
+     lambda found, move: _of_cycloid(found.residual, move)),
+    (f"residual, frequency {100 * FREQUENCY_ERROR:g} % wrong\n[% of the plain cycloid's]",
+     (0, 50, 100, 150, 200, 250, 300),
+     lambda found, move: _of_cycloid(found.wrong_residual, move)),
+    ("peak acceleration\n[times the plain cycloid's]", (1, 10, 100, 1000, 10000),
+     lambda found, move: _over(found.peak_acceleration, move[CYCLOID].peak_acceleration)),
+    ("time to find\n[s]", (0.1, 1, 10, 100), lambda found, move: found.seconds),
+)  # fmt: skip
+"""Figures of merit: title, ticks, and the figure of a system in units of others on its move."""
 
 
 def systems_figure(systems: Systems) -> Figure:
@@ -129,8 +130,14 @@ def systems_figure(systems: Systems) -> Figure:
         colour = COLOURS[plants.index(case.task.plant.name)]
         mark = _MARKS[sum(dot.get_color() == colour for dot in dots)]
         dots.append(Line2D([], [], ls="", marker=mark, color=colour, label=title_of(case.task)))
-    for panel, ax in zip(_PANELS, panels, strict=True):
-        _draw_panel(ax, panel, moves, dots)
+    for (title, ticks, of), ax in zip(_PANELS, panels, strict=True):
+        _draw_dots(ax, of, moves, dots)
+        if ticks[0] > 0:
+            ax.set_xscale("log")
+        else:
+            ax.set_xlim(left=-4)
+        _tick(ax, {tick: tick for tick in ticks})
+        ax.set_title(title, **TITLE)
     labels: list[str] = []
     for name in moves[0]:
         having = sum(move[name].energy is not None for move in moves)
@@ -139,15 +146,16 @@ def systems_figure(systems: Systems) -> Figure:
     panels[0].set_yticks(range(len(labels)), labels)
     panels[0].set_ylim(len(labels) - 0.5, -0.5)
     middle = Line2D([], [], ls="", marker="|", color="black", label="median", ms=14, mew=2)
-    figure.legend(
-        handles=[*dots, middle], loc="outside lower center", ncols=4, frameon=False, fontsize=9
-    )
+    _legend(figure, [*dots, middle], 4)
     figure.suptitle("Every system on the same moves: further left is better", fontsize=12)
     return figure
 
 
-def _draw_panel(
-    ax: Axes, panel: _Panel, moves: Sequence[Mapping[str, System]], dots: Sequence[Line2D]
+def _draw_dots(
+    ax: Axes,
+    of: Callable[[System, _Move], float | None],
+    moves: Sequence[_Move],
+    dots: Sequence[Line2D],
 ) -> None:
     """The dots of every system in the looks of the moves, and a line at their median."""
     for row, name in enumerate(moves[0]):
@@ -155,26 +163,15 @@ def _draw_panel(
             ax.axhspan(row - 0.5, row + 0.5, color=_SHADE, zorder=0)
         drawn: list[float] = []
         for lane, (move, dot) in enumerate(zip(moves, dots, strict=True)):
-            value, unit = panel.of(move[name]), panel.unit(move[panel.of_system])
-            if value is None or not unit:
-                continue
-            drawn.append(value / unit)
-            height = row + _SPREAD * (lane / max(1, len(moves) - 1) - 0.5)
-            style: dict[str, Any] = {
-                "marker": dot.get_marker(),
-                "color": dot.get_color(),
-                "markersize": 5,
-            }
-            ax.plot(value / unit, height, zorder=3, clip_on=False, **style)
+            value = of(move[name], move)
+            if value is not None:
+                drawn.append(value)
+                height = row + _SPREAD * (lane / max(1, len(moves) - 1) - 0.5)
+                ax.plot(value, height, marker=dot.get_marker(), color=dot.get_color(),
+                        markersize=5, zorder=3, clip_on=False)  # fmt: skip
         if drawn:
             middle, half = median(drawn), _SPREAD / 2 + 0.08
             ax.plot([middle] * 2, [row - half, row + half], color="black", lw=2, zorder=2)
-    if panel.ticks[0] > 0:
-        ax.set_xscale("log")
-    else:
-        ax.set_xlim(left=-4)
-    _tick(ax, {tick: tick for tick in panel.ticks})
-    ax.set_title(panel.title, **TITLE)
 
 
 # The floor
@@ -221,9 +218,7 @@ def floor_dots(result: Reproduction) -> Figure:
         Line2D([], [], marker="o", color=_COLOURS[series], label=series, markersize=8)
         for series in SERIES
     ]
-    figure.legend(
-        handles=handles, loc="outside lower center", ncols=len(SERIES), frameon=False, fontsize=9
-    )
+    _legend(figure, handles, len(SERIES))
     return figure
 
 

@@ -25,9 +25,8 @@ from quietarm.ocp.simulation.errors import FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.studies.display.words import millimetres
-from quietarm.studies.paper.case import Case
 from quietarm.studies.paper.points import paper_plan, residual_level
-from quietarm.studies.paper.printed import PAPER_SEARCH, ROWS
+from quietarm.studies.paper.printed import PAPER_SEARCH, ROWS, Case
 from quietarm.studies.registry.methods import Method
 from quietarm.studies.registry.profiles import OTHERS
 
@@ -59,18 +58,23 @@ class System:
         """F2 [J]: of the motion, else as printed."""
         return self.printed_energy if self.motion is None else self.motion.energy
 
+    @property
+    def residual(self) -> float | None:
+        """F1 [m]."""
+        return self.motion and self.motion.residual
+
+    @property
+    def peak_torque(self) -> float | None:
+        """Largest torque of the joint [N m]."""
+        return self.motion and self.motion.peak_torque
+
+    @property
+    def peak_acceleration(self) -> float | None:
+        """Largest acceleration of the joint [rad/s^2]."""
+        return self.motion and self.motion.peak_acceleration
+
 
 Systems = Mapping[Case, Sequence[System]]
-
-
-def residual(system: System) -> float | None:
-    """F1 [m] of a system's motion, where it has one."""
-    return system.motion and system.motion.residual
-
-
-def peak_acceleration(system: System) -> float | None:
-    """Largest acceleration of the joint [rad/s^2], where there is a motion."""
-    return system.motion and system.motion.peak_acceleration
 
 
 def systems_of(case: Case, answers: Mapping[Hashable, Any], seeds: int) -> tuple[System, ...]:

@@ -4,27 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import isfinite
-from typing import Any
+from operator import attrgetter
 
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, Spread
 from quietarm.metaheuristics.sharing.pieces import Done, Piece
 from quietarm.ocp import Floor, Front, Plan
-from quietarm.studies.paper.case import Case
-from quietarm.studies.paper.printed import CONDITIONS, EARLIER
-from quietarm.studies.report.table import Cell, Column, Table
-from quietarm.studies.reproduction.pieces import TERMS
-from quietarm.studies.reproduction.recompute import Reproduction, RowResult
-from quietarm.studies.reproduction.systems import (
-    FREQUENCY_ERROR,
-    SEARCHES,
-    System,
-    Systems,
-    peak_acceleration,
-    residual,
-)
-
-_Columns = list[tuple[Column, Callable[[Any], Cell]]]
-"""Columns, each with how its cell is read off what a row is of."""
+from quietarm.studies.paper.printed import CONDITIONS, EARLIER, Case
+from quietarm.studies.report.table import Cell, Column, Line, Table, table_of
+from quietarm.studies.reproduction.recompute import TERMS, Reproduction, RowResult
+from quietarm.studies.reproduction.systems import FREQUENCY_ERROR, SEARCHES, System, Systems
 
 _J, _MM, _S = "{:.4g}".format, "{:.3g}".format, "{:.2f}".format
 _MENDED = ", a_5 mended"
@@ -39,11 +27,6 @@ _IN_BOX, _FREE, _PAPER = "gradient, in the box", "gradient, no box", "paper"
 SERIES = (_PAPER, *(method.label for method in SEARCHES), _IN_BOX, _FREE)
 
 
-def _table(title: str, rows: Sequence[Any], columns: _Columns) -> Table:
-    cells = [[read(row) for _, read in columns] for row in rows]
-    return Table(title, [column for column, _ in columns], cells)
-
-
 # The paper's tables
 
 
@@ -52,81 +35,65 @@ def paper_table(result: Reproduction, number: int) -> Table:
 
     A misprint mended has a row of its own, which holds what it changes.
     """
-    rows = [
-        (row, mended)
-        for row in result.rows
-        if row.row.table == number
+    rows = [found for found in result.rows if found.row.table == number]
+    name = rows[0].own_search.label
+    reference, profile = EARLIER[rows[0].row.condition.task.plant.name]
+    read_here = f"{profile}, ref. [{reference}] as read here, by gradient"
+    columns = [
+        Column("move"),
+        Column("terms N", key="terms"),
+        Column("F2 [J] earlier study", _J, "earlier_study_J"),
+        *_of_plan(read_here, "earlier_study_as_read_here"),
+        Column("F2 [J] printed", _J, "printed_J"),
+        *_of_plan("printed coefficients", "printed_coefficients")[:2],
+        *_of_plan(_IN_BOX, "gradient_in_box"),
+        *_of_plan(_FREE, "gradient_no_box"),
+        Column(f"F2 [J] {name}, in the box", _J, f"{name}_in_box_J"),
+        Column("  quartiles over seeds", key=f"{name}_quartiles_J"),
+        Column("  residual limit [mm]", _MM, f"{name}_residual_limit_mm"),
+        Column("  time of a run [s]", _S, f"{name}_run_s"),
+    ]
+    cells = [
+        _row(found, mended)
+        for found in rows
         for mended in (False, True)
-        if row.mended or not mended
+        if found.mended or not mended
     ]
-    first, _ = rows[0]
-    method, several = first.own_search, len(first.fronts[first.own_search]) > 1
-    name = method.label
-    reference, profile = EARLIER[first.row.condition.task.plant.name]
+    return Table(TITLES[number], columns, cells)
 
-    def quartiles(row: RowResult) -> str | None:
-        spread = row.searched_by(method)
-        return f"{spread.lower:.4f}-{spread.upper:.4f}" if several else None
 
-    def median(row: RowResult) -> Cell:
-        energy = row.searched_by(method).median
-        return energy if isfinite(energy) else "none"
-
-    def once(read: Callable[[RowResult], Any]) -> Callable[[tuple[RowResult, bool]], Any]:
-        return lambda row: None if row[1] else read(row[0])
-
-    earlier = _of_plan(
-        f"{profile}, ref. [{reference}] as read here, by gradient",
-        "earlier_study_as_read_here",
-        lambda row: row[0].earlier,
-    )
-    coefficients = _of_plan(
-        "printed coefficients",
-        "printed_coefficients",
-        lambda row: row[0].mended if row[1] else row[0].printed,
-    )
-    columns: _Columns = [
-        (Column("move", key="move"), lambda row: row[0].row.condition.label),
-        (Column("terms N", key="terms"), lambda row: f"{row[0].row.terms}{_MENDED * row[1]}"),
-        (
-            Column("F2 [J] earlier study", _J, "earlier_study_J"),
-            lambda row: row[0].row.earlier_energy,
-        ),
-        *earlier,
-        (Column("F2 [J] printed", _J, "printed_J"), lambda row: row[0].row.energy),
-        *coefficients[:2],
-        *_of_plan(_IN_BOX, "gradient_in_box", once(lambda row: row.in_box)),
-        *_of_plan(_FREE, "gradient_no_box", once(lambda row: row.free)),
-        (Column(f"F2 [J] {name}, in the box", _J, f"{name}_in_box_J"), once(median)),
-        (Column("  quartiles over seeds", key=f"{name}_quartiles_J"), once(quartiles)),
-        (Column("  residual limit [mm]", _MM, f"{name}_residual_limit_mm"), once(_level)),
-        (Column("  time of a run [s]", _S, f"{name}_run_s"), once(_seconds)),
+def _row(found: RowResult, mended: bool) -> list[Cell]:
+    row, method = found.row, found.own_search
+    spread, fronts = found.searched_by(method), found.fronts[method]
+    paper = [
+        *(row.condition.label, f"{row.terms}{_MENDED * mended}", row.earlier_energy),
+        *(*_figures(found.earlier), row.energy),
+        *_figures(found.mended if mended else found.printed)[:2],
     ]
-    return _table(TITLES[number], rows, columns)
+    here = [
+        *(*_figures(found.in_box), *_figures(found.free)),
+        spread.median if spread.count else "none",
+        f"{spread.lower:.4f}-{spread.upper:.4f}" if len(fronts) > 1 else None,
+        found.residual_level * 1e3,
+        Spread.of([front.seconds for front in fronts]).median,
+    ]
+    return [*paper, *(None if mended else cell for cell in here)]
 
 
-def _level(row: RowResult) -> float:
-    return row.residual_level * 1e3
-
-
-def _seconds(row: RowResult) -> float:
-    return Spread.of([front.seconds for front in row.fronts[row.own_search]]).median
-
-
-def _of_plan(words: str, key: str, plan_of: Callable[[Any], Plan | None]) -> _Columns:
-    """Energy, residual and time of a plan."""
-
-    def read(figure: Callable[[Plan], float]) -> Callable[[Any], Cell]:
-        return lambda row: None if (plan := plan_of(row)) is None else figure(plan)
-
+def _of_plan(words: str, key: str) -> list[Column]:
+    """Columns of a plan's `_figures`."""
     return [
-        (Column(f"F2 [J] {words}", _J, f"{key}_J"), read(lambda plan: plan.energy)),
-        (
-            Column("  residual [mm]", _MM, f"{key}_residual_mm"),
-            read(lambda plan: plan.residual * 1e3),
-        ),
-        (Column("  time [s]", _S, f"{key}_s"), read(lambda plan: plan.provenance.seconds)),
+        Column(f"F2 [J] {words}", _J, f"{key}_J"),
+        Column("  residual [mm]", _MM, f"{key}_residual_mm"),
+        Column("  time [s]", _S, f"{key}_s"),
     ]
+
+
+def _figures(answer: Plan | Floor | None) -> list[float | None]:
+    """Energy [J], residual [mm] and time [s]; empty where there is no answer."""
+    if answer is None:
+        return [None] * 3
+    return [answer.energy, answer.residual * 1e3, answer.provenance.seconds]
 
 
 # Side by side
@@ -143,43 +110,49 @@ def _three_digits(value: float) -> str:
     return f"{value:.3g}" if value < 1000 else f"{value:.0f}"
 
 
-def _mm(read: Callable[[System], float | None]) -> Callable[[System], float | None]:
+def _mm(name: str) -> Callable[[System], Cell]:
     """A length of a system in millimetres."""
-    return lambda found: None if (length := read(found)) is None else 1e3 * length
+    return lambda found: None if (length := getattr(found, name)) is None else 1e3 * length
 
 
-_WRONG = Column(f"{_ERROR} off [mm]", "{:.2f}".format, "residual_frequency_wrong_mm")
-_TORQUE = Column("peak torque [N m]", _three_digits, "peak_torque_Nm")
-_ACCELERATION = Column("peak accel. [1/s^2]", _three_digits, "peak_acceleration_rad_s2")
-_OF_SYSTEM: _Columns = [
-    (Column("size", str, "parameters"), lambda found: found.parameters),
-    (Column("energy [J]", "{:.4f}".format, "energy_J"), lambda found: found.energy),
-    (Column("residual [mm]", "{:.2f}".format, "residual_mm"), _mm(residual)),
-    (_WRONG, _mm(lambda found: found.wrong_residual)),
-    (_TORQUE, lambda found: found.motion and found.motion.peak_torque),
-    (_ACCELERATION, peak_acceleration),
-    (Column("time [s]", seconds_in_words, "seconds"), lambda found: found.seconds),
-]
+_OF_SYSTEM = {
+    Column("size", str, "parameters"): attrgetter("parameters"),
+    Column("energy [J]", "{:.4f}".format, "energy_J"): attrgetter("energy"),
+    Column("residual [mm]", "{:.2f}".format, "residual_mm"): _mm("residual"),
+    Column(f"{_ERROR} off [mm]", "{:.2f}".format, "residual_frequency_wrong_mm"): _mm(
+        "wrong_residual"
+    ),
+    Column("peak torque [N m]", _three_digits, "peak_torque_Nm"): attrgetter("peak_torque"),
+    Column("peak accel. [1/s^2]", _three_digits, "peak_acceleration_rad_s2"): attrgetter(
+        "peak_acceleration"
+    ),
+    Column("time [s]", seconds_in_words, "seconds"): attrgetter("seconds"),
+}
+"""Columns of a system, each with what reads its cell."""
 
 
 def systems_table(case: Case, systems: Sequence[System]) -> Table:
     """All systems on one move, a line each where it is shown."""
-    columns = [Column("system"), *(column for column, _ in _OF_SYSTEM)]
-    rows = [[found.name, *(c.text(read(found)) for c, read in _OF_SYSTEM)] for found in systems]
-    return Table(f"Side by side: {case.name}", columns, rows).turned()
+    rows = [
+        [found.name, *(column.text(read(found)) for column, read in _OF_SYSTEM.items())]
+        for found in systems
+    ]
+    return Table(f"Side by side: {case.name}", [Column("system"), *_OF_SYSTEM], rows).turned()
 
 
 def all_systems(systems: Systems) -> Table:
     """Every system on every move, for CSV."""
-    columns: _Columns = [
-        (Column("plant", key="plant"), lambda row: row[0].task.plant.name),
-        (Column("move", key="move"), lambda row: row[0].label),
-        (Column("system", key="system"), lambda row: row[1].name),
-        *((column, lambda row, read=read: read(row[1])) for column, read in _OF_SYSTEM),
-        (Column("why", key="why"), lambda row: row[1].why or None),
+    columns = [*map(Column, ("plant", "move", "system")), *_OF_SYSTEM, Column("why")]
+    rows = [
+        [
+            *(case.task.plant.name, case.label, found.name),
+            *(read(found) for read in _OF_SYSTEM.values()),
+            found.why or None,
+        ]
+        for case, every in systems.items()
+        for found in every
     ]
-    rows = [(case, found) for case, every in systems.items() for found in every]
-    return _table("Side by side", rows, columns)
+    return Table("Side by side", columns, rows)
 
 
 # The floor
@@ -213,23 +186,20 @@ def floor_table(result: Reproduction) -> Table:
         for series in SERIES
         for terms in (TERMS if series in (_IN_BOX, _FREE) else (2, 4, 6))
     ]
-    found = {case: multiples(result, case) for case in CONDITIONS}
-    floors = result.floors
-
-    def agreement(case: Case) -> str:
-        return f"{floors[case].agreeing()} of {len(floors[case].starts)}"
-
-    columns: _Columns = [
-        (Column("plant", key="plant"), lambda case: case.task.plant.name),
-        (Column("move", key="move"), lambda case: case.label),
-        (Column("floor F2 [J]", _J, "floor_J"), lambda case: floors[case].energy),
-        (Column("  left [J], about", "{:.1g}".format, "left_J"), lambda case: floors[case].left),
-        (Column("  starts that agree", key="starts_that_agree"), agreement),
+    columns = [
+        *map(Column, ("plant", "move")),
+        Column("floor F2 [J]", _J, "floor_J"),
+        Column("  left [J], about", "{:.1g}".format, "left_J"),
+        Column("  starts that agree", key="starts_that_agree"),
+        *(Column(f"{s}, N = {n}", "{:.3f}".format, _key(s, n)) for s, n in places),
     ]
-    for place in places:
-        column = Column(f"{place[0]}, N = {place[1]}", "{:.3f}".format, _key(*place))
-        columns.append((column, lambda case, place=place: found[case].get(place, (None,))[0]))
-    return _table("Energies as multiples of the floor, at rest on arrival", CONDITIONS, columns)
+    rows: list[list[Cell]] = []
+    for case in CONDITIONS:
+        floor, found = result.floors[case], multiples(result, case)
+        row = [case.task.plant.name, case.label, floor.energy, floor.left]
+        row.append(f"{floor.agreeing()} of {len(floor.starts)}")
+        rows.append([*row, *(found.get(place, (None,))[0] for place in places)])
+    return Table("Energies as multiples of the floor, at rest on arrival", columns, rows)
 
 
 def of_plants(table: Table) -> list[Table]:
@@ -269,31 +239,28 @@ def finding(result: Reproduction) -> str:
 
 def checks_table(result: Reproduction) -> Table:
     """How far the two solvers of the gradient differ along the exact fronts."""
-    difference = Column("largest difference", "{:.0e}".format, "largest_difference")
-    columns: _Columns = [
-        (Column("move", key="move"), lambda row: row[0].name),
-        (Column("points", key="points"), lambda row: str(len(row[1].points))),
-        (difference, lambda row: row[1].largest),
+    columns: list[Line] = [
+        ("move", "", [case.name for case in result.checks]),
+        ("points", "", [str(len(check.points)) for check in result.checks.values()]),
+        ("largest difference", "{:.0e}", [check.largest for check in result.checks.values()]),
     ]
-    return _table("Exact fronts by both solvers", list(result.checks.items()), columns)
+    return table_of("Exact fronts by both solvers", columns)
 
 
 def unfinished_table(pieces: Sequence[Piece], done: Done) -> Table:
     """Energy and residual of every piece of work that came to its end, one row for each."""
-    columns: _Columns = [
-        (Column("piece of work", key="piece"), lambda row: row[0]),
-        (Column("F2 [J]", key="energy_J"), lambda row: row[1]),
-        (Column("residual [mm]", _MM, "residual_mm"), lambda row: row[2]),
+    columns = [
+        Column("piece of work", key="piece"),
+        Column("F2 [J]", key="energy_J"),
+        Column("residual [mm]", _MM, "residual_mm"),
     ]
-    rows = [(p.name, *_figures(done.answers[p.key])) for p in pieces if p.key in done.answers]
-    return _table("What was done before the interruption", rows, columns)
+    rows = [[p.name, *_ended(done.answers[p.key])] for p in pieces if p.key in done.answers]
+    return Table("What was done before the interruption", columns, rows)
 
 
-def _figures(answer: Any) -> tuple[float | None, float | None]:
+def _ended(answer: object) -> list[float | None]:
     """Energy [J] and residual [mm] of a plan, a floor or a front; of all else there are none."""
     if isinstance(answer, Front):
         still = [point for point in answer.points if point.residual <= SEARCH_RESIDUAL]
-        return (still[-1].energy, 1e3 * still[-1].residual) if still else (None, None)
-    if isinstance(answer, Plan | Floor):
-        return answer.energy, 1e3 * answer.residual
-    return None, None
+        return [still[-1].energy, 1e3 * still[-1].residual] if still else [None, None]
+    return _figures(answer if isinstance(answer, Plan | Floor) else None)[:2]

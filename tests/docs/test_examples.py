@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import quietarm.studies.reports.comparison
-import quietarm.studies.study.pieces
+import quietarm.studies.study.work
 from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Front, Plan, PointToPoint, energy_floor, evaluate_coefficients
@@ -188,7 +188,7 @@ def called(capfd, monkeypatch, quick_pictures):
     """Run a command in this process, with rough floors; status, standard output and error."""
     rough = partial(energy_floor, starts=1, tolerance=0.05)
     monkeypatch.setattr(quietarm.studies.reports.comparison, "energy_floor", rough)
-    monkeypatch.setattr(quietarm.studies.study.pieces, "energy_floor", rough)
+    monkeypatch.setattr(quietarm.studies.study.work, "energy_floor", rough)
     monkeypatch.setattr(floor_search, "FIRST_INTERVALS", 24)
 
     def call(words):

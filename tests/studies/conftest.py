@@ -28,7 +28,7 @@ from quietarm.ocp import (
 from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
 from quietarm.studies.registry.methods import METHODS
-from quietarm.studies.reproduction import pieces, recompute
+from quietarm.studies.reproduction import recompute
 
 
 @pytest.fixture(scope="session")
@@ -51,7 +51,7 @@ def reproduction(begun):
         "nsga2": {"population": 20, "generations": 3},
     }
     earlier = {"arm-on-flexible-link": CycloidGaussians}
-    floor, plan = pieces.energy_floor, pieces.plan_move
+    floor, plan = recompute.energy_floor, recompute.plan_move
 
     def short(task, method, **settings):
         return search(task, method, **short_as[method], **settings)
@@ -68,10 +68,10 @@ def reproduction(begun):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensemble, "search", short)
-        patch.setattr(pieces, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.02))
+        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.02))
         patch.setattr(floor_search, "FIRST_INTERVALS", 48)
-        patch.setattr(pieces, "STARTS", dict.fromkeys(pieces.STARTS, 1))
-        patch.setattr(pieces, "plan_move", from_one_start)
+        patch.setattr(recompute, "STARTS", dict.fromkeys(recompute.STARTS, 1))
+        patch.setattr(recompute, "plan_move", from_one_start)
         return recompute.recompute_paper(begun.append)
 
 

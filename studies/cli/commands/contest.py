@@ -91,15 +91,13 @@ def contest(
     from quietarm.ocp.base.files import check_inside
     from quietarm.studies.cli.ending import Together, finish
     from quietarm.studies.contest.asked import Contest
-    from quietarm.studies.contest.imported import named_files
     from quietarm.studies.contest.measures import arenas_of
-    from quietarm.studies.contest.problems import problems_of
-    from quietarm.studies.contest.report.page import PLACES, report_files
-    from quietarm.studies.contest.report.sentences import not_alike, wrong_claims
-    from quietarm.studies.contest.report.tables import summary_table
+    from quietarm.studies.contest.page import PLACES, report_files
+    from quietarm.studies.contest.sentences import not_alike, wrong_claims
     from quietarm.studies.contest.statistics import why_none
-    from quietarm.studies.contest.store import FOLDERS, Store
-    from quietarm.studies.contest.work import pieces_of, run_contest, set_up
+    from quietarm.studies.contest.store import FOLDERS, Store, problems_of
+    from quietarm.studies.contest.tables import summary_table
+    from quietarm.studies.contest.work import named_files, pieces_of, run_contest, set_up
     from quietarm.studies.display.progress import progress, working
     from quietarm.studies.display.words import print_lines
     from quietarm.studies.report.document import Document, Lines

@@ -39,8 +39,7 @@ def reproduce(
     from quietarm.studies.display.saving import inside
     from quietarm.studies.report.document import Document, Lines
     from quietarm.studies.report.files import document_files
-    from quietarm.studies.reproduction.pieces import pieces_of_paper
-    from quietarm.studies.reproduction.recompute import recompute_paper
+    from quietarm.studies.reproduction.recompute import pieces_of_paper, recompute_paper
     from quietarm.studies.reproduction.report import reproduction_document
     from quietarm.studies.reproduction.tables import unfinished_table
 

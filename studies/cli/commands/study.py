@@ -84,14 +84,12 @@ def study(
     from quietarm.studies.cli.ending import Together, finish
     from quietarm.studies.display.progress import progress
     from quietarm.studies.display.words import counted
-    from quietarm.studies.paper.case import Case
-    from quietarm.studies.paper.printed import CONDITIONS
+    from quietarm.studies.paper.printed import CONDITIONS, Case
     from quietarm.studies.reading.saved import load_front
     from quietarm.studies.report.document import Bullets, Document
     from quietarm.studies.study.findings import case_findings, findings
     from quietarm.studies.study.page import front_files, page_file
-    from quietarm.studies.study.pieces import StudySettings
-    from quietarm.studies.study.work import amount_of_work, run_study
+    from quietarm.studies.study.work import StudySettings, amount_of_work, run_study
 
     settings = StudySettings(
         **amounts,

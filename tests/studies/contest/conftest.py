@@ -3,14 +3,13 @@
 import shutil
 
 import pytest
-from quietarm.studies.contest import problems
-from quietarm.studies.contest.report import page
+from quietarm.studies.contest import page, store
 from quietarm.studies.report.document import Section
 from small_contest import LINE
 
 
 def _small(patch):
-    patch.setattr(problems, "_FILL", 500)
+    patch.setattr(store, "_FILL", 500)
 
 
 @pytest.fixture(autouse=True)

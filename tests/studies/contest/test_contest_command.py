@@ -47,28 +47,6 @@ def test_a_method_and_seeds_are_added_without_the_others_again(call, copy, searc
     assert len(rows_of(copy, "runs")) == 6
 
 
-def test_a_contest_goes_on_after_a_stop_to_the_same_runs(call, folder, held, monkeypatch):
-    count = 0
-
-    def interrupted(*given, **settings):
-        nonlocal count
-        count += 1
-        if count == 3:
-            raise KeyboardInterrupt
-        return search_within(*given, **settings)
-
-    monkeypatch.setattr(work, "search_within", interrupted)
-    code, _, err = call(f"{LINE} --output part")
-    assert code == 1
-    assert err.strip() == (
-        "quietarm: interrupted: 2 of 4 pieces of work are done; give the same line again to go on"
-    )
-    assert set(found(folder / "part")) == {("nsga2", 0), ("vepso", 0)}
-    assert (folder / "part/contest.html").exists()
-    assert call(f"{LINE} --output part")[0] == 0
-    assert found(folder / "part") == found(held)
-
-
 @pytest.mark.parametrize(
     ("line", "words"),
     [

@@ -3,15 +3,11 @@
 import json
 import math
 import shutil
-from dataclasses import replace
 from html import unescape
 
 import numpy as np
 import pytest
 from quietarm.studies.contest.measures import arenas_of
-from quietarm.studies.contest.report.citations import bibtex
-from quietarm.studies.contest.report.sentences import methods_paragraph
-from quietarm.studies.contest.statistics import pairs_on
 from quietarm.studies.contest.store import Store
 from small_contest import LINE, NAME, OTHER, TINY, area, least_energy, rows_of
 
@@ -80,27 +76,6 @@ def test_runs_of_other_evaluations_are_marked(call, copy, results, given, words)
     assert words in unescape((copy / "contest.html").read_text())
 
 
-def arena_of(copy, evaluations, seeds=5):
-    """The arena of a contest of five runs of each, made of two."""
-    contents = Store(copy)
-    (one,) = arenas_of(contents)
-    imports = [replace(run, evaluations=evaluations) for run in one.imports[0].runs]
-    fields = [*one.own, replace(one.imports[0], runs=tuple(imports))]
-    fields = [replace(field, runs=(field.runs * seeds)[:seeds]) for field in fields]
-    return replace(one, fields=tuple(fields))
-
-
-def test_tests_compare_those_of_as_many_evaluations_alone(call, copy, results):
-    assert call(f"{LINE} --import=results --output held")[0] == 0
-    for evaluations, expected in ((130, True), (131, False), (None, False)):
-        arena = arena_of(copy, evaluations)
-        compared = {name for pair in pairs_on(arena) for name in (pair.one, pair.other)}
-        assert ("results" in compared) is expected
-        assert {"nsga2", "vepso"} <= compared
-    assert "results on" in methods_paragraph([arena])
-    assert "results: results from elsewhere" in bibtex(["nsga2", "results"], statistics=False)
-
-
 def test_motions_all_along_the_exact_front_miss_nothing_of_it(call, copy, folder):
     shares = np.arange(8)[:, None, None] / 8
     save(folder / "mine.csv", (X[:-1] * (1 - shares) + X[1:] * shares).reshape(-1, 2))
@@ -111,18 +86,6 @@ def test_motions_all_along_the_exact_front_miss_nothing_of_it(call, copy, folder
     assert np.abs(found.final) == pytest.approx(0, abs=4e-3)
     assert found.missing_by_thirds == pytest.approx(np.zeros((1, 3)), abs=8e-3)
     assert (found.missing_by_thirds > -1e-4).all()
-
-
-def test_the_same_line_again_changes_nothing(call, copy, results):
-    line = f"{LINE} --import=results --output held"
-    assert call(line)[0] == 0
-    before = {path: path.read_bytes() for path in (copy / "imports").rglob("*.json")}
-    assert len(before) == 2
-    assert call(line)[0] == 0
-    assert {path: path.read_bytes() for path in (copy / "imports").rglob("*.json")} == before
-    # and without the option they stay
-    assert call(f"{LINE} --output held")[0] == 0
-    assert len(rows_of(copy, "runs")) == 4 + 2
 
 
 def test_what_a_file_states_otherwise_is_said(call, copy, folder):

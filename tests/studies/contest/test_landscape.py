@@ -16,13 +16,6 @@ def found():
         return landscape_of(TINY)
 
 
-def test_two_terms_have_a_minimum_that_most_starts_reach(found):
-    assert found.starts == 6
-    assert 0.5 <= found.best <= found.solved <= 1
-    assert found.minima >= 1
-    assert -1 <= found.candidates <= 1
-
-
 def test_the_box_is_held_against_a_plan_of_its_own(found):
     boxes = dict(found.boxes)
     own = plan_move(TINY.task, TINY.profile, residual_limit=LEVEL, bound=TINY.bound)

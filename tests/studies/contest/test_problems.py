@@ -2,8 +2,7 @@
 
 import pytest
 from quietarm.metaheuristics import PROBLEMS
-from quietarm.studies.contest.problems import Yardstick, problems_of
-from quietarm.studies.contest.store import Store
+from quietarm.studies.contest.store import Store, Yardstick, problems_of
 from quietarm.studies.paper.printed import CONDITIONS
 from small_contest import LINE, NAME, documents, rows_of
 

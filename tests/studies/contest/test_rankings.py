@@ -7,10 +7,9 @@ from html import unescape
 
 import pytest
 from quietarm.studies.contest.measures import Arena, Field, arenas_of
-from quietarm.studies.contest.report.page import contest_document, report_files
-from quietarm.studies.contest.statistics import ranking_over
+from quietarm.studies.contest.page import contest_document, report_files
 from quietarm.studies.contest.store import Store
-from quietarm.studies.report.page import page as page_of
+from quietarm.studies.report.files import page as page_of
 from small_contest import NAME, rows_of
 
 MISSING = {
@@ -62,14 +61,6 @@ def cells(page, heading):
     """What stands in the first line of a table that has this heading."""
     line = re.search(rf"<th[^>]*>{heading}</th>(.*?)</tr>", page, re.DOTALL)[1]
     return re.findall(r"<td[^>]*>([^<]*)", line)
-
-
-def test_medians_are_ranked_problem_by_problem(arenas):
-    found = ranking_over(arenas)
-    assert found.blocks == "5 problems"
-    assert list(found.methods) == ORDER
-    assert found.ranks == (1, 2, 3)
-    assert ranking_over(arenas[:4]) is None
 
 
 def test_tables_hold_ranks_and_pairs(arenas, folder):

@@ -83,10 +83,3 @@ def test_settings_that_do_not_fit_are_refused(call, folder, given, words):
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert words in err
     assert list(folder.iterdir()) == []
-
-
-def test_multistart_has_no_settings(call, folder):
-    line = LINE.replace("nsga2,vepso", "multistart")
-    code, _, err = call(f"{line} --setting multistart.population=20 --output new")
-    assert code == 2
-    assert "multistart has no settings; leave population out" in err

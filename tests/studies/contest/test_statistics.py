@@ -89,13 +89,6 @@ def test_the_effect_is_how_likely_the_first_misses_less():
     assert pair.adjusted == pair.p_value
 
 
-def test_pairs_are_corrected_together():
-    pairs = pairs_on(Arena(a=[1, 2, 3, 4, 5], b=[11, 12, 13, 14, 15], c=[1.5, 2.5, 3.5, 4.5, 5.5]))
-    by_names = {(pair.one, pair.other): pair for pair in pairs}
-    assert by_names["a", "b"].adjusted == pytest.approx(3 * 2 / 252)
-    assert by_names["a", "c"].adjusted == by_names["a", "c"].p_value > 0.05
-
-
 def test_with_fewer_than_five_runs_statistics_are_left_out_and_it_is_said():
     few, enough = [1.0] * (LEAST_RUNS - 1), list(range(LEAST_RUNS))
     assert why_none([Arena(a=few, b=enough)]) == (

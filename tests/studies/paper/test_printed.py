@@ -96,15 +96,3 @@ def test_search_boxes_are_those_of_eqs_12_and_17():
     for row in ROWS:
         eq = 0.2 if isinstance(row.condition.task.plant, SingleLinkManipulator) else 0.5
         assert row.condition.bound == eq
-
-
-def test_printed_coefficients_lie_in_their_box():
-    for (condition, terms), values in COEFFICIENTS.items():
-        assert len(values) == terms
-        assert max(map(abs, values)) <= condition.bound
-
-
-def test_conditions_are_tasks_without_limits():
-    for condition in {row.condition for row in ROWS}:
-        assert condition.task.limits == {}
-        assert condition.task.residual_window == 1.0  # eqs (11) and (16): TE <= t <= TE + 1 s

@@ -18,9 +18,7 @@ from quietarm.studies.report.document import (
     Text,
     Verdict,
 )
-from quietarm.studies.report.files import document_files
-from quietarm.studies.report.markdown import markdown
-from quietarm.studies.report.page import page
+from quietarm.studies.report.files import document_files, markdown, page
 from quietarm.studies.report.table import Column, Table
 from quietarm.studies.report.terminal import show
 from rich.console import Console
@@ -50,7 +48,7 @@ DOCUMENT = Document(
                 Bullets(["one [bold]", "two"], card=True),
                 Facts([("energy F2", "0.1 J")]),
                 TABLE,
-                Verdict("It is quieter.", "holds", True, ["0.1 against 0.2 mm"]),
+                Verdict("It is quieter.", True, ["0.1 against 0.2 mm"]),
             ],
         ),
         Picture("line.png", line, "A line & no more", "A line."),

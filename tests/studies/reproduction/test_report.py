@@ -6,17 +6,14 @@ import re
 
 import pytest
 from quietarm.studies.figures import BLUE, GREEN, RED
-from quietarm.studies.figures.looks import ORANGE
 from quietarm.studies.paper.printed import (
     ARM_HALF,
     SINGLE_LINK_SIXTH,
 )
 from quietarm.studies.report.files import document_files
 from quietarm.studies.report.terminal import show
-from quietarm.studies.reproduction.claims import claims
-from quietarm.studies.reproduction.pictures import against_earlier, redrawn
-from quietarm.studies.reproduction.report import reproduction_document
-from quietarm.studies.reproduction.tables import paper_table
+from quietarm.studies.reproduction.pictures import redrawn
+from quietarm.studies.reproduction.report import claims, reproduction_document
 from rich.console import Console
 
 # The report
@@ -101,24 +98,6 @@ def test_figures_2_and_5_draw_cycloid_printed_coefficients_and_gradient(
     assert [drawn[label].get_color() for label in labels[:4]] == colours
 
 
-@pytest.mark.parametrize(
-    ("condition", "labels"),
-    [
-        (SINGLE_LINK_SIXTH, ["network, ref. [23] as read here, by gradient", "paper, N = 6"]),
-        (
-            ARM_HALF,
-            ["Gaussians, ref. [24] as read here, by gradient", "paper, N = 6, a_5 mended"],
-        ),
-    ],
-    ids=["Fig. 3", "Fig. 6"],
-)
-def test_figures_3_and_6_draw_the_earlier_study_as_read_here(reproduction, condition, labels):
-    figure = against_earlier(reproduction, condition, "A title")
-    drawn = {line.get_label(): line.get_color() for line in figure.axes[0].get_lines()}
-    # The paper, 3.1 and 3.2: 'in blue and orange lines', the earlier study in orange.
-    assert [drawn[label] for label in labels] == [ORANGE, BLUE]
-
-
 @pytest.mark.parametrize("table", [3, 6])
 def test_the_earlier_studies_profiles_have_16_parameters_and_arrive_at_rest(reproduction, table):
     rows = [result for result in reproduction.rows if result.row.table == table]
@@ -130,11 +109,6 @@ def test_the_earlier_studies_profiles_have_16_parameters_and_arrive_at_rest(repr
         assert result.earlier.energy < result.row.earlier_energy
     others = [r for r in reproduction.rows if r.row.table not in (3, 6)]
     assert all(result.earlier is None for result in others)
-
-
-def test_the_mended_coefficients_stand_in_a_column_of_their_own(reproduction):
-    five = paper_table(reproduction, 5)
-    assert [row[1] for row in five.rows] == ["2", "4", "6", "6, a_5 mended"]
 
 
 def test_the_screen_shows_every_figure_whole(reproduction):

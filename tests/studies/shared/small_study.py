@@ -2,9 +2,8 @@
 
 import types
 
-from quietarm.studies.paper.case import Case
-from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH
-from quietarm.studies.study.pieces import StudySettings
+from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH, Case
+from quietarm.studies.study.work import StudySettings
 
 QUICK = StudySettings(terms=2, points=3, runs=2, population=12, generations=8)
 CASES = (Case(SINGLE_LINK_SIXTH.task), Case(ARM_HALF.task))

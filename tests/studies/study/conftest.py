@@ -1,7 +1,7 @@
 """What the tests of the headline study share: a small one, run once."""
 
 import pytest
-import quietarm.studies.study.pieces as study_pieces
+import quietarm.studies.study.work as study_pieces
 from matplotlib.figure import Figure
 from quietarm.studies.study import page
 from quietarm.studies.study.work import run_study

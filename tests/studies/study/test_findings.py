@@ -6,9 +6,7 @@ from dataclasses import replace
 import pytest
 from quietarm.studies.comparison.measures import compare_fronts
 from quietarm.studies.study.findings import case_findings, findings
-from quietarm.studies.study.page import method_lines
-from quietarm.studies.study.pieces import StudySettings
-from small_study import FLOOR, QUICK
+from small_study import FLOOR
 
 # What it says
 
@@ -57,23 +55,3 @@ def test_where_no_motion_is_still_the_findings_say_how_still_the_stillest_is(sma
     assert re.search(r"The stillest motion of NSGA-II leaves \d\S* mm\.", words)
     assert "not reached" not in words
     assert "No motion of 2 coefficients was found that arrives at rest" in words
-
-
-@pytest.mark.parametrize(
-    ("settings", "nsga2", "vepso"),
-    [
-        # sections 3.1 and 3.2 of the paper
-        (StudySettings(), "200 and 500 generations, as in the paper",
-         "100 and 200 generations, as in the paper"),
-        (QUICK, "12 and 8 generations, where the paper has 200 and 500",
-         "12 and 8 generations, where the paper has 100 and 200"),
-        (StudySettings(generations=200), "200 and 200 generations, where the paper has 200 and 500",
-         "100 and 200 generations, as in the paper"),
-    ],
-)  # fmt: skip
-def test_the_page_says_with_which_settings_the_searches_ran(settings, nsga2, vepso):
-    words = method_lines(settings)
-    seeds = f"from {settings.runs} seeds"
-    for label, part in (("NSGA-II", nsga2), ("VEPSO", vepso)):
-        wanted = f"{label}: the paper's search, {seeds}, with a population of {part}."
-        assert wanted in words

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 import quietarm.metaheuristics.ensemble as ensemble
-import quietarm.studies.study.pieces as study_pieces
+import quietarm.studies.study.work as study_pieces
 from quietarm.metaheuristics import search
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -13,8 +13,8 @@ from quietarm.ocp import (
     SolverFailedError,
 )
 from quietarm.studies.comparison.measures import compare_fronts
-from quietarm.studies.paper.case import Case
-from quietarm.studies.report.page import page as page_of
+from quietarm.studies.paper.printed import Case
+from quietarm.studies.report.files import page as page_of
 from quietarm.studies.study.findings import case_findings
 from quietarm.studies.study.page import study_document
 from quietarm.studies.study.work import Study, amount_of_work, run_study

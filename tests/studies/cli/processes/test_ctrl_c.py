@@ -10,7 +10,7 @@ import sys
 import pytest
 from lines import EVERY_FILE, MOVE
 from quietarm.ocp import Plan
-from quietarm.studies.reproduction.pieces import pieces_of_paper
+from quietarm.studies.reproduction.recompute import pieces_of_paper
 
 INTERRUPTED = "quietarm: interrupted; what was written until then is kept"
 GUARD = 120

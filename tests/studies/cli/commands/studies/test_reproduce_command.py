@@ -12,7 +12,7 @@ import quietarm.studies.reproduction.recompute
 import quietarm.studies.study.work
 from quietarm.studies.paper.printed import ROWS
 from quietarm.studies.report.files import document_files
-from quietarm.studies.reproduction.pieces import pieces_of_paper
+from quietarm.studies.reproduction.recompute import pieces_of_paper
 
 
 @pytest.fixture

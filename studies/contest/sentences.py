@@ -1,17 +1,43 @@
-"""What a contest found and how it was held, in sentences."""
+"""What a contest found, how it was held and what it used, in sentences and references."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from importlib.resources import files
 
 from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
 from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, Field, methods_in
 from quietarm.studies.contest.names import is_own, label_of, method_in
-from quietarm.studies.contest.report.tables import evaluations_words
 from quietarm.studies.contest.statistics import ALPHA, Ranking, why_none
+from quietarm.studies.contest.tables import evaluations_words
 from quietarm.studies.display.words import counted, versions_of
 from quietarm.studies.report.prose import told
+
+_ALWAYS = ("casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment")
+_STATISTICS = ("scipy", "friedman", "demsar", "mannwhitney", "holm", "varghadelaney")
+
+
+def bibtex(methods: Iterable[str], *, statistics: bool) -> str:
+    """References to the methods, the software and the statistics of a contest."""
+    from quietarm.metaheuristics import PRESETS
+
+    entries, methods = _entries(), list(methods)
+    searches = dict.fromkeys(parts_of(method_in(method))[0] for method in methods if is_own(method))
+    elsewhere = [method for method in methods if not is_own(method)]
+    keys = [*_ALWAYS, *(_STATISTICS if statistics else ())]
+    unknown = [one for one in searches if one not in entries and one != MULTISTART]
+    keys += [one for one in searches if one in entries]
+    comments = [f"% {one}: see {PRESETS[one].source}" for one in unknown]
+    comments += [f"% {one}: results from elsewhere" for one in elsewhere]
+    return "\n\n".join([*(entries[key] for key in keys), *comments]) + "\n"
+
+
+def _entries() -> dict[str, str]:
+    text = (files("quietarm.studies.contest") / "references.bib").read_text(encoding="utf-8")
+    entries = text.strip().split("\n\n")
+    return {entry.partition("{")[2].partition(",")[0]: entry for entry in entries}
+
 
 _EXACT = "the exact front's"
 
@@ -82,7 +108,7 @@ def verdict(found: Ranking) -> str:
 def explanation(found: Landscape) -> list[str]:
     """What makes a problem hard, in sentences."""
     figures = {"found": found, "level": LEVEL, "candidates": CANDIDATES}
-    return told("contest/report/landscape.txt", **figures)
+    return told("contest/landscape.txt", **figures)
 
 
 def methods_paragraph(arenas: Sequence[Arena]) -> str:
@@ -97,7 +123,7 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
         for one in arena.imports
     ]
     (paragraph,) = told(
-        "contest/report/methods.txt",
+        "contest/methods.txt",
         methods="; ".join(map(label_of, methods)),  # some have a comma
         problems=counted(len(arenas), "problem"),
         first=min(run.front.seed or 0 for run in runs),

@@ -7,29 +7,20 @@ from functools import partial
 from pathlib import Path
 
 from quietarm.ocp.base.files import write_whole
-from quietarm.studies.contest.measures import Arena, methods_in
-from quietarm.studies.contest.report.citations import bibtex
-from quietarm.studies.contest.report.figures import (
+from quietarm.studies.contest.figures import (
     anytime_figure,
     attainment_figure,
     looks_of,
     ranks_figure,
 )
-from quietarm.studies.contest.report.sentences import (
+from quietarm.studies.contest.measures import Arena, methods_in
+from quietarm.studies.contest.sentences import (
+    bibtex,
     explanation,
     findings,
     methods_paragraph,
     settings_lines,
     verdict,
-)
-from quietarm.studies.contest.report.tables import (
-    anytime_table,
-    effects_table,
-    pairs_table,
-    ranks_table,
-    runs_table,
-    summary_table,
-    visits_table,
 )
 from quietarm.studies.contest.statistics import (
     Ranking,
@@ -37,6 +28,15 @@ from quietarm.studies.contest.statistics import (
     ranking_on,
     ranking_over,
     why_none,
+)
+from quietarm.studies.contest.tables import (
+    anytime_table,
+    effects_table,
+    pairs_table,
+    ranks_table,
+    runs_table,
+    summary_table,
+    visits_table,
 )
 from quietarm.studies.display.saving import File, drawing, inside
 from quietarm.studies.display.words import counted, title_of
@@ -49,7 +49,7 @@ from quietarm.studies.report.document import (
     Section,
     Text,
 )
-from quietarm.studies.report.page import page
+from quietarm.studies.report.files import page
 
 PAGE, REFERENCES, TABLES, FIGURES = "contest.html", "references.bib", "tables", "figures"
 PLACES = (PAGE, REFERENCES, f"{TABLES}/any", f"{FIGURES}/any")

@@ -1,1 +1,0 @@
-"""What a contest shows: tables, pictures, references and the page."""
