@@ -9,7 +9,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 from quietarm.models.drawing import TIP_SLOPE, Body, flexible_link, rigid_link
-from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import Plant, parameter
 
 _LENGTH = 0.55
@@ -47,9 +47,7 @@ class ArmOnFlexibleLink(Plant):
         "lbar = 0.105 m; see docs/physics.md",
     )
 
-    def modal_accelerations(
-        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
-    ) -> Sequence[Expression]:
+    def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' from eq (13) [m/s^2]."""
         sine, cosine = ca.sin(joint.angle), ca.cos(joint.angle)
         force = (
@@ -60,18 +58,12 @@ class ArmOnFlexibleLink(Plant):
         )
         return [-force / (1 + self.alpha1 * cosine)]
 
-    def torque(
-        self,
-        joint: JointMotion,
-        W: Sequence[Expression],
-        dW: Sequence[Expression],
-        ddW: Sequence[Expression],
-    ) -> Expression:
+    def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque from eq (14) [N m]."""
         coupling = self.beta2 + self.beta3 * ca.cos(joint.angle)
         return self.beta1 * joint.acceleration + self.c * joint.speed + coupling * ddW[0]
 
-    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+    def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """w(t, l) = phi W [m]."""
         return [self.phi * W[0]]
 

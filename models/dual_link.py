@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 from quietarm.models.drawing import Body, flexible_link
-from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import Plant, parameter
 
 _LENGTH = 0.5
@@ -43,9 +43,7 @@ class DualLinkManipulator(Plant):
         2.7244, "-", "first mode shape of a clamped-free beam at its tip, docs/physics.md"
     )
 
-    def modal_accelerations(
-        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
-    ) -> Sequence[Expression]:
+    def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W_1'' and W_2'' [m/s^2]: each link vibrates on its own, as the single link does."""
         links = (
             (self.omega1, self.zeta1, self.a1, self.b1),
@@ -58,18 +56,12 @@ class DualLinkManipulator(Plant):
             for i, (omega, zeta, a, b) in enumerate(links)
         ]
 
-    def torque(
-        self,
-        joint: JointMotion,
-        W: Sequence[Expression],
-        dW: Sequence[Expression],
-        ddW: Sequence[Expression],
-    ) -> Expression:
+    def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque [N m]: both links act on the one hub."""
         inertia = self.g1 * joint.acceleration + self.g2 * ddW[0] + self.g3 * ddW[1]
         return inertia + self.c * joint.speed
 
-    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+    def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """Displacement of either tip, phi W_i [m]."""
         return [self.phi * W[0], self.phi * W[1]]
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 Expression = Any
 """An SX scalar, an MX matrix or a number: casadi gives these no common base class."""
+Modes = Sequence[Expression]
+"""A value for each mode: amplitudes W [m], rates [m/s], accelerations [m/s^2]."""
 
 
 class JointMotion(NamedTuple):

@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 import numpy as np
 from quietarm.models.contract import check_contract
 from quietarm.models.drawing import Body, rigid_link
-from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.joint_motion import Expression, JointMotion, Modes
 
 
 def parameter(default: float, unit: str, source: str) -> Any:
@@ -104,9 +104,7 @@ class Plant(ABC):
             object.__setattr__(self, entry.name, float(value))
 
     @abstractmethod
-    def modal_accelerations(
-        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
-    ) -> Sequence[Expression]:
+    def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """Second time derivatives of the modal amplitudes.
 
         Parameters
@@ -123,17 +121,11 @@ class Plant(ABC):
         """
 
     @abstractmethod
-    def torque(
-        self,
-        joint: JointMotion,
-        W: Sequence[Expression],
-        dW: Sequence[Expression],
-        ddW: Sequence[Expression],
-    ) -> Expression:
+    def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque that the motion needs [N m]; arguments as in `modal_accelerations`."""
 
     @abstractmethod
-    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+    def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """Displacements of the tips that must come to rest [m], linear in `W` [m]."""
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:

@@ -113,14 +113,10 @@ def _run(file: PlantFile) -> ModuleType:
         if isinstance(error, SyntaxError):
             lines = [error.lineno]
         place = f", line {lines[-1]}" if lines and lines[-1] else ""
-        said, remedy = f"{type(error).__name__}: {error}", "mend it"
-        if isinstance(error, ImportError):
-            remedy = "a plant is one file: put what it needs into it, or install that"
-        elif isinstance(error, ValueError):  # `Plant` refused a class
-            said, remedy = str(error), ""
-        text = " ".join(said.split())
+        text = " ".join(f"{type(error).__name__}: {error}".split())
         raise ValueError(
-            f"plant file {file.path}{place}: {text}{'; ' if remedy else ''}{remedy}"
+            f"plant file {file.path}{place}: {text}; mend it: a plant is one file, and what it "
+            "imports is installed"
         ) from None
     return module
 

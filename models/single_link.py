@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from quietarm.models.drawing import Body, flexible_link
-from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.plant import Plant, parameter
 
 _LENGTH = 0.475
@@ -39,9 +39,7 @@ class SingleLinkManipulator(Plant):
         "docs/physics.md",
     )
 
-    def modal_accelerations(
-        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
-    ) -> Sequence[Expression]:
+    def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """W'' from eq (9) [m/s^2]."""
         return [
             -2 * self.zeta * self.omega * dW[0]
@@ -49,17 +47,11 @@ class SingleLinkManipulator(Plant):
             - self.beta1 * joint.acceleration
         ]
 
-    def torque(
-        self,
-        joint: JointMotion,
-        W: Sequence[Expression],
-        dW: Sequence[Expression],
-        ddW: Sequence[Expression],
-    ) -> Expression:
+    def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque from eq (8) [N m]."""
         return self.alpha1 * joint.acceleration + self.alpha2 * ddW[0] + self.c * joint.speed
 
-    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+    def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """w(t, l) = phi W [m]."""
         return [self.phi * W[0]]
 

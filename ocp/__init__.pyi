@@ -27,10 +27,10 @@ from .plan.many import Moves as Moves
 from .plan.many import plan_moves as plan_moves
 from .plan.shaping import shaped_cycloid as shaped_cycloid
 from .plan.solver import plan_move as plan_move
-from .profiles.gaussians import CycloidGaussians as CycloidGaussians
 from .profiles.joint_profile import JointPath as JointPath
 from .profiles.joint_profile import JointProfile as JointProfile
-from .profiles.network import CycloidNetwork as CycloidNetwork
+from .profiles.networks import CycloidGaussians as CycloidGaussians
+from .profiles.networks import CycloidNetwork as CycloidNetwork
 from .profiles.polynomial import MAX_TERMS as MAX_TERMS
 from .profiles.polynomial import CycloidPolynomial as CycloidPolynomial
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid

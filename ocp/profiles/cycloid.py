@@ -9,9 +9,12 @@ from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import casadi as ca
-import numpy as np
 from quietarm.models import Expression, JointMotion
+from quietarm.ocp.base.checks import whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
+
+Input = tuple[Expression, Expression, Expression]
+"""U, and its first two derivatives by the fraction of the duration."""
 
 
 @dataclass(frozen=True)
@@ -26,17 +29,14 @@ class Cycloid(JointProfile):
     least_terms: ClassVar[int] = 1
     most_terms: ClassVar[int] = 32
     why_no_more: ClassVar[str] = ""
+    constants: ClassVar[int] = 0
+    each: ClassVar[int] = 1
+    """Coefficients that every member has, and those of each term."""
     terms: int = 6
 
     def __post_init__(self) -> None:
-        terms: object = self.terms
-        least, most = self.least_terms, self.most_terms
-        if isinstance(terms, bool) or not isinstance(terms, int | np.integer):
-            raise ValueError(f"terms is {terms!r}; give a whole number from {least} to {most}")
-        if not least <= terms <= most:
-            why = self.why_no_more
-            raise ValueError(f"terms is {terms}; give {least} to {most}{why and f': {why}'}")
-        object.__setattr__(self, "terms", int(terms))
+        terms = whole("terms", self.terms, self.least_terms, self.most_terms, self.why_no_more)
+        object.__setattr__(self, "terms", terms)
 
     @property
     def amount(self) -> str:
@@ -51,18 +51,24 @@ class Cycloid(JointProfile):
     @classmethod
     def of_size(cls, size: int) -> Self:
         """The family's member that has so many coefficients; ValueError where none has."""
-        if not cls.least_terms <= size <= cls.most_terms:
-            why = cls.why_no_more if size > cls.most_terms else ""
+        terms, rest = divmod(size - cls.constants, cls.each)
+        if rest or not cls.least_terms <= terms <= cls.most_terms:
+            least, most = (cls.constants + cls.each * n for n in (cls.least_terms, cls.most_terms))
+            step = f" in steps of {cls.each}" if cls.each > 1 else ""
+            why = f": {cls.why_no_more}" if size > most and cls.why_no_more else ""
             raise ValueError(
-                f"got {size} coefficients; {cls.name} has {cls.least_terms} to {cls.most_terms}"
-                f"{why and f': {why}'}; give so many numbers"
+                f"got {size} coefficients; {cls.name} has {least} to {most}{step}{why}; give so "
+                "many numbers"
             )
-        return cls(size)
+        return cls(terms)
+
+    @property
+    def size(self) -> int:
+        """How many coefficients the profile has."""
+        return self.constants + self.each * self.terms
 
     @abstractmethod
-    def input(
-        self, coefficients: Sequence[Expression], fraction: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
         """U, 0 and 1 at the ends, and its first two derivatives by the fraction."""
 
     def derivatives(
@@ -96,9 +102,7 @@ class Cycloid(JointProfile):
         )
 
 
-def with_bump(
-    fraction: Expression, p: Expression, dp: Expression, ddp: Expression
-) -> tuple[Expression, Expression, Expression]:
+def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expression) -> Input:
     """U = t/TE + (1 - T^2) p, whose bump holds the ends, and its derivatives by the fraction."""
     T = 2 * fraction - 1  # eq (7)
     bump = 1 - T * T

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -164,15 +164,18 @@ class JointProfile(ABC):
         if not jerk:
             angle, speed, acceleration = self.derivatives(coefficients, fraction, *move)[:3]
             return JointMotion(angle, speed, acceleration)
-        values, rates = _with_rates(self.derivatives, coefficients, fraction, move, slice(2, 3))
-        return JointMotion(*values[:3], *rates)
-
-    def inner_with_rates(
-        self, coefficients: Sequence[Expression], fraction: Expression, *move: Expression
-    ) -> Sequence[Expression]:
-        """The values of `inner`, then their time derivatives."""
-        values, rates = _with_rates(self.inner, coefficients, fraction, move)
-        return *values, *rates
+        # casadi differentiates by symbols only: the fraction is one first, replaced afterwards
+        kinds = {type(one) for one in (*coefficients, fraction, *move)}
+        kind: Any = ca.SX if ca.SX in kinds else ca.MX
+        place = kind(fraction)
+        at = kind.sym("t", *place.shape)
+        values = [kind(value) for value in self.derivatives(coefficients, at, *move)[:3]]
+        ones = kind.ones(*at.shape)
+        rate = ca.jtimes(values[2], at, ones) * ones / move[-1]
+        motion: Any = ca.substitute([*values, rate], [at], [place])
+        if kinds.isdisjoint({ca.SX, ca.MX}):
+            motion = map(ca.evalf, motion)
+        return JointMotion(*motion)
 
     def path(
         self, coefficients: ArrayLike, start: float, target: float, duration: float
@@ -232,32 +235,6 @@ def _rounded_up(value: float, digits: int = 4) -> float:
     """A positive value rounded up to this many digits."""
     unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
     return math.ceil(value / unit) * unit
-
-
-def _with_rates(
-    of: Callable[..., Sequence[Expression]],
-    coefficients: Sequence[Expression],
-    fraction: Expression,
-    move: Sequence[Expression],
-    rates_of: slice = slice(None),
-) -> tuple[list[Expression], list[Expression]]:
-    """What a method of a profile gives, and time derivatives of some of it by casadi.
-
-    casadi differentiates by symbols only: the fraction is a symbol first, replaced afterwards.
-    """
-    kinds = {type(one) for one in (*coefficients, fraction, *move)}
-    kind: Any = ca.SX if ca.SX in kinds else ca.MX
-    place = fraction if type(fraction) is kind else kind(ca.DM(fraction))
-    at = place if place.is_symbolic() else kind.sym("t", *place.shape)
-    ones = kind.ones(*at.shape)
-    values = [kind(value) for value in of(coefficients, at, *move)]
-    rates = [ca.jtimes(value, at, ones) * ones / move[-1] for value in values[rates_of]]
-    both: Any = [*values, *rates]
-    if at is not place:
-        both = ca.substitute(both, [at], [place])
-    if kinds.isdisjoint({ca.SX, ca.MX}):
-        both = [ca.evalf(value) for value in both]
-    return both[: len(values)], both[len(values) :]
 
 
 def known_profiles() -> dict[str, type[JointProfile]]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from quietarm.models import Expression
-from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
+from quietarm.ocp.profiles.cycloid import Cycloid, Input, with_bump
 
 MAX_TERMS = 32
 """Most terms of the polynomial. The condition number of the powers of T on [-1, 1] grows like (1 +
@@ -37,14 +37,7 @@ class CycloidPolynomial(Cycloid):
         "beyond that double precision no longer tells the powers of T apart"
     )
 
-    @property
-    def size(self) -> int:
-        """How many coefficients the profile has: the number of terms."""
-        return self.terms
-
-    def input(
-        self, coefficients: Sequence[Expression], fraction: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
         """U of eq (6) and its derivatives: linear in the coefficients."""
         T = 2 * fraction - 1  # eq (7)
         p = dp = ddp = 0 * T

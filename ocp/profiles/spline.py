@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import ClassVar
 
 from quietarm.models import Expression
-from quietarm.ocp.profiles.cycloid import Cycloid
+from quietarm.ocp.profiles.cycloid import Cycloid, Input
 
 DEGREE = 5
 """Quintic: the joint's jerk is continuous, and the integrators' fixed steps keep their order where
@@ -40,19 +40,12 @@ class CycloidSpline(Cycloid):
     least_terms: ClassVar[int] = DEGREE - 1
 
     @property
-    def size(self) -> int:
-        """How many coefficients the profile has: the control points that may move."""
-        return self.terms
-
-    @property
     def knots(self) -> list[float]:
         """Where the pieces meet, as fractions of the duration; the ends with their multiplicity."""
         pieces = self.terms + 2 - DEGREE
         return [0.0] * DEGREE + [i / pieces for i in range(pieces + 1)] + [1.0] * DEGREE
 
-    def input(
-        self, coefficients: Sequence[Expression], fraction: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
         """U and its derivatives: linear in the coefficients.
 
         The derivative of a spline is one of a degree less, whose control points are the differences

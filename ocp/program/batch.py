@@ -9,6 +9,7 @@ All that is nonlinear belongs to a single node, where second derivatives are sma
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -78,13 +79,7 @@ class Derivatives(Values):
 
 
 class Batch:
-    """A plant's motion along a profile in a number of steps, for many candidates at once.
-
-    Parameters
-    ----------
-    kind : Kind
-        What the candidates have in common.
-    """
+    """A plant's motion along a profile in a number of steps, for many candidates at once."""
 
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
@@ -149,30 +144,17 @@ class Batch:
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:
-        """Evaluate candidates without derivatives, the energy a little more exactly.
+        """Evaluate candidates without derivatives, a block of them for each thread at a time.
 
-        Other arguments as for `derivatives`; the energy takes in what neighbouring steps say.
-
-        Parameters
-        ----------
-        threads : int
-            Blocks of candidates that are evaluated at the same time.
+        Arguments as for `derivatives`; the energy takes in what neighbouring steps say, and is a
+        little more exact.
         """
-        inputs = coefficients, move, errors
-        blocks = [
-            [one[first : first + _MANY] for one in inputs]
-            for first in range(0, len(coefficients), _MANY)
-        ]
+        blocks = _blocks((coefficients, move, errors), _MANY)
         if threads > 1 and len(blocks) > 1:
             with ThreadPoolExecutor(threads) as pool:
                 parts = list(pool.map(self._values, blocks))
         else:
             parts = [self._values(block) for block in blocks]
-        if not parts:
-            values = self.parts[-1][1].stop if self.parts else 0
-            return Values(
-                np.zeros(0), np.zeros((0, 2 * self.kind.plant.modes)), np.zeros((0, values))
-            )
         energy, arrival, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
         return Values(energy[:, 0], arrival, limited)
 
@@ -197,32 +179,18 @@ class Batch:
     ) -> Derivatives:
         """Evaluate candidates with first derivatives, and second ones of a weighted sum.
 
-        Parameters
-        ----------
-        coefficients : ndarray, shape (rows, profile.size)
-            One candidate a row.
-        move : ndarray, shape (rows, 3)
-            Start, target [rad], duration [s].
-        errors : ndarray, shape (rows, len(errors))
-            Relative errors of the plant.
-        weights : tuple of ndarray, shapes (rows,), (rows, 2 * modes), (rows, values)
-            Of energy, arrival and limited quantities in `curvature`.
-
-        Returns
-        -------
-        Derivatives
-            Figures and derivatives.
+        A row is a candidate: coefficients, move (start, target [rad], duration [s]), relative
+        errors of the plant, the power [W] over which |power| is rounded off, and the weights of
+        energy, arrival (2 * modes) and limited values in `curvature`.
         """
         inputs = [coefficients, move, errors, width[:, None], weights[0][:, None], *weights[1:]]
-        parts = [
-            self._block([one[first : first + rows] for one in inputs], rows)
-            for first, rows in _cut(len(coefficients))
-        ]
+        parts = [self._block(block) for block in _blocks(inputs, _BLOCKS[-1])]
         return Derivatives(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
-    def _block(self, inputs: list[Array], rows: int) -> tuple[Array, ...]:
+    def _block(self, inputs: list[Array]) -> tuple[Array, ...]:
+        rows, size = len(inputs[0]), self.kind.profile.size
         fitting, function = self._function(rows)
-        size, raw = self.kind.profile.size, function(*(_filled(one, fitting).T for one in inputs))
+        raw = function(*(_filled(one, fitting).T for one in inputs))
 
         def by_coefficient(one: Array) -> Array:
             """From (values, coefficients, steps; rows) to (rows; coefficients; values, steps)."""
@@ -242,15 +210,14 @@ class Batch:
 
 
 def _filled(rows: Array, count: int) -> Array:
-    """Rows, the last of them as often as makes so many."""
-    missing = count - len(rows)
-    return np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) if missing else rows
+    """So many rows: these, again and again."""
+    return np.resize(rows, (count, rows.shape[1]))
 
 
-def _cut(rows: int) -> list[tuple[int, int]]:
-    """First row and number of rows of each call."""
-    most = _BLOCKS[-1]
-    return [(first, min(most, rows - first)) for first in range(0, rows, most)]
+def _blocks(arrays: Sequence[Array], most: int) -> list[list[Array]]:
+    """The arrays' rows, so many at a time; one block where there are none."""
+    firsts = range(0, max(len(arrays[0]), 1), most)
+    return [[one[first : first + most] for one in arrays] for first in firsts]
 
 
 @lru_cache(maxsize=32)

@@ -13,8 +13,7 @@ import casadi as ca
 import numpy as np
 from quietarm.models import Plant
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.elementwise import elementwise
-from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places
+from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places, elementwise
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, Step, step
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.objective import energy_derivatives, resolved_energy
@@ -54,19 +53,9 @@ class Kind(NamedTuple):
 
 
 def function_of_values(kind: Kind, rows: int) -> ca.Function:
-    """Compile the values of candidates.
+    """Compile the values of so many candidates.
 
-    Parameters
-    ----------
-    kind : Kind
-        Of the rows.
-    rows : int
-        Number of candidates.
-
-    Returns
-    -------
-    Function
-        (coefficients, moves, errors) -> energy, arrival, limited quantities; a row a candidate.
+    (coefficients, moves, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
     plant, profile, steps, quantities, names = kind
     inputs = [ca.MX.sym("x", rows, count) for count in (profile.size, 3, len(names))]
@@ -87,15 +76,12 @@ def function_of_values(kind: Kind, rows: int) -> ca.Function:
 
 
 def function_of_derivatives(kind: Kind, rows: int) -> ca.Function:
-    """Compile the values of candidates with their derivatives; arguments as for the values alone.
+    """Compile the values of candidates with their derivatives.
 
-    Returns
-    -------
-    Function
-        (coefficients, moves, errors, width over which |power| is rounded off, weights of energy,
-        arrival and limited quantities) -> energy, arrival, limited quantities, gradient, arrival by
-        the coefficients, limited quantities by them, two factors whose product is the curvature of
-        the weighted sum, and what the path's own curvature adds where it is not linear.
+    (coefficients, moves, errors, width over which |power| is rounded off, weights of energy,
+    arrival and limited quantities) -> energy, arrival, limited quantities, gradient, arrival by the
+    coefficients, limited quantities by them, two factors whose product is the curvature of the
+    weighted sum, and what the path's own curvature adds where it is not linear.
     """
     return _Differentiated(kind, rows).function()
 

@@ -7,7 +7,7 @@ second run goes on from there with the objective as it is.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.base.interrupts import note_interrupts
-from quietarm.ocp.program.ipopt import OPTIONS, Point, ipopt_of_functions, run_ipopt
+from quietarm.ocp.program.ipopt import OPTIONS, Point, compiled, run_ipopt
 from quietarm.ocp.program.quadratic import Model
 from quietarm.ocp.program.sqp import FEASIBLE, End, Rows
 from quietarm.ocp.program.stack import Stack
@@ -57,24 +57,12 @@ _ENDS = {
 def interior_point(stack: Stack, x: Array, *, warm: bool = False) -> Rows:
     """Minimise the rows of a stack from their starts, as `sqp.minimise` does.
 
-    Parameters
-    ----------
-    stack : Stack
-        The programs.
-    x : ndarray, shape (rows, unknowns)
-        Starts.
-    warm : bool
-        Whether they are beside minima.
-
-    Returns
-    -------
-    Rows
-        Where they ended; after Ctrl-C those not yet begun are where they started.
+    Warm starts are beside minima. After Ctrl-C rows not yet begun are where they started.
     """
-    count, equalities = len(x), stack.equalities
+    count = len(x)
     found = Rows(
         x.copy(), np.full(count, np.nan), np.full(count, np.inf),
-        np.zeros((count, equalities)), np.zeros(stack.lower.shape),
+        np.zeros((count, stack.equalities)), np.zeros(stack.lower.shape),
         [End.STOPPED] * count, np.zeros(count, dtype=int),
     )  # fmt: skip
     with note_interrupts() as came:
@@ -90,95 +78,97 @@ def interior_point(stack: Stack, x: Array, *, warm: bool = False) -> Rows:
 def _one(functions: _RowFunctions, found: Rows, row: int, warm: bool) -> None:
     """Run after run, from where the one before ended."""
     point, end = Point(found.x[row]), None
+    free = np.full(len(point.unknowns), np.inf)
+    bounds = functions.lower, functions.upper
     for width in _STAGES[-1:] if warm else _STAGES:
-        solver = functions.solver(_LAST if width == 0 else _FIRST)
-        free = np.full(len(point.unknowns), np.inf)
-        bounds = functions.lower, functions.upper
-        stop = run_ipopt(solver, point, (-free, free), bounds, np.array([width]))
-        found.iterations[row] += stop.iterations
-        point = stop.point
-        end = _ENDS.get(stop.return_status)
+        solver = functions.solver(_FIRST if width else _LAST)
+        point, status, iterations = run_ipopt(
+            solver, point, (-free, free), bounds, np.array([width])
+        )
+        found.iterations[row] += iterations
+        end = _ENDS.get(status)
         if end is End.STOPPED or (end is End.INFEASIBLE and width > 0):
             break
-    model = functions.model(point.unknowns, 0.0)
-    g = np.concatenate([model.c[0], model.v[0, functions.kept]])
+    model = functions.model(point.unknowns, np.zeros(1))
+    g = functions.constraints(model)
     passed = np.max([functions.lower - g, g - functions.upper], initial=0.0)
     if end is None:  # no step helps any more
         end = End.CREEPING if passed <= FEASIBLE else End.UNFINISHED
     found.ends[row], found.x[row], found.violation[row] = end, point.unknowns, passed
     found.f[row] = model.f[0]
-    m = found.of_c.shape[1]
-    found.of_c[row], found.of_v[row, functions.kept] = point.multipliers[:m], point.multipliers[m:]
+    found.of_c[row], found.of_v[row, functions.kept] = np.split(
+        point.multipliers, [functions.equalities]
+    )
 
 
 class _RowFunctions:
     """One row of a stack, as functions that IPOPT calls."""
 
     def __init__(self, stack: Stack, row: int) -> None:
-        self.stack, self.row = stack, np.array([row])
-        self.m = stack.equalities
+        self._stack, self._row, self.equalities = stack, np.array([row]), stack.equalities
         bounded = np.isfinite(stack.lower[row]) | np.isfinite(stack.upper[row])
         self.kept = np.flatnonzero(bounded)
-        zeros = np.zeros(self.m)
-        self.lower = np.concatenate([zeros, stack.lower[row, self.kept]])
-        self.upper = np.concatenate([zeros, stack.upper[row, self.kept]])
-        self._last: tuple[bytes, float, Model] | None = None
+        none = np.zeros(self.equalities)
+        self.lower, self.upper = (
+            np.concatenate([none, of[row, self.kept]]) for of in (stack.lower, stack.upper)
+        )
+        self._last: tuple[bytes, Model] | None = None
 
-    def model(self, x: Array, width: float, multipliers: Array | None = None) -> Model:
-        """The model at a point; without multipliers the last one is kept for the next call."""
-        of_v = np.zeros((1, self.stack.lower.shape[1]))
-        if multipliers is None:
-            key = x.tobytes(), width
-            if self._last is None or self._last[:2] != key:
-                of_c = np.zeros((1, self.m))
-                found = self.stack.evaluate(self.row, x[None], of_c, of_v, np.array([width]))
-                self._last = *key, found
-            return self._last[2]
-        of_v[0, self.kept] = multipliers[self.m :]
-        of_c = multipliers[None, : self.m]
-        return self.stack.evaluate(self.row, x[None], of_c, of_v, np.array([width]))
+    def model(self, x: Array, width: Array) -> Model:
+        """The model at a point without curvature, kept for the next call."""
+        key = x.tobytes() + width.tobytes()
+        if self._last is None or self._last[0] != key:
+            self._last = key, self._weighted(x, width, np.zeros(len(self.lower)))
+        return self._last[1]
+
+    def _weighted(self, x: Array, width: Array, multipliers: Array) -> Model:
+        of_c, of_v = multipliers[None, : self.equalities], np.zeros((1, self._stack.lower.shape[1]))
+        of_v[0, self.kept] = multipliers[self.equalities :]
+        return self._stack.evaluate(self._row, x[None], of_c, of_v, width)
+
+    def constraints(self, model: Model) -> Array:
+        """Equalities, then what is bounded."""
+        return np.concatenate([model.c[0], model.v[0, self.kept]])
+
+    def _slopes(self, model: Model) -> Array:
+        return np.concatenate([model.by_c[0], model.by_v[0, self.kept]])
+
+    def _hessian(self, x: Array, width: Array, of_f: Array, multipliers: Array) -> list[ca.DM]:
+        """Upper half of the Lagrangian's."""
+        hessian = self._weighted(x, width, multipliers).hessian[0]
+        if of_f != 1:  # in the restoration of feasibility, where f does not count
+            alone = self._weighted(x, width, np.zeros(len(self.lower)))
+            hessian = hessian + (of_f - 1) * alone.hessian[0]
+        return [ca.triu(ca.DM((hessian + hessian.T) / 2))]
 
     def solver(self, options: Any) -> ca.Function:
         """A solver whose parameter is the width."""
-        n, rows = self.stack.unknowns, len(self.lower)
+        n, rows = self._stack.unknowns, len(self.lower)
+        x, width = ca.MX.sym("x", n), ca.MX.sym("width")
 
-        def constraints(model: Model) -> Array:
-            return np.concatenate([model.c[0], model.v[0, self.kept]])
+        def call(name: str, shapes: list[tuple[int, int]], *of: Callable[[Model], Any]) -> _Call:
+            def values(x: Array, width: Array) -> list[Any]:
+                return [part(self.model(x, width)) for part in of]
 
-        def jacobian(model: Model) -> Array:
-            return np.concatenate([model.by_c[0], model.by_v[0, self.kept]])
+            return _Call(name, [n, 1], [ca.Sparsity.dense(*shape) for shape in shapes], values)
 
-        def hessian(x: Array, width: float, of_f: float, multipliers: Array) -> Array:
-            found = self.model(x, width, multipliers).hessian[0]
-            if of_f != 1:  # in the restoration of feasibility, where f does not count
-                none = np.zeros(rows)
-                found = found + (of_f - 1) * self.model(x, width, none).hessian[0]
-            return np.triu(found + found.T) / 2
-
-        def at(of: Any) -> Any:
-            return lambda x, width: [part(self.model(x, width)) for part in of]
-
-        f, gradient = (lambda model: model.f), (lambda model: model.gradient)
-        self._alive = [
-            _Call("row_f", [(n, 1), (1, 1)], [(1, 1)], at([f])),
-            _Call("row_g", [(n, 1), (1, 1)], [(rows, 1)], at([constraints])),
-            _Call("row_df", [(n, 1), (1, 1)], [(1, 1), (1, n)], at([f, gradient])),
-            _Call("row_dg", [(n, 1), (1, 1)], [(rows, 1), (rows, n)], at([constraints, jacobian])),
-            _Call(
-                "row_bends", [(n, 1), (1, 1), (1, 1), (rows, 1)], [ca.Sparsity.upper(n)],
-                lambda *arguments: [hessian(*arguments)],
-            ),
-        ]  # fmt: skip
-        f_call, g_call, gradient_call, jacobian_call, hessian_call = self._alive
-        return ipopt_of_functions(
-            n, f_call, g_call, gradient_call, jacobian_call, hessian_call, options
-        )
+        f = call("row_f", [(1, 1)], lambda model: model.f)
+        g = call("row_g", [(rows, 1)], self.constraints)
+        slopes = {
+            "grad_f": call("row_df", [(1, 1), (1, n)], lambda m: m.f, lambda m: m.gradient),
+            "jac_g": call("row_dg", [(rows, 1), (rows, n)], self.constraints, self._slopes),
+            "hess_lag": _Call("row_bends", [n, 1, 1, rows], [ca.Sparsity.upper(n)], self._hessian),
+        }
+        self._alive = f, g, slopes  # casadi does not keep them
+        return compiled({"x": x, "p": width, "f": f(x, width), "g": g(x, width)}, options, slopes)
 
 
 class _Call(ca.Callback):
     """A function of arrays as casadi calls it."""
 
-    def __init__(self, name: str, inputs: list[Any], outputs: list[Any], function: Any) -> None:
+    def __init__(
+        self, name: str, inputs: list[int], outputs: list[ca.Sparsity], function: Callable[..., Any]
+    ) -> None:
         ca.Callback.__init__(self)
         self._inputs, self._outputs, self._function = inputs, outputs, function
         self.construct(name, {})
@@ -192,25 +182,13 @@ class _Call(ca.Callback):
         return len(self._outputs)
 
     def get_sparsity_in(self, i: int) -> ca.Sparsity:
-        """Dense arguments."""
-        return ca.Sparsity.dense(*self._inputs[i])
+        """Columns."""
+        return ca.Sparsity.dense(self._inputs[i], 1)
 
     def get_sparsity_out(self, i: int) -> ca.Sparsity:
-        """Dense results, but for the Hessian's half."""
-        shape = self._outputs[i]
-        return shape if isinstance(shape, ca.Sparsity) else ca.Sparsity.dense(*shape)
+        """As given."""
+        return self._outputs[i]
 
     def eval(self, arg: Sequence[ca.DM]) -> list[ca.DM]:
         """Call it."""
-        values = [one.full() for one in arg]
-        flat = [
-            one.ravel() if one.size > 1 or i in (0, 3) else one.item()
-            for i, one in enumerate(values)
-        ]
-        found = self._function(*flat)
-        return [
-            ca.DM(self.get_sparsity_out(i), np.asarray(one).T[np.tril_indices(len(one))].tolist())
-            if isinstance(self._outputs[i], ca.Sparsity)
-            else ca.DM(np.asarray(one).reshape(self._outputs[i]))
-            for i, one in enumerate(found)
-        ]
+        return [ca.DM(value) for value in self._function(*(one.full().ravel() for one in arg))]

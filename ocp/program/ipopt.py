@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import casadi as ca
@@ -32,69 +31,26 @@ OPTIONS: dict[str, str | int | float] = {
     "expect_infeasible_problem": "yes",
 }
 _THREADS = "OPENBLAS_NUM_THREADS"
+_UNKNOWN = np.empty(0)
 
 
-@dataclass(frozen=True)
-class Point:
+class Point(NamedTuple):
     """Where the solver starts or stops: the unknowns, and the multipliers where they are known.
 
-    Attributes
-    ----------
-    unknowns : ndarray
-        Scaled unknowns.
-    bound_multipliers, multipliers : ndarray, empty where unknown
-        Of the bounds on the unknowns (positive at an upper one), and of the constraints.
+    Multipliers of the bounds on the unknowns (positive at an upper one), and of the constraints.
     """
 
     unknowns: NDArray[np.float64]
-    bound_multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-    multipliers: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    bound_multipliers: NDArray[np.float64] = _UNKNOWN
+    multipliers: NDArray[np.float64] = _UNKNOWN
 
 
 class Stop(NamedTuple):
-    """How a run of IPOPT ended: where, its own status, iterations, and how far a bound is passed.
-
-    `passed` is the largest amount by which a constraint is not kept, scaled.
-    """
+    """How a run of IPOPT ended: where, its own status, iterations."""
 
     point: Point
     return_status: str
     iterations: int
-    passed: float
-
-
-def ipopt_of_functions(
-    unknowns: int,
-    f: ca.Function,
-    g: ca.Function,
-    gradient: ca.Function,
-    jacobian: ca.Function,
-    hessian: ca.Function,
-    options: Options,
-) -> ca.Function:
-    """A solver of a nonlinear program that is given by functions of (unknowns, parameter).
-
-    Parameters
-    ----------
-    unknowns : int
-        How many.
-    f, g : Function
-        Objective and constraints.
-    gradient, jacobian : Function
-        (f, its gradient), (g, its Jacobian).
-    hessian : Function
-        (unknowns, parameter, multiplier of f, multipliers of g) -> upper half of the Lagrangian's.
-    options : mapping
-        IPOPT's.
-
-    Returns
-    -------
-    Function
-        The solver.
-    """
-    x, p = ca.MX.sym("x", unknowns), ca.MX.sym("p")
-    functions = {"grad_f": gradient, "jac_g": jacobian, "hess_lag": hessian}
-    return compiled({"x": x, "p": p, "f": f(x, p), "g": g(x, p)}, options, functions)
 
 
 def compiled(
@@ -134,34 +90,15 @@ def run_ipopt(
     constraint_bounds: Bounds,
     parameters: NDArray[np.float64],
 ) -> Stop:
-    """Run IPOPT.
-
-    Parameters
-    ----------
-    solver : Function
-        A program by `ipopt`.
-    start : Point
-        Where to start.
-    bounds, constraint_bounds : tuple of ndarray
-        Lower and upper bounds of the unknowns, and of the constraints.
-    parameters : ndarray
-        The program's parameters.
-
-    Returns
-    -------
-    Stop
-        Where and how it ended.
-    """
-    lower, upper = constraint_bounds
+    """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""
     known = {}
     if start.multipliers.size:
         known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
     with keep_interrupts(), silent_errors():  # casadi warns of every failure
         result = solver(
-            x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=lower, ubg=upper, p=parameters,
-            **known,
+            x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
+            ubg=constraint_bounds[1], p=parameters, **known,
         )  # fmt: skip
     point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
-    g, stats = result["g"].full().ravel(), solver.stats()
-    passed = float(np.max([lower - g, g - upper], initial=0.0))
-    return Stop(point, str(stats["return_status"]), int(stats["iter_count"]), passed)
+    stats = solver.stats()
+    return Stop(point, str(stats["return_status"]), int(stats["iter_count"]))

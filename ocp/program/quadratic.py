@@ -69,25 +69,10 @@ class Steps(NamedTuple):
 
 
 def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear: int) -> Steps:
-    """Steps that make the quadratic models least within the linearised constraints and in a box.
+    """Steps that make quadratic models least within linearised constraints and in a box.
 
-    Where these constraints cannot be met, the step makes their violation least.
-
-    Parameters
-    ----------
-    model : Model
-        Rows, with convex Hessians.
-    lower, upper : ndarray, shape (rows, k)
-        Bounds of v.
-    radius : ndarray, shape (rows,)
-        Half the sides of the boxes.
-    linear : int
-        How many entries of v, the last, are kept whatever else cannot be.
-
-    Returns
-    -------
-    Steps
-        A step for each row.
+    The Hessians are convex, `radius` is half the sides of the boxes. Where the constraints cannot
+    be met, the step makes their violation least; the last `linear` of v are kept all the same.
     """
     rows, n = model.gradient.shape
     m, k = model.c.shape[1], model.v.shape[1]

@@ -59,23 +59,10 @@ def solve(
     warm: bool = False,
     groups: Sequence[int] | None = None,
 ) -> Solved:
-    """Solve programs, each from its start.
+    """Solve programs of one profile, number of steps and set of limits, each from its start.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        Programs of one profile, number of steps and set of limited quantities.
-    solver : {"sqp", "ipopt"}
-        All rows together by sequential quadratic programs, or one after another by IPOPT.
-    warm : bool
-        Whether the starts are beside minima.
-    groups : sequence of int, optional
-        Rows of one number are starts of one program, as for `minimise`.
-
-    Returns
-    -------
-    Solved
-        A solution for each row, whatever its status.
+    By `"sqp"` all rows go together, by `"ipopt"` one after another. Warm starts are beside minima;
+    rows of one number in `groups` are starts of one program, as for `minimise`.
     """
     solutions: dict[int, Solution] = {}
     complete = True

@@ -112,35 +112,16 @@ def minimise(
     reach: float = 0.25,
     most: int = 500,
 ) -> Rows:
-    """Minimise every row from its start.
+    """Minimise every row from its start, with lower <= v <= upper.
 
-    Parameters
-    ----------
-    evaluate : callable
-        The rows' model.
-    x : ndarray, shape (rows, n)
-        Starts.
-    lower, upper : ndarray, shape (rows, k)
-        Bounds of v.
-    linear : int
-        How many entries of v, the last, are linear and kept from the start on.
-    groups : ndarray of int, shape (rows,), optional
-        Rows of one number are starts of one program: once half of them, and more than one, agree on
-        the least f, the others are left.
-    widths : tuple of float
-        Widths over which f is rounded off, the last of them 0.
-    reach : float
-        Radius of the trust regions at first.
-    most : int
-        Most iterations of a row.
-
-    Returns
-    -------
-    Rows
-        Where they ended; after Ctrl-C where they were.
+    The last `linear` entries of v are linear and kept from the start on. Rows of one number in
+    `groups` are starts of one program: once half of them, and more than one, agree on the least f,
+    the others are left. The objective is rounded off over the widths, one after another, the last
+    of them 0; trust regions have the radius `reach` at first, rows at most `most` iterations. After
+    Ctrl-C the rows are where they were.
     """
     with note_interrupts() as came:
-        run = _Run(evaluate, x, lower, upper, linear, groups, np.array(widths), reach)
+        run = _Run(evaluate, x.copy(), lower, upper, linear, groups, np.array(widths), reach)
         for _ in range(most):
             if came or not len(run.going):
                 break
@@ -152,35 +133,32 @@ def minimise(
     return Rows(*found, stopped=bool(came))
 
 
+@dataclass
 class _Run:
     """The rows on their way. Arrays by row; `model` has those of the rows still `going`."""
 
-    def __init__(
-        self,
-        evaluate: Evaluate,
-        x: Array,
-        lower: Array,
-        upper: Array,
-        linear: int,
-        groups: Index | None,
-        widths: Array,
-        reach: float,
-    ) -> None:
-        rows = len(x)
-        self.evaluate, self.linear, self.widths, self.groups = evaluate, linear, widths, groups
-        self.x, self.lower, self.upper = x.copy(), lower, upper
+    evaluate: Evaluate
+    x: Array
+    lower: Array
+    upper: Array
+    linear: int
+    groups: Index | None
+    widths: Array
+    reach: float
+
+    def __post_init__(self) -> None:
+        rows, k = self.lower.shape
         self.going, self.stage = np.arange(rows), np.zeros(rows, dtype=int)
         self.ends: list[End | None] = [None] * rows
         self.iterations = np.zeros(rows, dtype=int)
         self.count = np.ones(rows, dtype=int)  # of the starts that lead here
-        k = lower.shape[1]
         # the number of equalities is known from the first model
-        none = np.zeros((rows, 0))
-        self.model = evaluate(self.going, self.x, none, np.zeros((rows, k)), self.width(self.going))
-        self.of_c, self.of_v = np.zeros((rows, self.model.c.shape[1])), np.zeros((rows, k))
+        self.of_c, self.of_v = np.zeros((rows, 0)), np.zeros((rows, k))
+        self.model = self.evaluate(self.going, self.x, self.of_c, self.of_v, self.width(self.going))
+        self.of_c = np.zeros(self.model.c.shape)
         self.f, self.violation = self.model.f.copy(), self._violation(self.going, self.model)
         self.funnel = np.maximum(0.1, 1.1 * self.violation)
-        self.radius = np.full(rows, reach)
+        self.radius = np.full(rows, self.reach)
         self.mark, self.marked = self.f.copy(), np.zeros(rows, dtype=int)
 
     def width(self, rows: Index) -> Array:

@@ -51,7 +51,12 @@ class Stack:
         self.unknowns = self.size + (ask.least is not None)
         self.equalities = one.scale.size if ask.at_rest else 0
         self.plants = len(one.errors)
-        self.tips = [part for name, part in one.parts if name == "deflection"]
+        self._values = one.parts[-1][1].stop if one.parts else 0
+        tips = [np.arange(self._values)[part] for name, part in one.parts if name == "deflection"]
+        # which plant's which limited value is bounded: all of the first, of others the deflection
+        chosen = [np.arange(self._values), *tips * (self.plants - 1)]
+        self._value = np.concatenate(chosen)
+        self._plant = np.repeat(np.arange(len(chosen)), [len(of) for of in chosen])
         self.weights = np.array([_weights(*pair) for pair in zip(programs, asks, strict=True)])
         self._move = np.array([program.task.move for program in programs])
         self._errors = np.array([program.errors for program in programs])
@@ -81,18 +86,17 @@ class Stack:
 
     def _set_bounds(self, programs: Sequence[Program], asks: Sequence[Ask]) -> None:
         both, parts = list(zip(programs, asks, strict=True)), self.quantities
-        total = parts[-1][1].stop if parts else 0
-        self._scales, limits = np.ones((len(both), total)), np.full((len(both), total), np.inf)
+        scales, limits = np.ones((2, len(both), self._values))
         for row, (program, ask) in enumerate(both):
             for name, part in parts:
-                self._scales[row, part] = scale = program.scale_of(name)
+                scales[row, part] = scale = program.scale_of(name)
                 limits[row, part] = ask.limits.get(name, np.inf) / scale
+        self._scales = scales[:, self._value]
         first, left = self.plants * self._rests.shape[2], np.zeros(len(both))
         if first:
             left = [a.limits.get(RESIDUAL, np.inf) / p.scale_of(RESIDUAL) for p, a in both]
         of_rest = np.repeat(np.array(left)[:, None], first, axis=1)
-        others = [limits[:, part] for _ in range(1, self.plants) for part in self.tips]
-        upper = np.concatenate([of_rest, limits, *others], axis=1)
+        upper = np.concatenate([of_rest, limits[:, self._value]], axis=1)
         lower = -upper
         self.bounded = {RESIDUAL: slice(0, first)} if first else {}
         for name, part in parts:
@@ -159,22 +163,17 @@ class Stack:
         if self.at_rest:
             c, by_c = arrival[:, 0] / scale, by_arrival[:, 0] / scale[:, :, None]
         rests = self._rests[rows]
-        v = [np.einsum("rpms,rps->rpm", rests, arrival).reshape(count, -1)]
-        by_v = [(rests @ by_arrival).reshape(count, -1, self.size)]
-        v.append(found.limited[:, 0] / scales)
-        by_v.append((found.by_limited[:, 0] / scales[:, :, None]) @ axes)
-        for plant in range(1, self.plants):
-            for part in self.tips:
-                v.append(found.limited[:, plant, part] / scales[:, part])
-                by_part = found.by_limited[:, plant, part] / scales[:, part, None]
-                by_v.append(by_part @ axes)
+        of_rest = np.einsum("rpms,rps->rpm", rests, arrival).reshape(count, -1)
+        by_rest = (rests @ by_arrival).reshape(count, -1, self.size)
+        limited = found.limited[:, self._plant, self._value] / scales
+        by_limited = found.by_limited[:, self._plant, self._value] / scales[:, :, None] @ axes
         return Model(
             f=of_energy * found.energy[:, 0],
             gradient=of_energy[:, None] * (found.gradient[:, 0] @ axes),
             c=c,
             by_c=by_c,
-            v=np.concatenate(v, axis=1),
-            by_v=np.concatenate(by_v, axis=1),
+            v=np.concatenate([of_rest, limited], axis=1),
+            by_v=np.concatenate([by_rest, by_limited], axis=1),
             hessian=axes.T @ found.curvature.sum(axis=1) @ axes,
         )
 
@@ -212,17 +211,11 @@ class Stack:
         own = self._peak.size
         of_v, above = of_v[:, :own].copy(), of_v[:, own : own + self._peak.sum()]
         of_v[:, self._peak] += above
-        first, total = plants * self._rests.shape[2], self._scales.shape[1]
+        first = plants * self._rests.shape[2]
         of_rest = of_v[:, :first].reshape(count, plants, -1)
         of_arrival += np.einsum("rpm,rpms->rps", of_rest, self._rests[rows])
-        of_limited = np.zeros((count, plants, total))
-        of_limited[:, 0] = of_v[:, first : first + total] / self._scales[rows]
-        at = first + total
-        for plant in range(1, plants):
-            for part in self.tips:
-                then = at + part.stop - part.start
-                of_limited[:, plant, part] = of_v[:, at:then] / self._scales[rows, part]
-                at = then
+        of_limited = np.zeros((count, plants, self._values))
+        of_limited[:, self._plant, self._value] = of_v[:, first:] / self._scales[rows]
         return of_arrival, of_limited
 
 

@@ -18,6 +18,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.joint_motion import Modes
 
 NODES = 3
 
@@ -177,9 +178,7 @@ class Step:
         rows = zip(constant, self.response, strict=True)
         return replace(self, response=[[force, *row[1:]] for force, row in rows])
 
-    def accelerations(
-        self, W: Sequence[Expression], dW: Sequence[Expression]
-    ) -> list[list[Expression]]:
+    def accelerations(self, W: Modes, dW: Modes) -> list[list[Expression]]:
         """W'' at the nodes for the state before the step: a list over nodes of lists over modes."""
         state = [*W, *dW]
         flat = [
@@ -188,9 +187,7 @@ class Step:
         ]
         return [flat[j * self.modes : (j + 1) * self.modes] for j in range(NODES)]
 
-    def end(
-        self, W: Sequence[Expression], dW: Sequence[Expression], ddW: Sequence[Sequence[Expression]]
-    ) -> tuple[list[Expression], list[Expression]]:
+    def end(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> tuple[Modes, Modes]:
         """State after the step, from the state before it and W'' at its nodes."""
         h, modes = self.h, range(self.modes)
         return (
@@ -222,9 +219,7 @@ class Step:
         units = [[float(row == column) for row in range(size)] for column in range(size)]
         return after([0.0] * size, True), [after(unit, False) for unit in units]
 
-    def nodes(
-        self, W: Sequence[Expression], dW: Sequence[Expression], ddW: Sequence[Sequence[Expression]]
-    ) -> list[NodeState]:
+    def nodes(self, W: Modes, dW: Modes, ddW: Sequence[Modes]) -> list[NodeState]:
         """The modes at the nodes, from the state before the step and W'' at its nodes."""
         h, modes = self.h, range(self.modes)
         return [
@@ -282,9 +277,7 @@ def is_zero(entry: Expression) -> bool:
     return isinstance(entry, float) and entry == 0.0
 
 
-def _combine(
-    weights: Sequence[float], ddW: Sequence[Sequence[Expression]], mode: int
-) -> Expression:
+def _combine(weights: Sequence[float], ddW: Sequence[Modes], mode: int) -> Expression:
     return sum(weight * at_node[mode] for weight, at_node in zip(weights, ddW, strict=True))
 
 

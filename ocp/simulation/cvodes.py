@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models.joint_motion import Modes
 from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.threads import silent_errors
@@ -75,22 +76,7 @@ class Trajectory:
     def from_outputs(
         cls, plant: Plant, time: NDArray[np.float64], outputs: NDArray[np.float64]
     ) -> Trajectory:
-        """Name the rows of `outputs_of`.
-
-        Parameters
-        ----------
-        plant : Plant
-            What moves.
-        time : ndarray, shape (samples,)
-            Times [s].
-        outputs : ndarray, shape (4 + modes + tips + 1, samples)
-            Values of `outputs_of` at these times.
-
-        Returns
-        -------
-        Trajectory
-            The samples.
-        """
+        """Name the rows of `outputs_of`, whose columns are samples at these times [s]."""
         rows, m = outputs.T.copy(), 4 + plant.modes
         return cls(
             time=time.copy(),
@@ -125,9 +111,7 @@ def rates_of(plant: Plant, joint: JointMotion, states: Expression) -> Expression
     return ca.vertcat(*dW, *ddW)
 
 
-def _modes(
-    plant: Plant, joint: JointMotion, states: Expression
-) -> tuple[Sequence[Expression], Sequence[Expression], Sequence[Expression]]:
+def _modes(plant: Plant, joint: JointMotion, states: Expression) -> tuple[Modes, Modes, Modes]:
     rows = ca.vertsplit(states)
     W, dW = rows[: plant.modes], rows[plant.modes :]
     return W, dW, plant.modal_accelerations(joint, W, dW)

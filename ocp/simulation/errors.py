@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -13,7 +12,8 @@ import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.contract import outputs_of
-from quietarm.ocp.base.checks import positive
+from quietarm.models.joint_motion import Modes
+from quietarm.ocp.base.checks import finite, positive
 from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.base.names import has_no
 from quietarm.ocp.simulation.collocation import modal_system
@@ -42,9 +42,7 @@ class ScaledModes(Plant):
         for name in ("name", "modes", "small_deflection"):
             object.__setattr__(self, name, getattr(self.plant, name))
 
-    def modal_accelerations(
-        self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]
-    ) -> Sequence[Expression]:
+    def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """The plant's own, and what its other stiffness and damping add [m/s^2]."""
         resting, modes = modal_system(self.plant, JointMotion(joint.angle, 0.0, 0.0)), range(len(W))
         less_stiff = 1 - self.frequency * self.frequency
@@ -56,17 +54,11 @@ class ScaledModes(Plant):
             for i, assumed in enumerate(self.plant.modal_accelerations(joint, W, dW))
         ]
 
-    def torque(
-        self,
-        joint: JointMotion,
-        W: Sequence[Expression],
-        dW: Sequence[Expression],
-        ddW: Sequence[Expression],
-    ) -> Expression:
+    def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
         """Joint torque by the plant's own equation [N m]."""
         return self.plant.torque(joint, W, dW, ddW)
 
-    def tip_displacements(self, W: Sequence[Expression]) -> Sequence[Expression]:
+    def tip_displacements(self, W: Modes) -> Sequence[Expression]:
         """Those of the plant [m]."""
         return self.plant.tip_displacements(W)
 
@@ -95,16 +87,9 @@ def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     if not errors:
         return plant
     refuse_unknown(plant, errors)
-    for name, least in ((FREQUENCY, np.nextafter(-1.0, 0.0)), (DAMPING, -1.0)):
-        error = errors.get(name, 0.0)
-        if not isinstance(error, Real):
-            continue
-        if not math.isfinite(error):
-            raise ValueError(f"an error of the {name} is not finite: {error}; give a number")
-        if error < least:
-            becomes = "0 or negative" if name == FREQUENCY else "negative"
-            most = "more than -1" if name == FREQUENCY else "-1 or more"
-            raise ValueError(f"an error of {error} makes the {name} {becomes}; give {most}")
+    for name in _OF_MODES:
+        if isinstance(error := errors.get(name, 0.0), Real):
+            _refuse_beyond(name, finite(f"an error of the {name}", error))
     values = {
         name: getattr(plant, name) * (1 + error)
         for name, error in errors.items()
@@ -137,13 +122,7 @@ def checked_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float
 def _checked_range(plant: Plant, name: str, size: float) -> float:
     refuse_unknown(plant, [name])
     size = positive(f"range of {name}", size)
-    most = 1.0 if name == DAMPING else np.nextafter(1.0, 0.0)
-    if size > most:
-        becomes = "negative" if size > 1 else "0"
-        less = "100 % or less" if name == DAMPING else "less than 100 %"
-        raise ValueError(
-            f"an error of {100 * size:g} % makes the {name} {becomes}; give {less}, as 0.1 for 10 %"
-        )
+    _refuse_beyond(name, -size)
     if name not in _OF_MODES and getattr(plant, name) == 0:
         raise ValueError(
             f"parameter {name} of {plant.name} is 0: a share of it is no error; leave it out"
@@ -156,6 +135,17 @@ def _checked_range(plant: Plant, name: str, size: float) -> float:
             raise ValueError(f"with {name} {100 * size:g} % {side}, {problem}") from None
         _check_symbols(plant, name, error)
     return size
+
+
+def _refuse_beyond(name: str, error: float) -> None:
+    """Refuse an error that turns a sign, or leaves nothing of anything but the damping."""
+    if error < -1 or (error == -1 and name != DAMPING):
+        becomes = "negative" if error < -1 else "0"
+        least = "100 % or less" if name == DAMPING else "less than 100 %"
+        raise ValueError(
+            f"an error of {100 * error:g} % makes the {name} {becomes}; give {least}, as 0.1 for "
+            "10 %"
+        )
 
 
 def refuse_unknown(plant: Plant, names: Iterable[str]) -> None:
@@ -172,9 +162,9 @@ def _check_symbols(plant: Plant, name: str, error: float) -> None:
         return
     value, symbol = getattr(plant, name) * (1 + error), ca.SX.sym(name)
     motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 3 * plant.modes).tolist()
-    expressions = outputs_of(_with_symbols(plant, {name: symbol}), motion).all
+    expressions = outputs_of(_with_symbols(plant, {name: symbol}), motion)
     found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
-    anew = outputs_of(replace(plant, **{name: value}), motion).all
+    anew = outputs_of(replace(plant, **{name: value}), motion)
     if not np.allclose(found, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):
         raise ValueError(
             f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "

@@ -36,15 +36,6 @@ def resolved_energy(
     return ca.sum2(h * _parted_energy(c, cubic, quartic, _breaks(c)))
 
 
-def two_samples() -> NDArray[np.float64]:
-    """What the quadratic through a step's nodes gives at the two Gauss nodes, shape (2, NODES).
-
-    Each of the two samples counts half in the mean over the step.
-    """
-    x = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
-    return x[:, None] ** np.arange(NODES) @ np.array(_TO_QUADRATIC)
-
-
 def _quadratic(power: Sequence[Expression]) -> list[Expression]:
     """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
     return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]
@@ -188,23 +179,9 @@ class Motion(WithPeaks):
     ) -> Motion:
         """Take the peaks from samples during the move.
 
-        Parameters
-        ----------
-        task : PointToPoint
-            The move.
-        joint : JointMotion of ndarray, shape (samples,)
-            How the joint moves; its jerk is None where the acceleration jumps.
-        tips : ndarray, shape (samples, tips)
-            Tip displacements [m].
-        torque : ndarray, shape (samples,)
-            Joint torque [N m].
-        residual, energy, net_work : float
-            As in the attributes.
-
-        Returns
-        -------
-        Motion
-            The figures.
+        Every entry of the joint, and the torque [N m], has shape (samples,), the tips [m] (samples,
+        tips). The joint's jerk is None where the acceleration jumps. The rest is as in the
+        attributes.
         """
         past_target = (joint.angle - task.target) * np.sign(task.span)
         of = {q.peak: q.of(joint, list(tips.T), torque) for q in QUANTITIES.values()}

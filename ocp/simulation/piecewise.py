@@ -6,18 +6,14 @@ A profile is one piece; a free motion has one for every interval of its grid.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models import Expression, JointMotion
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task.point_to_point import PointToPoint
-
-_STRANGE = 100.0
-"""So many times its default a parameter is suspected, and a coefficient from this on."""
-
 
 Law = Callable[..., JointMotion]
 """How the joint moves on a piece, by what it is given there and the fraction of the piece.
@@ -78,7 +74,8 @@ class PiecewiseMotion:
             np.array([[*checked, *task.move]]).T,
             True,
             not (profile.sharp or profile.breaks(task.duration)),
-            _suspect(task.plant, checked),
+            "; is a coefficient or a parameter of the plant far out of scale? (the largest "
+            f"coefficient is {max(map(abs, checked), default=0.0):g})",
         )
 
     @classmethod
@@ -92,27 +89,3 @@ class PiecewiseMotion:
             False,
             f", whose largest acceleration is {largest:g} rad/s^2; set an acceleration limit",
         )
-
-
-def _suspect(plant: Plant, coefficients: Sequence[float]) -> str:
-    """What may make a motion too fast for CVODES: a parameter, or the coefficients."""
-    own = plant.parts[0]
-    strange = {
-        entry.name: (value, entry.default)
-        for entry in fields(own)
-        if isinstance(entry.default, float)  # else it is no parameter, or one of any size
-        if abs(value := getattr(own, entry.name)) > _STRANGE * abs(entry.default)
-    }
-    if strange:
-        name, (value, usual) = max(strange.items(), key=lambda entry: abs(entry[1][0]))
-        return f"; is {name} far out of scale? (it is {value:g}, by default {usual:g})"
-    largest = max(map(abs, coefficients), default=0.0)
-    if largest < _STRANGE:
-        return (
-            "; is a number in the plant far out of scale while the joint moves? (the largest "
-            f"coefficient is only {largest:g})"
-        )
-    return (
-        f"; are the coefficients far out of scale? (largest is {largest:g}); give smaller ones, a "
-        "bound or fewer terms"
-    )

@@ -137,7 +137,8 @@ def _residual_matrix(
 ) -> NDArray[np.float64]:
     modes = plant.modes
     one = step(plant, [JointMotion(target, 0.0, 0.0)] * NODES, window / (samples - 1))
-    transition = _numbers(one.transition()[1]).T
+    columns = one.transition()[1]
+    transition = np.array([[float(ca.DM(x)) for x in column] for column in columns]).T
     tip_of_state = np.zeros((plant.tips, 2 * modes))
     for mode in range(modes):
         unit = [float(other == mode) for other in range(modes)]
@@ -202,8 +203,3 @@ def _hull(points: NDArray[np.float64]) -> list[int]:
 
 def _left_turn(a: Sequence[float], b: Sequence[float], c: Sequence[float]) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _numbers(entries: list[list[float]]) -> NDArray[np.float64]:
-    """Nested casadi or Python numbers as an array."""
-    return np.array([[float(ca.DM(entry)) for entry in row] for row in entries])

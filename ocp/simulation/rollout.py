@@ -111,9 +111,10 @@ def symbolic_rollout(
     times, length = node_times(steps, candidates)
     joints = [profile.motion(coefficients, at, *move) for at in times]
     if jerk:
+        ends = [end_to_end(at, steps) for at in times]
+        of_jerk = [profile.motion(coefficients, at, *move, jerk=True) for at in ends]
         joints = [
-            joint._replace(jerk=_jerk(profile, coefficients, at, move, steps))
-            for joint, at in zip(joints, times, strict=True)
+            joint._replace(jerk=there.jerk) for joint, there in zip(joints, of_jerk, strict=True)
         ]
     return rollout_along(plant, joints, move[2] * length)
 
@@ -137,19 +138,6 @@ def rollout_along(plant: Plant, joints: list[JointMotion], h: Expression) -> Sym
     return SymbolicRollout(joints, states, torque, arrival, h)
 
 
-def _jerk(
-    profile: JointProfile,
-    coefficients: Sequence[Expression],
-    times: Expression,
-    move: Sequence[Expression],
-    steps: int,
-) -> Expression:
-    """The jerk that counts for the nodes at these fractions of the duration."""
-    start, target, duration = move
-    at = end_to_end(times, steps)
-    return profile.motion(coefficients, at, start, target, duration, jerk=True).jerk
-
-
 def march(
     constant: Sequence[Expression],
     columns: Sequence[Sequence[Expression]],
@@ -161,8 +149,6 @@ def march(
     """
     rows, steps = shape
     size = len(constant)
-    if size > 2 and _apart(columns):
-        return _march_apart(constant, columns, shape)
     offsets = [_by_step(row, steps) for row in constant]
     by_row = [
         {c: _by_step(column[row], steps) for c, column in enumerate(columns)
@@ -180,58 +166,6 @@ def march(
         ]
     after = [ca.horzcat(*entry) for entry in before]
     return after[: size // 2], after[size // 2 :], ca.horzcat(*state)
-
-
-def _apart(columns: Sequence[Sequence[Expression]]) -> bool:
-    """Whether no mode acts on another."""
-    size, modes = len(columns), len(columns) // 2
-    return all(
-        is_zero(columns[c][row])
-        for c in range(size)
-        for row in range(size)
-        if c % modes != row % modes
-    )
-
-
-def _march_apart(
-    constant: Sequence[Expression],
-    columns: Sequence[Sequence[Expression]],
-    shape: tuple[int, int],
-) -> tuple[list[Expression], list[Expression], Expression]:
-    """As `march` of modes that do not act on each other: at each step they stand below each other.
-
-    That is a step of one mode with more rows, built that much sooner.
-    """
-    (rows, steps), modes = shape, len(constant) // 2
-
-    def below(entries: Sequence[Expression]) -> list[Expression]:
-        by_step = [_by_step(entry, steps) for entry in entries]
-        return [
-            ca.vertcat(*(x if x.shape[0] == rows else ca.repmat(x, rows, 1) for x in at))
-            for at in zip(*by_step, strict=True)
-        ]
-
-    of_W, of_dW = (below(constant[part : part + modes]) for part in (0, modes))
-    gains = [
-        [below([columns[c + i][row + i] for i in range(modes)]) for c in (0, modes)]
-        for row in (0, modes)
-    ]
-    W = dW = ca.DM.zeros(rows * modes, 1)
-    before: list[list[Expression]] = [[], []]
-    for k in range(steps):
-        before[0].append(W)
-        before[1].append(dW)
-        W, dW = (
-            offset[k] + gain[0][k] * W + gain[1][k] * dW
-            for offset, gain in zip((of_W, of_dW), gains, strict=True)
-        )
-    halves = []
-    for states, last in zip(before, (W, dW), strict=True):
-        apart = zip(*(ca.vertsplit(state, rows) for state in [*states, last]), strict=True)
-        halves.append([list(one) for one in apart])
-    arrival = ca.horzcat(*(one[-1] for half in halves for one in half))
-    W_before, dW_before = ([ca.horzcat(*one[:-1]) for one in half] for half in halves)
-    return W_before, dW_before, arrival
 
 
 def _by_step(entry: Expression, steps: int) -> list[Expression]:

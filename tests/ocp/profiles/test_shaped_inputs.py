@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from quietarm.ocp.profiles.units import SHARPEST
+from quietarm.ocp.profiles.networks import SHARPEST
 from scipy.interpolate import BSpline
 
 import quietarm as qa

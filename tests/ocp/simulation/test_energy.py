@@ -13,7 +13,6 @@ from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     energy_derivatives,
     resolved_energy,
-    two_samples,
 )
 from quietarm.ocp.task.quantities import QUANTITIES
 
@@ -40,15 +39,6 @@ QUADRATICS = {
     "two zeros": (X - 1 / 4) * (X - 3 / 4),
     "two zeros, near the ends": -5 * (X - 0.02) * (X - 0.99),
 }
-
-
-@pytest.mark.parametrize("name", QUADRATICS)
-def test_two_samples_of_a_quadratic_are_those_of_gausss_two_nodes(name):
-    quadratic = QUADRATICS[name]
-    nodes, weights = np.polynomial.legendre.leggauss(2)  # on [-1, 1]
-    samples = two_samples() @ quadratic(NODE)
-    assert samples == pytest.approx(quadratic((nodes + 1) / 2), abs=1e-12)
-    assert samples @ weights / 2 == pytest.approx(quadratic.integ()(1.0), abs=1e-12)
 
 
 def _zeros(quadratic):

@@ -1,16 +1,20 @@
-"""The cycloid whose input is a weighted sum of units that have parameters of their own."""
+"""Cycloids whose input is a weighted sum of units with parameters of their own.
+
+Radial basis functions and hidden nodes, as this project reads the paper's comparators.
+"""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple
 
+import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression
-from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
+from quietarm.ocp.profiles.cycloid import Cycloid, Input, with_bump
 
 REACH = 1.25
 """At first the units lie in even cells of T between plus and minus this: the outermost have their
@@ -58,25 +62,10 @@ class CycloidOfUnits(Cycloid):
     default_bound: ClassVar[float | None] = 0.5
     sharp: ClassVar[bool] = True
     random_starts: ClassVar[int] = 4
+    constants: ClassVar[int] = 1
+    each: ClassVar[int] = 3
     sharpness: ClassVar[str]
     """What y is called in a message."""
-
-    @property
-    def size(self) -> int:
-        """How many coefficients the profile has: a constant, and three for each unit."""
-        return 1 + 3 * self.terms
-
-    @classmethod
-    def of_size(cls, size: int) -> Self:
-        """The family's member that has so many coefficients; ValueError where none has."""
-        terms, rest = divmod(size - 1, 3)
-        if rest or not cls.least_terms <= terms <= cls.most_terms:
-            most = 1 + 3 * cls.most_terms
-            raise ValueError(
-                f"got {size} coefficients; {cls.name} has one and three for each unit: give 4, 7, "
-                f"10, ... or {most} numbers"
-            )
-        return cls(terms)
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
         """As every profile's; ValueError, too, where a unit is sharper than `SHARPEST`."""
@@ -96,9 +85,7 @@ class CycloidOfUnits(Cycloid):
 
     @staticmethod
     @abstractmethod
-    def unit(
-        x: Expression, y: Expression, T: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def unit(x: Expression, y: Expression, T: Expression) -> Input:
         """One unit g and its first two derivatives by T; finite for all x and y."""
 
     @property
@@ -121,9 +108,7 @@ class CycloidOfUnits(Cycloid):
         around = np.concatenate([weights, *(kind.spread for kind in self.ranges)])
         return np.maximum(lower, self.plain - around), np.minimum(upper, self.plain + around)
 
-    def input(
-        self, coefficients: Sequence[Expression], fraction: Expression
-    ) -> tuple[Expression, Expression, Expression]:
+    def input(self, coefficients: Sequence[Expression], fraction: Expression) -> Input:
         """U and its derivatives; the weights alone enter linearly."""
         n, T = self.terms, 2 * fraction - 1  # eq (7)
         constant, *weights = coefficients[: 1 + n]
@@ -138,3 +123,97 @@ class CycloidOfUnits(Cycloid):
 def side_by_side(units: int) -> NDArray[np.float64]:
     """Middles of even cells between -1 and 1, shape (units,)."""
     return (2 * np.arange(units) + 1 - units) / units
+
+
+_WIDEST, _SHARPEST = 0.3, 3.0
+"""Inverse widths: from nearly a parabola over the whole move to a sixth of it."""
+
+
+@dataclass(frozen=True)
+class CycloidGaussians(CycloidOfUnits):
+    """A cycloid whose input is a sum of Gaussians: ref. [24], as this project reads it.
+
+    U = t/TE + (1 - T^2) (w_0 + sum_j w_j exp(-(k_j (T - c_j))^2)), T = -1 + 2 t/TE. The
+    coefficients are w_0 to w_n, the centres c_1 to c_n, and the inverse widths k_1 to k_n, which
+    may be any number up to 200 either way, also zero. Every centre keeps to a cell of its own, so
+    that no two Gaussians can change places.
+
+    Parameters
+    ----------
+    terms : int
+        How many Gaussians, n, 1 to 32; the profile has 1 + 3 n coefficients.
+
+    Raises
+    ------
+    ValueError
+        When `terms` is not a whole number in that range.
+    """
+
+    name: ClassVar[str] = "cycloid-gaussians"
+    term: ClassVar[str] = "Gaussian"
+    sharpness: ClassVar[str] = "the inverse width of a Gaussian"
+    terms: int = 5
+
+    @property
+    def ranges(self) -> tuple[Range, Range]:
+        """Centres, then inverse widths."""
+        one = np.ones(self.terms)
+        middle, half = REACH * side_by_side(self.terms), REACH / self.terms * one
+        return (
+            Range(middle, half, middle - half, middle + half),
+            Range(2.0 * one, 0.25 * one, _WIDEST * one, _SHARPEST * one),
+        )
+
+    @staticmethod
+    def unit(x: Expression, y: Expression, T: Expression) -> Input:
+        """A Gaussian of centre x and inverse width y, and its derivatives."""
+        z = y * (T - x)
+        g = ca.exp(-z * z)
+        return g, -2 * y * z * g, y * y * (4 * z * z - 2) * g
+
+
+_STRAIGHTEST, _STEEPEST = 0.3, 4.0
+"""Gains: from nearly a straight line over the whole move to a step that takes a quarter of it."""
+_FIRST_GAIN = 1.5
+
+
+@dataclass(frozen=True)
+class CycloidNetwork(CycloidOfUnits):
+    """A cycloid whose input is a network of one hidden layer: ref. [23], as this project reads it.
+
+    U = t/TE + (1 - T^2) (v_0 + sum_j v_j tanh(b_j + k_j T)), T = -1 + 2 t/TE. The coefficients are
+    v_0 to v_n, the biases b_1 to b_n, and the gains k_1 to k_n. Gains are positive: a negative one
+    is the same as other signs of its weight and bias. They may be up to 200.
+
+    Parameters
+    ----------
+    terms : int
+        How many hidden nodes, n, 1 to 32; the profile has 1 + 3 n coefficients.
+
+    Raises
+    ------
+    ValueError
+        When `terms` is not a whole number in that range.
+    """
+
+    name: ClassVar[str] = "cycloid-network"
+    term: ClassVar[str] = "node"
+    sharpness: ClassVar[str] = "the gain of a hidden node"
+    terms: int = 5
+
+    @property
+    def ranges(self) -> tuple[Range, Range]:
+        """Biases, then gains."""
+        one = np.ones(self.terms)
+        biases = _FIRST_GAIN * REACH * side_by_side(self.terms)
+        return (
+            Range(biases, 0.5 * one, -_STEEPEST * one, _STEEPEST * one),
+            Range(_FIRST_GAIN * one, 0.5 * one, _STRAIGHTEST * one, _STEEPEST * one),
+        )
+
+    @staticmethod
+    def unit(x: Expression, y: Expression, T: Expression) -> Input:
+        """A hidden node of bias x and gain y, and its derivatives."""
+        g = ca.tanh(x + y * T)
+        slope = y * (1 - g * g)
+        return g, slope, -2 * y * g * slope
