@@ -12,7 +12,7 @@ from pages import COMMANDS, DOCS, NOTEBOOK, PAGES, README, ROOT, TWO_COMMANDS
 from PIL import Image
 from quietarm.ocp import evaluate_coefficients, plan_move
 from quietarm.studies.cli import quietarm
-from quietarm.studies.paper.printed import SINGLE_LINK_SIXTH
+from quietarm.studies.paper import SINGLE_LINK_SIXTH
 
 # The two commands
 

@@ -19,7 +19,7 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.robust import on_same_samples
 from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
-from quietarm.studies.paper.points import task_difference
+from quietarm.studies.paper import task_difference
 from quietarm.studies.registry.methods import Method, method_of
 
 FILL, MOST_FILL = 1000, 100_000

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import attrgetter
 
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.studies.comparison.measures import Comparison
@@ -11,6 +12,10 @@ from quietarm.studies.report.prose import told
 from quietarm.studies.report.table import Cell, Line, Table, table_of
 
 _ENERGY, _SHARE, _PERCENT, _COUNT, _MISS = "{:.5g}", "{:.4f}", "{:.2f}", "{:.0f}", "{:.2g}"
+
+
+_INDICATORS = ("hypervolume", "hypervolume_found", "igd_plus", "epsilon")
+_WORK = ("evaluations", "iterations", "seconds")
 
 
 def tables(comparison: Comparison) -> dict[str, Table]:
@@ -98,31 +103,19 @@ def _coverage(comparison: Comparison) -> Table:
 
 def runs_table(comparison: Comparison) -> Table:
     """Every run with all of its figures, for CSV."""
-    runs = [(group.label, run, run.front) for group in comparison.groups for run in group.runs]
-    columns: dict[str, Sequence[Cell]] = {
-        "name": [run.name for _, run, _ in runs],
-        "label": [label for label, _, _ in runs],
-        "method": [front.method for *_, front in runs],
-        "seed": [front.seed for *_, front in runs],
-        "bound": [front.settings.get("bound") for *_, front in runs],
-        "coefficients": [front.profile.size for *_, front in runs],
-        "points": [len(front.points) for *_, front in runs],
-    }
-    for figure in ("hypervolume", "hypervolume_found", "igd_plus", "epsilon"):
-        columns[figure] = [getattr(run, figure) for _, run, _ in runs]
-    for name, figure in (
-        ("energy_J", "energies"),
-        ("gap", "gaps"),
-        ("gap_between", "gaps_between"),
-    ):
-        for i, level in enumerate(comparison.levels):
-            columns[f"{name}_at_{1e3 * level:g}mm"] = [
-                getattr(run, figure)[i] for _, run, _ in runs
-            ]
-    for figure in ("evaluations", "iterations", "seconds"):
-        columns[figure] = [getattr(front, figure) for *_, front in runs]
-    columns["complete"] = ["yes" if front.complete else "no" for *_, front in runs]
-    return table_of("Runs", [(name, "", cells) for name, cells in columns.items()])
+    levels = [f"at_{1e3 * level:g}mm" for level in comparison.levels]
+    names = ["name", "label", "method", "seed", "bound", "coefficients", "points", *_INDICATORS]
+    names += [f"{name}_{at}" for name in ("energy_J", "gap", "gap_between") for at in levels]
+    rows: list[list[Cell]] = []
+    for group in comparison.groups:
+        for run in group.runs:
+            front = run.front
+            row = [run.name, group.label, front.method, front.seed, front.settings.get("bound")]
+            row += [front.profile.size, len(front.points), *attrgetter(*_INDICATORS)(run)]
+            row += [*run.energies, *run.gaps, *run.gaps_between, *attrgetter(*_WORK)(front)]
+            rows.append([*row, "yes" if front.complete else "no"])
+    cells = zip([*names, *_WORK, "complete"], zip(*rows, strict=True), strict=True)
+    return table_of("Runs", [(name, "", column) for name, column in cells])
 
 
 def how_to_read(comparison: Comparison) -> list[str]:

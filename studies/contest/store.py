@@ -18,7 +18,7 @@ from quietarm.ocp.base.ranges import CountFromOne, Positive
 from quietarm.studies.comparison.staircase import filled
 from quietarm.studies.contest.landscape import Landscape
 from quietarm.studies.contest.names import folder_of
-from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.paper import CONDITIONS
 
 _FILL = 10_000
 """Points of an exact front with the motions between them: its hypervolume is right to 1e-4."""

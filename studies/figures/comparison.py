@@ -24,7 +24,7 @@ from quietarm.studies.figures.axes import (
     new_figure,
 )
 from quietarm.studies.figures.looks import Look, look
-from quietarm.studies.paper.points import PaperPoint
+from quietarm.studies.paper import PaperPoint
 from quietarm.studies.registry.methods import EPSILON, NSGA2, VEPSO, WEIGHTED
 
 _NUMBERS = {

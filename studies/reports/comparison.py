@@ -11,7 +11,7 @@ from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.comparison.tables import how_to_read, runs_table, tables, units
 from quietarm.studies.display.words import title_of
-from quietarm.studies.paper.points import paper_points
+from quietarm.studies.paper import paper_points
 from quietarm.studies.report.document import Bullets, Document, Picture, Section
 from rich.console import Console
 

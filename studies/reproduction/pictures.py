@@ -14,7 +14,7 @@ from quietarm.studies.display.words import move_of, title_of
 from quietarm.studies.figures import BLUE, GREEN, PAPER_PANELS, RED, Line, motion_figure
 from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
 from quietarm.studies.figures.looks import COLOURS, ORANGE, PINK
-from quietarm.studies.paper.printed import CONDITIONS, EARLIER, Case
+from quietarm.studies.paper import CONDITIONS, EARLIER, Case
 from quietarm.studies.reproduction.recompute import Reproduction, RowResult
 from quietarm.studies.reproduction.systems import (
     CYCLOID,

@@ -37,8 +37,7 @@ from quietarm.ocp import (
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.ocp.robustness.measures import tolerated_residual
 from quietarm.ocp.simulation.errors import FREQUENCY
-from quietarm.studies.paper.points import residual_level
-from quietarm.studies.paper.printed import (
+from quietarm.studies.paper import (
     ARM_HALF,
     COEFFICIENTS,
     CONDITIONS,
@@ -50,6 +49,7 @@ from quietarm.studies.paper.printed import (
     SINGLE_LINK_SIXTH,
     Case,
     Row,
+    residual_level,
 )
 from quietarm.studies.registry.methods import Method
 from quietarm.studies.registry.profiles import OTHERS

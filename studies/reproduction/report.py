@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from quietarm.ocp import Plan
 from quietarm.studies.display.words import title_of
-from quietarm.studies.paper.printed import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH, Case
+from quietarm.studies.paper import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH, Case
 from quietarm.studies.report.document import (
     Block,
     Bullets,

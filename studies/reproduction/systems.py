@@ -25,8 +25,7 @@ from quietarm.ocp.simulation.errors import FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.studies.display.words import millimetres
-from quietarm.studies.paper.points import paper_plan, residual_level
-from quietarm.studies.paper.printed import PAPER_SEARCH, ROWS, Case
+from quietarm.studies.paper import PAPER_SEARCH, ROWS, Case, paper_plan, residual_level
 from quietarm.studies.registry.methods import Method
 from quietarm.studies.registry.profiles import OTHERS
 

@@ -39,8 +39,7 @@ from quietarm.ocp.base.checks import whole
 from quietarm.ocp.base.interrupts import note_interrupts
 from quietarm.studies.comparison.measures import Comparison, compare_fronts
 from quietarm.studies.display.words import title_of
-from quietarm.studies.paper.points import PaperPoint, paper_points
-from quietarm.studies.paper.printed import CONDITIONS, Case
+from quietarm.studies.paper import CONDITIONS, Case, PaperPoint, paper_points
 from quietarm.studies.registry.methods import METHODS, PAPERS, Kind, Method, methods_of
 
 FLOOR = "floor"

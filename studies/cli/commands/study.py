@@ -84,7 +84,7 @@ def study(
     from quietarm.studies.cli.ending import Together, finish
     from quietarm.studies.display.progress import progress
     from quietarm.studies.display.words import counted
-    from quietarm.studies.paper.printed import CONDITIONS, Case
+    from quietarm.studies.paper import CONDITIONS, Case
     from quietarm.studies.reading.saved import load_front
     from quietarm.studies.report.document import Bullets, Document
     from quietarm.studies.study.findings import case_findings, findings

@@ -20,8 +20,7 @@ from quietarm.studies.figures.comparison import (
     looks,
     panel_figure,
 )
-from quietarm.studies.paper.points import condition_of, paper_points
-from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_HALF_1_0
+from quietarm.studies.paper import ARM_HALF, SINGLE_LINK_HALF_1_0, condition_of, paper_points
 from quietarm.studies.report.files import table_in_markdown
 
 compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)

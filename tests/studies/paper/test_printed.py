@@ -1,4 +1,4 @@
-"""What `studies.paper.printed` says against the paper's tables, typed here afresh from its text.
+"""What `studies.paper` says against the paper's tables, typed here afresh from its text.
 
 Powers of ten stand as the paper prints them, so that this file can be read beside it.
 """
@@ -7,7 +7,7 @@ import math
 
 import pytest
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
-from quietarm.studies.paper.printed import COEFFICIENTS, MENDED, ROWS
+from quietarm.studies.paper import COEFFICIENTS, MENDED, ROWS
 
 PI = math.pi
 

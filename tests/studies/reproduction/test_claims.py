@@ -3,7 +3,7 @@
 import dataclasses
 
 import pytest
-from quietarm.studies.paper.printed import (
+from quietarm.studies.paper import (
     ARM_HALF,
     ARM_WHOLE,
     SINGLE_LINK_SIXTH,

@@ -5,7 +5,7 @@ import dataclasses
 import io
 
 import pytest
-from quietarm.studies.paper.printed import ARM_HALF, CONDITIONS, ROWS
+from quietarm.studies.paper import ARM_HALF, CONDITIONS, ROWS
 from quietarm.studies.report.files import table_in_markdown
 from quietarm.studies.reproduction.pictures import floor_dots
 from quietarm.studies.reproduction.tables import finding, floor_table, multiples

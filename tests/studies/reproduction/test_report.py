@@ -6,7 +6,7 @@ import re
 
 import pytest
 from quietarm.studies.figures import BLUE, GREEN, RED
-from quietarm.studies.paper.printed import (
+from quietarm.studies.paper import (
     ARM_HALF,
     SINGLE_LINK_SIXTH,
 )

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 from quietarm.ocp import CycloidPolynomial, plan_move
-from quietarm.studies.paper.printed import (
+from quietarm.studies.paper import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
     ARM_WHOLE,

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 from quietarm.ocp import evaluate_coefficients
-from quietarm.studies.paper.points import residual_level
-from quietarm.studies.paper.printed import (
+from quietarm.studies.paper import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
     ARM_WHOLE,
@@ -16,6 +15,7 @@ from quietarm.studies.paper.printed import (
     SINGLE_LINK_HALF_1_0,
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
+    residual_level,
 )
 from quietarm.studies.registry.methods import NSGA2, VEPSO
 from quietarm.studies.report.files import table_in_markdown

@@ -2,7 +2,7 @@
 
 import types
 
-from quietarm.studies.paper.printed import ARM_HALF, SINGLE_LINK_SIXTH, Case
+from quietarm.studies.paper import ARM_HALF, SINGLE_LINK_SIXTH, Case
 from quietarm.studies.study.work import StudySettings
 
 QUICK = StudySettings(terms=2, points=3, runs=2, population=12, generations=8)

@@ -3,7 +3,7 @@
 import pytest
 import quietarm.studies.study.work as study_module
 from quietarm.ocp import Front
-from quietarm.studies.paper.printed import CONDITIONS
+from quietarm.studies.paper import CONDITIONS
 from quietarm.studies.study.findings import case_findings, findings
 from quietarm.studies.study.page import _file_name, front_files
 from quietarm.studies.study.work import Study

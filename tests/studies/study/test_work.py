@@ -13,7 +13,7 @@ from quietarm.ocp import (
     SolverFailedError,
 )
 from quietarm.studies.comparison.measures import compare_fronts
-from quietarm.studies.paper.printed import Case
+from quietarm.studies.paper import Case
 from quietarm.studies.report.files import page as page_of
 from quietarm.studies.study.findings import case_findings
 from quietarm.studies.study.page import study_document

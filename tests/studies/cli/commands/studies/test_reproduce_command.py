@@ -10,7 +10,7 @@ import quietarm.studies.cli.commands.plan
 import quietarm.studies.reading.saved
 import quietarm.studies.reproduction.recompute
 import quietarm.studies.study.work
-from quietarm.studies.paper.printed import ROWS
+from quietarm.studies.paper import ROWS
 from quietarm.studies.report.files import document_files
 from quietarm.studies.reproduction.recompute import pieces_of_paper
 
