@@ -12,7 +12,7 @@ from math import isclose, pi
 from quietarm.metaheuristics import PAPER_BOX
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
-from quietarm.ocp import Plan, PointToPoint, UncertainPlant, evaluate_coefficients
+from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.base.checks import positive
 from quietarm.ocp.task.quantities import QUANTITIES
 from quietarm.studies.registry.methods import NSGA2, VEPSO
@@ -135,7 +135,7 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
             same = isclose(value, wanted, rel_tol=_SAME)
         if not same:
             words.append(f"{name} is {_words(value, unit)}, not {_words(wanted, unit)}")
-    if not words and _samples(one) != _samples(other):
+    if not words and one.plant.error_samples != other.plant.error_samples:
         words.append("its samples within the errors are others")
     return ", ".join(words)
 
@@ -144,8 +144,7 @@ def _quantities(task: PointToPoint) -> dict[str, tuple[float | None, str]]:
     table: dict[str, tuple[float | None, str]] = {
         f"plant parameter {name}": (value, "") for name, value in task.plant.parameters.items()
     }
-    if isinstance(task.plant, UncertainPlant):
-        table |= {f"error of {name}": (size, "") for name, size in task.plant.ranges.items()}
+    table |= {f"error of {name}": (size, "") for name, size in task.errors.items()}
     for name in ("start", "target"):
         table[name] = (getattr(task, name), "rad")
     for name in ("duration", "residual_window"):
@@ -153,10 +152,6 @@ def _quantities(task: PointToPoint) -> dict[str, tuple[float | None, str]]:
     for name, quantity in QUANTITIES.items():
         table[f"{name} limit"] = (getattr(task, quantity.limit), quantity.unit)
     return table
-
-
-def _samples(task: PointToPoint) -> tuple[tuple[float, ...], ...]:
-    return task.plant.samples if isinstance(task.plant, UncertainPlant) else ()
 
 
 def _words(value: float | None, unit: str) -> str:

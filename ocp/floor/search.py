@@ -19,7 +19,6 @@ from quietarm.ocp.plan.solver import plan_move
 from quietarm.ocp.plan.verification import refuse_passed, tightened
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.residual import residual_samples
 from quietarm.ocp.simulation.resimulation import Resimulation, resimulated
@@ -173,7 +172,7 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
             coefficients = profile.plain
         elif i == 1:
             with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
-                plan = plan_move(on_assumed(task), profile, starts=1)
+                plan = plan_move(task.nominal, profile, starts=1)
                 if not plan.complete:  # it kept the best of its starts and raised nothing
                     raise KeyboardInterrupt
                 coefficients = np.array(plan.coefficients)

@@ -13,7 +13,6 @@ from quietarm.ocp.front.sweep import Sweep
 from quietarm.ocp.plan.finer import EVERY, SAME, finer_values
 from quietarm.ocp.plan.verification import OF_A_PLAN, Care, Checked, verified
 from quietarm.ocp.program.solution import RESIDUAL, STILL, Solution
-from quietarm.ocp.robustness.uncertain import UncertainPlant
 from quietarm.ocp.simulation.cvodes import residual_of
 from quietarm.ocp.simulation.resimulation import resimulate
 
@@ -85,7 +84,7 @@ def _by_finer_rule(sweep: Sweep, found: Sequence[Solution]) -> dict[int, FrontPo
     also have to hold between the nodes.
     """
     task, profile = sweep.task, sweep.profile
-    if len(found) < EVERY or task.limits or isinstance(task.plant, UncertainPlant):
+    if len(found) < EVERY or task.limits or task.errors:
         return {}
     table = np.array([one.coefficients for one in found])
     values = finer_values([sweep.program] * len(table), table)

@@ -13,7 +13,6 @@ from quietarm.ocp.plan.feasibility import least_peaks
 from quietarm.ocp.plan.starts import from_starts
 from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS, verified
 from quietarm.ocp.program.solution import ENERGY, RESIDUAL, STILL, Solution
-from quietarm.ocp.robustness.uncertain import UncertainPlant, on_assumed
 
 _LESS_AND_LESS = (1.0, 0.1, 0.02, 2e-3)
 """Weights of the energy beside the residual, one solve after the other, on the way to the still end
@@ -51,7 +50,7 @@ def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
     The number of steps is raised until the independent integrator agrees with the still end.
     Where no motion arrives at rest, that end is the motion of least residual.
     """
-    if between and isinstance(sweep.task.plant, UncertainPlant):
+    if between and sweep.task.errors:
         return _of_uncertain(sweep)
     still = _at_rest(sweep)  # first: it settles the number of steps
     cheapest = _best(sweep, np.inf)
@@ -87,7 +86,7 @@ def _of_uncertain(sweep: Sweep) -> Ends:
     and leaves no rest between the samples, the second any energy. The still end is where less
     residual costs too much energy.
     """
-    alone = Sweep(on_assumed(sweep.task), sweep.profile, sweep.settings)
+    alone = Sweep(sweep.task.nominal, sweep.profile, sweep.settings)
     assumed = find_ends(alone)
     sweep.steps, sweep.iterations = alone.steps, sweep.iterations + alone.iterations
     guesses = [assumed.cheapest.coefficients, assumed.still.coefficients]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -13,7 +13,7 @@ from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.front.sweep import Sweep
-from quietarm.ocp.robustness.uncertain import UncertainPlant
+from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.robustness.worst import peaks_between, worst_at
 
 _SOLVED, _STATED = 0.02, 1e-3
@@ -47,7 +47,7 @@ def held_between(sweep: Sweep, found: Sequence[Found]) -> tuple[list[Found], flo
     each from where it is. A point that was not found is tried again from its neighbours. In the end
     peaks become samples until every point's residual is what it leaves at worst.
     """
-    if not isinstance(sweep.task.plant, UncertainPlant):
+    if not sweep.task.errors:
         return list(found), None, True
     kept = list(found)
     try:
@@ -180,22 +180,20 @@ def _with_sample(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> Fr
 
 def on_same_samples(fronts: Sequence[Front]) -> list[Front]:
     """Fronts of one uncertain plant with their residuals at the samples of all of them."""
-    samples: dict[UncertainPlant, dict[tuple[float, ...], None]] = {}
-    for front in fronts:
-        if isinstance(front.task.plant, UncertainPlant):
-            plant = front.task.plant
-            samples.setdefault(replace(plant, samples=()), {}).update(dict.fromkeys(plant.samples))
-    return [_with_samples(front, samples) for front in fronts]
+    plants = [(front.task.plant.nominal, *front.task.errors.items()) for front in fronts]
+    samples: dict[Hashable, dict[tuple[float, ...], None]] = {}
+    for plant, front in zip(plants, fronts, strict=True):
+        samples.setdefault(plant, {}).update(dict.fromkeys(front.task.plant.error_samples))
+    return [
+        _at_samples(front, [*samples[plant]]) for plant, front in zip(plants, fronts, strict=True)
+    ]
 
 
-def _with_samples(
-    front: Front, samples: Mapping[UncertainPlant, Mapping[tuple[float, ...], None]]
-) -> Front:
-    if not isinstance(front.task.plant, UncertainPlant) or not front.points:
+def _at_samples(front: Front, samples: Sequence[tuple[float, ...]]) -> Front:
+    if not front.task.errors or not front.points:
         return front
-    of_all = tuple(samples[replace(front.task.plant, samples=())])
-    task = replace(front.task, plant=replace(front.task.plant, samples=of_all))
-    new = [one for one in of_all if one not in front.task.plant.samples]
+    task = with_samples(front.task, samples)
+    new = [one for one in samples if one not in front.task.plant.error_samples]
     left = [
         max([p.residual, *(worst_at(task, front.profile, p.coefficients, e).residual for e in new)])
         for p in front.points

@@ -14,7 +14,7 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
 from quietarm.ocp.program.solving import Row, solve
-from quietarm.ocp.robustness.uncertain import uncertain_plant, with_samples
+from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.task.point_to_point import PointToPoint
 
 Guess = NDArray[np.float64]
@@ -72,17 +72,17 @@ class Sweep:
     @property
     def ranges(self) -> list[float]:
         """The largest errors of an uncertain plant."""
-        return list(uncertain_plant(self.task.plant).ranges.values())
+        return list(self.task.errors.values())
 
     @property
     def samples(self) -> list[tuple[float, ...]]:
         """The errors at which its residual counts; the first sample has none."""
-        return [(0.0,) * len(self.ranges), *uncertain_plant(self.task.plant).samples]
+        return [(0.0,) * len(self.ranges), *self.task.plant.error_samples]
 
     def add_samples(self, more: Sequence[Sequence[float]]) -> None:
         """Let the residual of an uncertain plant count at more errors."""
         if more:
-            self.take(with_samples(self.task, more))
+            self.take(with_samples(self.task, [*self.task.plant.error_samples, *more]))
 
     def take(self, task: PointToPoint) -> None:
         """Go on with another task."""

@@ -21,7 +21,6 @@ from quietarm.ocp.program.batch import Values
 from quietarm.ocp.program.program import Program, programs_of
 from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
 from quietarm.ocp.program.solving import STOPPED, Row, Solved, Solver, solve
-from quietarm.ocp.robustness.uncertain import UncertainPlant
 from quietarm.ocp.simulation.residual import residuals_at_rest, state_matrices
 from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.task.point_to_point import PointToPoint
@@ -282,7 +281,7 @@ def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
     if not tasks:
         raise ValueError("no moves are given; give one task or more")
     for i, task in enumerate(tasks, start=1):
-        if isinstance(task.plant, UncertainPlant):
+        if task.errors:
             raise ValueError(f"the plant of move {i} is uncertain; plan such moves by plan_move")
         if task.plant != tasks[0].plant or set(task.limits) != set(tasks[0].limits):
             raise ValueError(

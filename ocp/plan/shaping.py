@@ -8,7 +8,6 @@ import numpy as np
 from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
-from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.ocp.simulation.residual import vibrations
 from quietarm.ocp.task.point_to_point import PointToPoint
 
@@ -46,7 +45,7 @@ def shaped_cycloid(
     """
     if at not in ("target", "average"):
         raise ValueError(f"at is {at!r}; give 'target' or 'average'")
-    task = on_assumed(task)
+    task = task.nominal
     angles = [task.target] if at == "target" else _along(task)
     modes = [vibrations(task.plant, angle) for angle in angles]
     if not modes[0] or len({len(each) for each in modes}) > 1:

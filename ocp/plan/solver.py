@@ -22,7 +22,6 @@ from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, Ask
 from quietarm.ocp.program.solving import Solver
-from quietarm.ocp.robustness.uncertain import UncertainPlant
 from quietarm.ocp.task.point_to_point import PointToPoint
 
 
@@ -97,7 +96,7 @@ def plan_move(
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
     settings = replace(settings, residual_limit=limit_of(task, residual_limit))
-    if isinstance(task.plant, UncertainPlant):
+    if task.errors:
         return robust_plan(task, profile, settings, plan_from)
     return plan_at_samples(task, profile, settings)
 

@@ -12,7 +12,6 @@ from quietarm.ocp.base.errors import SolverFailedError
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Solution
 from quietarm.ocp.program.solving import Row, Solver, solve
-from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.ocp.simulation.objective import Motion, WithPeaks
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
@@ -118,7 +117,7 @@ class Checked(WithPeaks):
     """What CVODES makes of a solution, on all plants whose residual counts."""
 
     def __init__(self, program: Program, found: Solution) -> None:
-        task = on_assumed(program.task)
+        task = program.task.nominal
         joint = PiecewiseMotion.of_profile(task, program.profile, found.coefficients)
         names = program.batch.kind.errors
         wrong = [tuple(zip(names, errors.tolist(), strict=True)) for errors in program.errors[1:]]

@@ -12,7 +12,6 @@ from quietarm.ocp.base.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.batch import Derivatives, batch
 from quietarm.ocp.program.solution import ENERGY, RESIDUAL
-from quietarm.ocp.robustness.uncertain import UncertainPlant, assumed_plant
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.task.point_to_point import PointToPoint
@@ -44,10 +43,8 @@ class Program:
 
     def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
         self.task, self.profile, self.steps = task, profile, steps
-        self.plant, names, samples = assumed_plant(task.plant), (), [()]
-        if isinstance(task.plant, UncertainPlant):
-            names = tuple(task.plant.ranges)
-            samples = [(0.0,) * len(names), *task.plant.samples]
+        self.plant, names = task.plant.nominal, tuple(task.errors)
+        samples = [(0.0,) * len(names), *task.plant.error_samples]
         self.errors = np.array(samples, dtype=float).reshape(len(samples), len(names))
         self.batch = batch(self.plant, profile, steps, tuple(task.limits), names)
         self.parts = self.batch.parts

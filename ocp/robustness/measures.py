@@ -12,7 +12,6 @@ from quietarm.ocp.base.threads import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.robustness.population import ErrorPopulation, Figures
-from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.resimulation import resimulate
@@ -138,7 +137,7 @@ def quiet_residual(task: PointToPoint) -> float:
 
 
 def _plain(task: PointToPoint) -> Motion:
-    return resimulate(on_assumed(task), CycloidPolynomial(0), [])
+    return resimulate(task.nominal, CycloidPolynomial(0), [])
 
 
 @one_at_a_time
@@ -183,7 +182,7 @@ def evaluate_robustness(
         When there is no such parameter, a number is out of range, a plant within the ranges breaks
         its contract, or the coefficients or the duration do not fit the profile.
     """
-    task = on_assumed(task)
+    task = task.nominal
     ranges = checked_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)

@@ -69,6 +69,21 @@ class UncertainPlant(Plant):
         return hash((self.assumed, tuple(self.ranges.items()), self.samples))
 
     @property
+    def nominal(self) -> Plant:
+        """The assumed plant."""
+        return self.assumed
+
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """The ranges."""
+        return self.ranges
+
+    @property
+    def error_samples(self) -> tuple[tuple[float, ...], ...]:
+        """The samples."""
+        return self.samples
+
+    @property
     def parts(self) -> tuple[Plant, ...]:
         """The assumed plant and every sample."""
         return _parts(self.assumed, tuple(self.ranges), self.samples)
@@ -133,32 +148,13 @@ def _sample(errors: Sequence[float], ranges: Mapping[str, float]) -> tuple[float
     return tuple(map(float, errors))
 
 
-def assumed_plant(plant: Plant) -> Plant:
-    """The plant without errors: an uncertain plant's assumed one, else itself."""
-    return plant.assumed if isinstance(plant, UncertainPlant) else plant
-
-
-def on_assumed(task: PointToPoint) -> PointToPoint:
-    """The move of the plant without errors."""
-    plant = assumed_plant(task.plant)
-    return task if plant is task.plant else replace(task, plant=plant)
-
-
-def uncertain_plant(plant: Plant) -> UncertainPlant:
-    """The plant itself; ValueError where it is not uncertain."""
-    if not isinstance(plant, UncertainPlant):
-        raise ValueError(f"plant {plant.name!r} is not uncertain; give an UncertainPlant")
-    return plant
+def with_samples(task: PointToPoint, samples: Sequence[Sequence[float]]) -> PointToPoint:
+    """The move with these samples of its uncertain plant."""
+    plant: Any = task.plant
+    return replace(task, plant=replace(plant, samples=tuple(map(tuple, samples))))
 
 
 def with_halves(task: PointToPoint) -> PointToPoint:
     """The move with a sample more half way from the assumed plant to each there is."""
-    plant = uncertain_plant(task.plant)
-    return with_samples(task, [[error / 2 for error in sample] for sample in plant.samples])
-
-
-def with_samples(task: PointToPoint, more: Sequence[Sequence[float]]) -> PointToPoint:
-    """The move with more samples of its uncertain plant; ValueError where it is not uncertain."""
-    plant = uncertain_plant(task.plant)
-    samples = (*plant.samples, *map(tuple, more))
-    return replace(task, plant=replace(plant, samples=samples))
+    known = task.plant.error_samples
+    return with_samples(task, [*known, *([error / 2 for error in sample] for sample in known)])

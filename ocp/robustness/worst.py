@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.base.ranges import NotNegative
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness.population import ErrorPopulation
-from quietarm.ocp.robustness.uncertain import UncertainPlant, on_assumed, uncertain_plant
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.task.point_to_point import PointToPoint
@@ -48,9 +47,8 @@ def peaks_between(
     And of every peak, the largest first, the residual [m] and errors: looked for by fixed steps,
     valued by CVODES.
     """
-    plant = uncertain_plant(task.plant)
-    assumed, largest = on_assumed(task), np.array(list(plant.ranges.values()))
-    population = ErrorPopulation(assumed, profile, coefficients, dict(plant.ranges))
+    assumed, largest = task.nominal, np.array(list(task.errors.values()))
+    population = ErrorPopulation(assumed, profile, coefficients, dict(task.errors))
     along = _ALONG[len(largest)]
     shares = _grid(np.linspace(-1, 1, along), len(largest))
     residuals = population(shares * largest).residual
@@ -66,16 +64,15 @@ def worst_at(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, errors: Sequence[float]
 ) -> Worst:
     """What a motion leaves with errors in the order of the ranges; else as `peaks_between`."""
-    plant = uncertain_plant(task.plant)
-    named = tuple(zip(plant.ranges, map(float, errors), strict=True))
-    assumed = on_assumed(task)
+    named = tuple(zip(task.errors, map(float, errors), strict=True))
+    assumed = task.nominal
     joint = PiecewiseMotion.of_profile(assumed, profile, coefficients)
     return Worst(dict(named), resimulated(assumed, joint, named).residual)
 
 
 def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:
     """The largest of `peaks_between`; None where the plant is not uncertain."""
-    if not isinstance(task.plant, UncertainPlant):
+    if not task.errors:
         return None
     return peaks_between(task, profile, coefficients)[0]
 

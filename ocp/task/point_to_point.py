@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from quietarm.models import Plant
@@ -104,6 +104,17 @@ class PointToPoint:
     def move(self) -> tuple[float, float, float]:
         """(start, target, duration): the parameters of every compiled function."""
         return (self.start, self.target, self.duration)
+
+    @property
+    def nominal(self) -> PointToPoint:
+        """The move of the plant without errors; itself where the plant has none."""
+        plant = self.plant.nominal
+        return self if plant is self.plant else replace(self, plant=plant)
+
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """Largest relative errors of the plant's parameters by name; none where it is certain."""
+        return self.plant.errors
 
     @property
     def limits(self) -> dict[str, float]:

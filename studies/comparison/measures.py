@@ -17,7 +17,6 @@ from quietarm.ocp.answers.documents import plain
 from quietarm.ocp.base.checks import not_negative, positive, whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.robust import on_same_samples
-from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
 from quietarm.studies.paper import task_difference
 from quietarm.studies.registry.methods import Method, method_of
@@ -129,7 +128,7 @@ class Comparison:
     @property
     def of_floor(self) -> str:
         """What the floor's motions do: all that is asked of an uncertain plant is not known."""
-        certain = on_assumed(self.task) is self.task
+        certain = not self.task.errors
         return "at rest" if certain else "at rest on the assumed plant"
 
 

@@ -7,7 +7,7 @@ from dataclasses import fields
 from math import degrees
 
 from quietarm.models import Plant
-from quietarm.ocp import Front, PointToPoint, UncertainPlant
+from quietarm.ocp import Front, PointToPoint
 from quietarm.ocp.task.quantities import QUANTITIES
 from rich.console import Console
 
@@ -30,8 +30,8 @@ def millimetres(length: float) -> str:
 
 def plant_words(plant: Plant) -> str:
     """A plant's name, with the parameters that differ from those of its class, and its errors."""
-    if isinstance(plant, UncertainPlant):
-        return f"{plant_words(plant.assumed)}, {error_words(plant)}"
+    if plant.errors:
+        return f"{plant_words(plant.nominal)}, {error_words(plant)}"
     changed: list[str] = []
     for entry in fields(plant):
         value, unit = plant.parameters[entry.name], entry.metadata.get("unit", "-")
@@ -42,8 +42,7 @@ def plant_words(plant: Plant) -> str:
 
 def error_words(plant: Plant) -> str:
     """How far an uncertain plant may be wrong: "frequency +-10 %"; nothing for others."""
-    ranges = plant.ranges if isinstance(plant, UncertainPlant) else {}
-    return ", ".join(f"{name} +-{100 * size:g} %" for name, size in ranges.items())
+    return ", ".join(f"{name} +-{100 * size:g} %" for name, size in plant.errors.items())
 
 
 def move_of(task: PointToPoint) -> str:

@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
-from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.task.quantities import QUANTITIES
 from quietarm.studies.display.words import error_words, title_of
 from quietarm.studies.figures.axes import (
@@ -203,7 +202,7 @@ def _of_one_duration(motions: Motions) -> list[Line]:
 def _looks(line: Line, tip: int) -> dict[str, Any]:
     """Label and style of a tip: the line's own for its first one, thin for those of samples."""
     plant, others = line.plan.task.plant, [s for s in (":", "-.", "--") if s != line.style]
-    own = assumed_plant(plant).tips
+    own = plant.nominal.tips
     if tip >= own:
         label = f"{line.label}, {error_words(plant)}" if tip == own else "_"
         return {"label": label, "linestyle": line.style, "linewidth": 0.6, "alpha": 0.6}

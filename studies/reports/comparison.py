@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.floor.search import energy_floor
-from quietarm.ocp.robustness.uncertain import on_assumed
 from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.comparison.tables import how_to_read, runs_table, tables, units
 from quietarm.studies.display.words import title_of
@@ -25,7 +24,7 @@ def with_floor(comparison: Comparison, console: Console) -> Comparison:
     The console says so if it is not found.
     """
     try:
-        floor = energy_floor(on_assumed(comparison.task))
+        floor = energy_floor(comparison.task.nominal)
     except QuietarmError as error:
         console.print(f"no floor: {error}", highlight=False, soft_wrap=True)
         return comparison

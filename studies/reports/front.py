@@ -11,7 +11,7 @@ from quietarm.metaheuristics.ensemble import (
     energy_at,
     hypervolumes,
 )
-from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, UncertainPlant
+from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness.worst import worst_of
@@ -109,11 +109,11 @@ def _point_in_words(front: Front, point: FrontPoint) -> str:
 
 def _excess_lines(front: Front) -> list[str]:
     """Of an uncertain plant, how well the residuals hold between its samples."""
-    if not isinstance(front.task.plant, UncertainPlant):
+    if not front.task.errors:
         return []
     if front.excess is None:
         return ["residuals hold at the samples of the plant alone; between them more may be left"]
-    ranges = front.task.plant.ranges
+    ranges = front.task.errors
     errors = ", ".join(f"{name} within {100 * most:g} %" for name, most in ranges.items())
     more = f"at most {100 * front.excess:.2g} % more" if front.excess > 0 else "no more"
     return [

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.answers.provenance import AGREEMENT
 from quietarm.ocp.plan.robust import EXCESS
-from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.task.quantities import QUANTITIES
 from quietarm.studies.display.words import millimetres, move_of, plant_words
 from quietarm.studies.report.document import Document, Facts, Lines
@@ -140,7 +139,7 @@ def _choice(plan: Plan) -> tuple[str, str]:
 
 
 def _tip(task: PointToPoint) -> str:
-    tips = assumed_plant(task.plant).tips
+    tips = task.plant.nominal.tips
     words = "tip" if tips == 1 else f"worst of {tips} tips"
     return (
         words if tips == task.plant.tips else f"{words}, worst of {task.plant.tips // tips} samples"

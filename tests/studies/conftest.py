@@ -75,7 +75,7 @@ def reproduction(begun):
         return recompute.recompute_paper(begun.append)
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="module", autouse=True)
 def _coarse_floors():
     """Floors begin on coarser grids: how low they are is asked in tests/ocp/floor."""
     with pytest.MonkeyPatch.context() as patch:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import click
 from quietarm.ocp import Plan, Robustness, evaluate_robustness
-from quietarm.ocp.robustness.uncertain import assumed_plant
 from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
@@ -72,7 +71,7 @@ def robustness(
     plans = load_plans(paths)
     for path, plan in zip(paths, plans.values(), strict=True):
         try:
-            checked_ranges(assumed_plant(plan.task.plant), ranges)
+            checked_ranges(plan.task.plant.nominal, ranges)
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
     figured, trouble = _evaluated(plans, ranges, samples, seed, quiet), None

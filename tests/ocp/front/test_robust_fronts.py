@@ -7,7 +7,6 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.ocp.robustness.uncertain import on_assumed
 
 import quietarm as qa
 
@@ -33,7 +32,7 @@ def front(task):
 
 def worst(front, point):
     """By CVODES on errors beside the grid that the front's own search looks at."""
-    task = on_assumed(front.task)
+    task = front.task.nominal
     return max(
         qa.resimulate(
             replace(task, plant=qa.with_errors(task.plant, {"frequency": error})),
@@ -65,7 +64,7 @@ def test_all_points_are_found(front, task):
 
 
 def test_the_cheapest_point_is_the_assumed_plant_s(front):
-    alone = qa.epsilon_front(on_assumed(front.task), PROFILE, points=2, starts=1)
+    alone = qa.epsilon_front(front.task.nominal, PROFILE, points=2, starts=1)
     assert front.cheapest().energy == pytest.approx(alone.cheapest().energy, rel=1e-6)
 
 

@@ -8,7 +8,6 @@ from math import pi
 import numpy as np
 import pytest
 from quietarm.ocp.plan import robust
-from quietarm.ocp.robustness.uncertain import on_assumed
 
 import quietarm as qa
 
@@ -28,7 +27,7 @@ def plan(task):
 
 def residuals(plan, errors):
     """By CVODES, of the motion on plants with these errors."""
-    task = on_assumed(plan.task)
+    task = plan.task.nominal
     return [
         qa.resimulate(
             replace(task, plant=qa.with_errors(task.plant, {"frequency": error})),
@@ -50,7 +49,7 @@ def test_the_limit_holds_between_the_samples(plan):
 def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
     samples = [0.0, *(error for (error,) in plan.task.plant.samples)]
     assert plan.residual == pytest.approx(max(residuals(plan, samples)), rel=1e-6)
-    alone = qa.evaluate_coefficients(on_assumed(plan.task), plan.coefficients)
+    alone = qa.evaluate_coefficients(plan.task.nominal, plan.coefficients)
     assert plan.energy == pytest.approx(alone.energy, rel=1e-8)
 
 

@@ -8,7 +8,6 @@ from math import pi
 import numpy as np
 import pytest
 from quietarm.ocp.robustness.population import ErrorPopulation
-from quietarm.ocp.robustness.uncertain import on_assumed
 
 import quietarm as qa
 
@@ -64,7 +63,7 @@ def test_figures_are_the_worst_of_the_parts_alone(of, request):
 
 
 def test_worst_is_what_a_dense_search_finds(task, evaluated):
-    population = ErrorPopulation(on_assumed(task), evaluated.profile, MOVE, task.plant.ranges)
+    population = ErrorPopulation(task.nominal, evaluated.profile, MOVE, task.plant.ranges)
     grid = np.meshgrid(np.linspace(-0.1, 0.1, 60), np.linspace(-0.05, 0.05, 60))
     largest = population(np.reshape(grid, (2, -1)).T).residual.max()
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
