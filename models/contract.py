@@ -171,7 +171,9 @@ def _called(plant: Plant, method: str, *arguments: object) -> list[Expression]:
         if isinstance(error, IndexError):
             remedy = f"it says modes = {plant.modes}: set them to as many as its equations use"
         text = re.sub(r"^\S*\.[ch]pp:\d+: ", "", str(error).strip().partition("\n")[0])
-        said = f"fails{line} ({type(error).__name__}: {text})"
+        of_symbol = "to_double" in text or "truth value" in text  # casadi's own words say little
+        why = "a symbol is no number" if of_symbol else f"{type(error).__name__}: {text}"
+        said = f"fails{line} ({why})"
         raise _wrong(plant, method, said, remedy) from None
     entries = [found] if method == "torque" else found
     if not isinstance(entries, list | tuple):
