@@ -19,11 +19,11 @@ from quietarm.metaheuristics.sharing.pieces import (
     LostPieceError,
     Piece,
     Say,
+    run_pieces,
 )
-from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import Front, PointToPoint, QuietarmError
-from quietarm.ocp.base.checks import whole
+from quietarm.ocp.checks import whole
 
 SEARCH_RESIDUAL = 1e-3
 """Residual [m] at which the energies of different seeds are compared."""

@@ -12,8 +12,8 @@ from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, preset_of
 from quietarm.metaheuristics.runs.progress import Report
 from quietarm.metaheuristics.runs.settings import SearchSettings, SearchSpec
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
-from quietarm.ocp.base.files import check_writable
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.files import check_writable
+from quietarm.ocp.interrupts import note_interrupts
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm

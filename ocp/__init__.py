@@ -1,8 +1,9 @@
 """What is asked, and the gradient answer.
 
-The rooms, each of which may import those before it: `base`, `task`, `profiles`, `simulation`,
-`robustness`, `program` and `answers`, `plan`, `front` and `floor`. All of them may import
-`models`; what a user needs is here.
+What is asked: `task`, its `quantities`, and how a joint may move, `profiles`. What a motion costs:
+`simulation`, `robustness`. The gradient's answers: `program` solves, and `plan`, `front` and
+`floor` ask it. An answer is `saved` with its `record`; `checks`, `errors`, `files` and
+`interrupts` serve all. What a user needs is here.
 """
 
 import lazy_loader

@@ -1,10 +1,8 @@
-from .answers.provenance import SolveSettings as SolveSettings
-from .answers.provenance import Verification as Verification
-from .base.errors import FileFormatError as FileFormatError
-from .base.errors import InfeasibleTaskError as InfeasibleTaskError
-from .base.errors import QuietarmError as QuietarmError
-from .base.errors import SolverFailedError as SolverFailedError
-from .base.status import SolveStatus as SolveStatus
+from .errors import FileFormatError as FileFormatError
+from .errors import InfeasibleTaskError as InfeasibleTaskError
+from .errors import QuietarmError as QuietarmError
+from .errors import SolverFailedError as SolverFailedError
+from .errors import SolveStatus as SolveStatus
 from .floor.answer import Floor as Floor
 from .floor.answer import FloorSettings as FloorSettings
 from .floor.search import energy_floor as energy_floor
@@ -35,6 +33,8 @@ from .profiles.polynomial import MAX_TERMS as MAX_TERMS
 from .profiles.polynomial import CycloidPolynomial as CycloidPolynomial
 from .profiles.shaped_cycloid import ShapedCycloid as ShapedCycloid
 from .profiles.spline import CycloidSpline as CycloidSpline
+from .record import SolveSettings as SolveSettings
+from .record import Verification as Verification
 from .robustness.measures import Robustness as Robustness
 from .robustness.measures import Sweep as Sweep
 from .robustness.measures import evaluate_robustness as evaluate_robustness
@@ -50,4 +50,4 @@ from .simulation.resimulation import sample_trajectory as sample_trajectory
 from .simulation.rollout import Rollout as Rollout
 from .simulation.rollout import rollout as rollout
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
-from .task.point_to_point import PointToPoint as PointToPoint
+from .task import PointToPoint as PointToPoint

@@ -12,7 +12,7 @@ from pymoo.operators.mutation.pm import PM
 from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.operators.selection.tournament import TournamentSelection
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
-from quietarm.ocp.base.checks import whole
+from quietarm.ocp.checks import whole
 
 CROSSOVER: dict[str, Any] = {"prob": 0.8, "prob_var": 0.5, "eta": 15}
 """Simulated binary crossover: the paper's rate for a pair; pymoo's defaults for a gene and eta."""

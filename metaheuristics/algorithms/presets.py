@@ -22,8 +22,7 @@ from quietarm.metaheuristics.algorithms.settings import (
     with_defaults,
     yes_or_no,
 )
-from quietarm.ocp.base.checks import not_negative, positive
-from quietarm.ocp.base.names import unknown
+from quietarm.ocp.checks import not_negative, positive, unknown
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm

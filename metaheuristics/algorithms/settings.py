@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from quietarm.ocp.base.checks import finite, positive, whole
-from quietarm.ocp.base.names import has_no, nearest
+from quietarm.ocp.checks import finite, has_no, nearest, positive, whole
 
 Value = float | int | bool | str | None
 MOST_KEPT = 100_000

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 import numpy as np
-from quietarm.ocp.base.checks import not_negative, positive
+from quietarm.ocp.checks import not_negative, positive
 
 Array = np.ndarray
 

@@ -32,7 +32,7 @@ from quietarm.metaheuristics.algorithms.velocity import (
     VelocityRule,
 )
 from quietarm.metaheuristics.objective.problem import UNUSABLE
-from quietarm.ocp.base.checks import positive, whole
+from quietarm.ocp.checks import positive, whole
 
 
 def least_crowded(F: Array, size: int) -> Array:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.budget.problem import BudgetProblem
-from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.front.sweep import Sweep
 from quietarm.ocp.program.solution import Solution
+from quietarm.ocp.record import SolveSettings
 
 Array = NDArray[np.float64]
 _BETWEEN = (0.25, 0.5, 0.75)

@@ -8,7 +8,7 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import Front
-from quietarm.ocp.base.ranges import Count, NotNegative, Positive
+from quietarm.ocp.checks import Count, NotNegative, Positive
 
 Array = NDArray[np.float64]
 CORNER = 1.1

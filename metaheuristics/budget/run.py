@@ -14,8 +14,7 @@ from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.budget.record import Mark, Scale, Visits
 from quietarm.metaheuristics.runs.settings import search_versions
 from quietarm.ocp import Front, JointProfile, PointToPoint, reference_corner
-from quietarm.ocp.base.checks import whole
-from quietarm.ocp.base.names import unknown
+from quietarm.ocp.checks import unknown, whole
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm

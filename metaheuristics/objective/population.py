@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import JointProfile, PointToPoint
-from quietarm.ocp.base.checks import whole
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import whole
+from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.program.batch import Batch, batch
 from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.simulation.rollout import default_steps

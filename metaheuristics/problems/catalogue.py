@@ -19,7 +19,7 @@ from quietarm.metaheuristics.problems.finding import exact_front
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, UncertainPlant
-from quietarm.ocp.base.names import unknown
+from quietarm.ocp.checks import unknown
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem

@@ -13,9 +13,9 @@ from quietarm.ocp import (
     epsilon_front,
     non_dominated,
 )
-from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.plan.solver import plan_at_samples
+from quietarm.ocp.record import SolveSettings
 
 POINTS = 25
 """Points of an exact front, beside those at `LEVELS`."""

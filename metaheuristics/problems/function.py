@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
-from quietarm.ocp.answers.provenance import coefficient_bound
-from quietarm.ocp.base.names import unknown
+from quietarm.ocp.checks import unknown
+from quietarm.ocp.quantities import QUANTITIES
+from quietarm.ocp.record import coefficient_bound
 from quietarm.ocp.simulation.rollout import default_steps
-from quietarm.ocp.task.quantities import QUANTITIES
 
 Array = NDArray[np.float64]
 

@@ -23,8 +23,8 @@ from quietarm.metaheuristics.objective.problem import MoveProblem
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.runs.settings import SearchSpec, search_versions
 from quietarm.ocp import FileFormatError
-from quietarm.ocp.answers.documents import content_of, plain
-from quietarm.ocp.base.files import read_bytes, write_whole
+from quietarm.ocp.files import read_bytes, write_whole
+from quietarm.ocp.saved import content_of, plain
 
 KIND, VERSION = "checkpoint", 3
 CHECKPOINT_SECONDS, _SHARE = 2.0, 0.05

@@ -8,8 +8,8 @@ from importlib import metadata
 from typing import Any
 
 from quietarm.ocp import JointProfile, PointToPoint
-from quietarm.ocp.answers.provenance import coefficient_bound, versions
-from quietarm.ocp.base.checks import whole
+from quietarm.ocp.checks import whole
+from quietarm.ocp.record import coefficient_bound, versions
 
 MOST_INDIVIDUALS, MOST_GENERATIONS = 100_000, 1_000_000
 

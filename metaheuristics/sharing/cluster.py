@@ -23,8 +23,8 @@ from distributed.comm.addressing import get_address_host_port
 from distributed.utils import get_mp_context
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import QuietarmError
-from quietarm.ocp.answers.provenance import versions
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.interrupts import note_interrupts
+from quietarm.ocp.record import versions
 
 _FORKED = "forkserver" in multiprocessing.get_all_start_methods()
 """Whether a process that only loads what all workers need can be forked into each of them."""

@@ -24,8 +24,8 @@ from quietarm.metaheuristics.sharing.pieces import (
 from quietarm.metaheuristics.sharing.worker import do_piece
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import Front, QuietarmError
-from quietarm.ocp.answers.documents import typed
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.interrupts import note_interrupts
+from quietarm.ocp.saved import typed
 
 _INSISTENT = 3
 """After this many more Ctrl-C, answers on their way are no longer waited for."""

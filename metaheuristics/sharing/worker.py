@@ -12,7 +12,7 @@ from distributed import get_worker
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.sharing.pieces import Done, Piece, Say
 from quietarm.ocp import Front
-from quietarm.ocp.answers.documents import plain
+from quietarm.ocp.saved import plain
 
 _SAY_SECONDS = 0.2
 _ONE_AT_A_TIME = threading.Lock()

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from importlib.util import find_spec
 
-from quietarm.ocp.base.checks import whole
+from quietarm.ocp.checks import whole
 
 MOST_WORKERS = 1000
 _EXTRA = "pip install 'quietarm[cluster]'"

@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
-from quietarm.ocp.answers.motion_answer import MotionAnswer
-from quietarm.ocp.answers.provenance import Provenance, Verification, number_of_starts
-from quietarm.ocp.base.checks import positive, whole
-from quietarm.ocp.base.ranges import CountFromOne
-from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.checks import CountFromOne, positive, whole
+from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.record import Provenance, Verification, number_of_starts
+from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.cvodes import Trajectory
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 _FIRST_ORDER, _MOST_RATIO = 0.5, 0.8
 """Ratios of successive falls of the energy. The first is that of an error proportional to the

@@ -1,11 +1,4 @@
-"""The nonlinear program over all joint motions of a task, by direct collocation.
-
-There is no profile. Unknowns of every interval are the joint and the modes before it, the joint's
-acceleration (or jerk) on it, and W'' and the power at its Gauss nodes, so that all derivatives are
-sparse and casadi's own. The power is the difference of two numbers that are not negative; their
-sum is its size where the energy is least. It counts at the nodes, where it is smooth: sampled only
-at the grid, the solver would hide energy between the samples.
-"""
+"""The grid of a free motion: fine where the speed jumps, and finer from level to level."""
 
 from __future__ import annotations
 
@@ -18,25 +11,53 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.status import SolveStatus
-from quietarm.ocp.floor.grid import first_grid
+from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.ipopt import OPTIONS, Point, compiled, run_ipopt
 from quietarm.ocp.program.solution import ENERGY
+from quietarm.ocp.quantities import QUANTITIES, ask_for_jerk
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
     NODES,
     NodeState,
     Step,
+    mesh,
     step,
 )
 from quietarm.ocp.simulation.rollout import march
-from quietarm.ocp.task.point_to_point import PointToPoint
-from quietarm.ocp.task.quantities import QUANTITIES, ask_for_jerk
+from quietarm.ocp.task import PointToPoint
+
+_AT_AN_END, _SHRINK = 3, 4.0
+"""The first and last interval are cut at 1/4, 1/16 and 1/64 of their length: without a limit
+against it, the motion of least energy starts and stops the joint with a jolt."""
+_JOLT, _PARTS_OF_A_JOLT = 0.02, 4
+"""An interval that changes the speed by more than this share of its largest is cut in four."""
+_SHORTEST = 4e-5
+"""Intervals shorter than this share of the move are left alone."""
+
+
+def first_grid(steps: int) -> NDArray[np.float64]:
+    """Boundaries of about `steps` intervals, as fractions of the move, finer at the ends."""
+    even = max(2, steps - 2 * _AT_AN_END)
+    boundaries = mesh(ca.DM(np.arange(even + 1)), even)[0].full().ravel()
+    boundaries[-1] = 1.0
+    cuts = boundaries[1] * _SHRINK ** -np.arange(_AT_AN_END, 0.0, -1)
+    return np.concatenate([[0.0], cuts, boundaries[1:-1], 1 - cuts[::-1], [1.0]])
+
+
+def finer(free: FreeMotion) -> FreeMotion:
+    """The motion on a grid of twice the intervals, and more where its speed jumps."""
+    h = free.lengths
+    change = np.abs(h * (free.acceleration + h * free.jerk / 2))
+    jolt = change > _JOLT * np.abs(free.boundaries(0.0)[1]).max()
+    parts = np.where(jolt, _PARTS_OF_A_JOLT, 2)
+    parts[h < _SHORTEST * free.times[-1]] = 1
+    return free.split(parts)
+
 
 Array = NDArray[np.float64]
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}

@@ -7,23 +7,21 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 import numpy as np
-from quietarm.ocp.answers.provenance import Provenance, Verification
-from quietarm.ocp.base.errors import SolverFailedError
-from quietarm.ocp.base.interrupts import note_interrupts
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
-from quietarm.ocp.floor.grid import finer, first_grid
-from quietarm.ocp.floor.program import FloorProgram, FreeSolution
+from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
+from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
 from quietarm.ocp.plan.feasibility import rescued, true_peaks, unmet
 from quietarm.ocp.plan.solver import plan_move
 from quietarm.ocp.plan.verification import refuse_passed, tightened
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.record import Provenance, Verification
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.residual import residual_samples
 from quietarm.ocp.simulation.resimulation import Resimulation, resimulated
 from quietarm.ocp.simulation.rollout import default_steps
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 FIRST_INTERVALS = 80
 MOST_FIRST_INTERVALS, MOST_INTERVALS = 1500, 6000

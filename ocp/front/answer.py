@@ -10,18 +10,23 @@ from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp.answers.provenance import Setting, settings_given, versions
-from quietarm.ocp.answers.saved import Saved
-from quietarm.ocp.base.checks import not_negative
-from quietarm.ocp.base.files import write_whole
-from quietarm.ocp.base.ranges import Count, NotNegative, Positive
-from quietarm.ocp.base.threads import one_at_a_time
-from quietarm.ocp.front.evaluation import evaluated, table_of
-from quietarm.ocp.front.points import FailedPoint, FrontPoint, Generation, non_dominated
+from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative
+from quietarm.ocp.files import write_whole
+from quietarm.ocp.front.points import (
+    FailedPoint,
+    FrontPoint,
+    Generation,
+    evaluated,
+    non_dominated,
+    table_of,
+)
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.record import Setting, settings_given, versions
+from quietarm.ocp.saved import Saved
 from quietarm.ocp.simulation.rollout import rollout
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 LEAST_REFERENCE = 1e-3
 """Where the plain cycloid arrives nearly still, its residual is no scale for hypervolumes [m]."""

@@ -6,12 +6,19 @@ import time
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from quietarm.ocp.base.errors import SolverFailedError
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.front.sweep import Sweep
-from quietarm.ocp.plan.finer import EVERY, SAME, finer_values
-from quietarm.ocp.plan.verification import OF_A_PLAN, Care, Checked, verified
+from quietarm.ocp.interrupts import note_interrupts
+from quietarm.ocp.plan.verification import (
+    CHECK_EVERY,
+    FINER_AGREEMENT,
+    OF_A_PLAN,
+    Care,
+    Checked,
+    finer_values,
+    verified,
+)
 from quietarm.ocp.program.solution import RESIDUAL, STILL, Solution
 from quietarm.ocp.simulation.cvodes import residual_of
 from quietarm.ocp.simulation.resimulation import resimulate
@@ -84,7 +91,7 @@ def _by_finer_rule(sweep: Sweep, found: Sequence[Solution]) -> dict[int, FrontPo
     also have to hold between the nodes.
     """
     task, profile = sweep.task, sweep.profile
-    if len(found) < EVERY or task.limits or task.errors:
+    if len(found) < CHECK_EVERY or task.limits or task.errors:
         return {}
     table = np.array([one.coefficients for one in found])
     values = finer_values([sweep.program] * len(table), table)
@@ -93,9 +100,12 @@ def _by_finer_rule(sweep: Sweep, found: Sequence[Solution]) -> dict[int, FrontPo
         if abs(one.energy - energy) <= care_of(sweep).agreement * energy:
             residual = residual_of(task, values.arrival[i])
             points[i] = FrontPoint(profile.checked(one.coefficients), residual, energy)
-    for i in list(points)[::EVERY]:
+    for i in list(points)[::CHECK_EVERY]:
         exact, point = resimulate(task, profile, points[i].coefficients), points[i]
-        energy, residual = exact.energy - point.energy, exact.residual - point.residual
-        if abs(energy) > SAME * exact.energy or abs(residual) > SAME * exact.residual + STILL:
+        differs = [
+            abs(exact.energy - point.energy) > FINER_AGREEMENT * exact.energy,
+            abs(exact.residual - point.residual) > FINER_AGREEMENT * exact.residual + STILL,
+        ]
+        if any(differs):
             return {}
     return points

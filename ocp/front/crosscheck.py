@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from quietarm.ocp.answers.provenance import SolveSettings, number_of_points
-from quietarm.ocp.base.checks import finite
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import finite
 from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.front.sweep import Report, Sweep, no_report
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.program.solution import RESIDUAL
+from quietarm.ocp.record import SolveSettings, number_of_points
 
 _SAME = 1e-6
 """Energies that differ by no more than this share agree."""

@@ -7,21 +7,19 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from quietarm.ocp.answers.provenance import SolveSettings, digits, number_of_points
-from quietarm.ocp.base.checks import positive
-from quietarm.ocp.base.interrupts import note_interrupts
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import positive
 from quietarm.ocp.front.answer import Front
-from quietarm.ocp.front.assembly import front_of
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
-from quietarm.ocp.front.ends import Ends, find_ends
+from quietarm.ocp.front.curve import Ends, find_ends, front_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.front.sweep import Guess, InterruptedSolveError, Report, Sweep, better, no_report
+from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.solution import STILL, Solution
 from quietarm.ocp.program.solving import Solver
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.record import SolveSettings, digits, number_of_points
+from quietarm.ocp.task import PointToPoint
 
 _SCOUTS = 5
 """Limits between the ends at which all starts are tried; the points lie between those."""

@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.ocp.base.checks import finite
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import finite
 from quietarm.ocp.front.answer import Front
-from quietarm.ocp.front.assembly import front_of
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
+from quietarm.ocp.front.curve import front_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.front.sweep import Report, Sweep, no_report
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.program.solution import Solution
+from quietarm.ocp.record import SolveSettings
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.answers.provenance import REST
 from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.record import REST
 from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.robustness.worst import peaks_between, worst_at
 

@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.plan.starts import first_steps, start_coefficients
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
 from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.robustness.uncertain import with_samples
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 Guess = NDArray[np.float64]
 Report = Callable[[int, int], None]

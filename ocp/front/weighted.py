@@ -6,20 +6,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from quietarm.ocp.answers.provenance import SolveSettings, digits, number_of_points
-from quietarm.ocp.base.checks import not_negative
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import not_negative
 from quietarm.ocp.front.answer import Front
-from quietarm.ocp.front.assembly import front_of
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, all_checked
-from quietarm.ocp.front.ends import Ends, find_ends
+from quietarm.ocp.front.curve import Ends, find_ends, front_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.front.sweep import Guess, Report, Sweep, no_report
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.solution import ENERGY, RESIDUAL, Solution
 from quietarm.ocp.program.solving import Solver
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.record import SolveSettings, digits, number_of_points
+from quietarm.ocp.task import PointToPoint
 
 _FLAT = 1e-5
 """A minimum closer to the chord than this share of its length counts as one of the chord's ends."""

@@ -13,20 +13,20 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-from quietarm.ocp.answers.motion_answer import MotionAnswer
-from quietarm.ocp.answers.provenance import Provenance, Setting, SolveSettings, Verification
-from quietarm.ocp.base.checks import positive
-from quietarm.ocp.base.files import write_whole
-from quietarm.ocp.base.status import SolveStatus
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import positive
+from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.files import write_whole
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
 from quietarm.ocp.robustness.worst import Worst, worst_of
+from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.cvodes import Trajectory
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.resimulation import resimulate, sample_trajectory
 from quietarm.ocp.simulation.rollout import rollout
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 _LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
 _SAMPLES = 1500

@@ -7,14 +7,13 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.base.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.plan.verification import Checked
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
 from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.objective import WithPeaks
-from quietarm.ocp.task.quantities import QUANTITIES
 
 UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
 """Unit of every quantity that may be limited."""

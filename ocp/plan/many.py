@@ -8,22 +8,26 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.ocp.base.errors import SolverFailedError
-from quietarm.ocp.base.status import SolveStatus
-from quietarm.ocp.base.threads import one_at_a_time
-from quietarm.ocp.plan.finer import EVERY, SAME, finer_values
+from quietarm.ocp.errors import SolverFailedError, SolveStatus
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.plan.starts import first_steps, start_coefficients
-from quietarm.ocp.plan.verification import OF_A_PLAN, verified
+from quietarm.ocp.plan.verification import (
+    CHECK_EVERY,
+    FINER_AGREEMENT,
+    OF_A_PLAN,
+    finer_values,
+    verified,
+)
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.batch import Values
 from quietarm.ocp.program.program import Program, programs_of
 from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
 from quietarm.ocp.program.solving import STOPPED, Row, Solved, Solver, solve
+from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.residual import residuals_at_rest, state_matrices
 from quietarm.ocp.simulation.resimulation import resimulate
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 _PILOTS, _SAME_MOVE = 8, 1e-9
@@ -235,9 +239,9 @@ def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int =
     moves.coefficients[places], moves.energy[places] = table, values.energy
     moves.residual[places] = residual
     doubtful |= {places[k] for k in np.flatnonzero(residual > STILL)}
-    for k in range(0, len(rows), EVERY):
+    for k in range(0, len(rows), CHECK_EVERY):
         exact = resimulate(rows[k].program.task, one.profile, table[k])
-        differs = abs(exact.energy - values.energy[k]) > SAME * exact.energy
+        differs = abs(exact.energy - values.energy[k]) > FINER_AGREEMENT * exact.energy
         if differs or exact.residual > STILL:
             return doubtful | set(places)
         moves.by_cvodes[places[k]] = True

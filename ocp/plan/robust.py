@@ -8,16 +8,16 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.plan.answer import Plan
 from quietarm.ocp.plan.starts import start_coefficients
 from quietarm.ocp.plan.verification import OVERRUN
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.robustness.measures import quiet_residual
 from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.robustness.worst import peaks_between
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 EXCESS = 0.05
 """Share of the limit by which the residual between samples may pass it before more are added."""

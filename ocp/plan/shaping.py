@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 from quietarm.ocp.simulation.residual import vibrations
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 _SAMPLES = 200
 """Joint angles along the plain cycloid, at even times, over which `average` is taken."""

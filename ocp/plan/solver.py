@@ -1,4 +1,4 @@
-"""The gradient: the plan of least energy."""
+"""The plan by a profile without coefficients: its only motion, evaluated."""
 
 from __future__ import annotations
 
@@ -8,21 +8,43 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp.answers.provenance import Provenance, SolveSettings, Verification
-from quietarm.ocp.base.errors import SolverFailedError
-from quietarm.ocp.base.interrupts import note_interrupts
-from quietarm.ocp.base.threads import one_at_a_time
-from quietarm.ocp.plan.answer import Plan
-from quietarm.ocp.plan.only_motion import only_motion
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
+from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
+from quietarm.ocp.plan.answer import Plan, evaluate_coefficients
+from quietarm.ocp.plan.feasibility import UNITS
 from quietarm.ocp.plan.robust import limit_of, robust_plan
 from quietarm.ocp.plan.starts import first_steps, from_starts, start_coefficients
-from quietarm.ocp.plan.verification import HURRIED, verified
+from quietarm.ocp.plan.verification import HURRIED, OVERRUN, verified
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import RESIDUAL, Ask
+from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask
 from quietarm.ocp.program.solving import Solver
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.record import Provenance, SolveSettings, Verification
+from quietarm.ocp.task import PointToPoint
+
+
+def only_motion(
+    task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
+) -> Plan:
+    """The figures of the only motion that a profile has, within the task's limits."""
+    asked = 0.0 if residual_limit is None else residual_limit
+    SolveSettings(residual_limit=asked)  # refused before the integration, not after
+    plan = evaluate_coefficients(
+        task, [], profile=profile, method="evaluated", settings={"residual_limit": asked}
+    )
+    residual = {} if residual_limit is None else {"residual": max(residual_limit, STILL)}
+    limits = {**residual, **task.limits}
+    broken = [
+        f"its {name} reaches {plan.motion.peak(name):.4g} {UNITS[name]}, above {limits[name]:g}"
+        for name in plan.motion.passed(limits, OVERRUN)
+    ]
+    if broken:
+        raise InfeasibleTaskError(
+            f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "
+            "widen what is broken, or give a longer duration or another profile"
+        )
+    return plan
 
 
 @one_at_a_time

@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.plan.feasibility import explain, least_peaks
 from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import Ask, Solution
 from quietarm.ocp.program.solving import STOPPED, Row, Solver, solve
+from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.rollout import default_steps
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 PLAN_STEPS, FINER_STEPS, STEPS_A_TERM = 48, 80, 8
 """Steps that resolve a profile: more with more terms, since the power changes sign more often, but

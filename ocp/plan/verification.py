@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from quietarm.ocp.base.errors import SolverFailedError
+from numpy.typing import NDArray
+from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.program.batch import Values, batch
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Solution
 from quietarm.ocp.program.solving import Row, Solver, solve
 from quietarm.ocp.simulation.objective import Motion, WithPeaks
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.simulation.rollout import default_steps
 
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
@@ -169,3 +172,19 @@ def _cheapest_kept(tried: list[Verified], kept: Mapping[str, float], still: floa
         if all(one.checked.peak(name) <= max(limit, still) for name, limit in kept.items())
     ]
     return min(keeping, key=lambda one: one.checked.energy) if keeping else tried[-1]
+
+
+CHECK_EVERY = 10
+"""CVODES checks one motion in so many."""
+FINER_AGREEMENT = 1e-6
+"""The share by which its figures may then differ."""
+_FINER = 3
+
+
+def finer_values(programs: Sequence[Program], coefficients: NDArray[np.float64]) -> Values:
+    """Figures of one motion of each program, on three times the solver's steps or more."""
+    one = programs[0]
+    steps = max(default_steps(one.task), _FINER * one.steps)
+    move = np.array([program.task.move for program in programs])
+    no_errors = np.zeros((len(programs), 0))
+    return batch(one.plant, one.profile, steps).values(coefficients, move, no_errors)

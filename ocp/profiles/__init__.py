@@ -1,4 +1,4 @@
 """How a joint may move: what every profile is, and the profiles, one class a file.
 
-May import `task` and `base`.
+May import no other room.
 """

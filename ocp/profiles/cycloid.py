@@ -10,7 +10,7 @@ from typing import ClassVar, Self
 
 import casadi as ca
 from quietarm.models import Expression, JointMotion
-from quietarm.ocp.base.checks import whole
+from quietarm.ocp.checks import whole
 from quietarm.ocp.profiles.joint_profile import JointProfile
 
 Input = tuple[Expression, Expression, Expression]

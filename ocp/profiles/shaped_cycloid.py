@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import casadi as ca
 from quietarm.models import Expression
-from quietarm.ocp.base.checks import finite, positive
+from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shapers import SHAPERS, Impulses, convolved
 

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.program.ipopt import OPTIONS, Point, compiled, run_ipopt
 from quietarm.ocp.program.quadratic import Model
 from quietarm.ocp.program.sqp import FEASIBLE, End, Rows

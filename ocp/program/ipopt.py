@@ -10,8 +10,7 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.threads import silent_errors
+from quietarm.ocp.interrupts import keep_interrupts, silent_errors
 
 Options = Mapping[str, str | int | float]
 OPTIONS: dict[str, str | int | float] = {

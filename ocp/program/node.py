@@ -10,9 +10,9 @@ from collections.abc import Sequence
 import casadi as ca
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.collocation import end_to_end
 from quietarm.ocp.simulation.errors import with_errors
-from quietarm.ocp.task.quantities import QUANTITIES
 
 Places = list[tuple[int, int]]
 """Rows and columns of a matrix's nonzeros."""

@@ -8,13 +8,13 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.batch import Derivatives, batch
 from quietarm.ocp.program.solution import ENERGY, RESIDUAL
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import residual_rows
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 

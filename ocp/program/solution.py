@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.errors import SolveStatus
 
 ENERGY, RESIDUAL = "energy", "residual"
 LEAST_ENERGY = {ENERGY: 1.0}

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple, get_args
 import daqp
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.base.status import SolveStatus
+from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.program.batch import Derivatives
 from quietarm.ocp.program.interior import interior_point
 from quietarm.ocp.program.program import Program, evaluated

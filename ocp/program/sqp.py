@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.program.quadratic import Model, Steps, convex, least_steps
 
 Array = NDArray[np.float64]

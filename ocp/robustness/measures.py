@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp.base.checks import whole
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import whole
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.robustness.population import ErrorPopulation, Figures
 from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.resimulation import resimulate
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 TOLERATED = 0.05
 """Share of the plain cycloid's residual up to which a motion counts as insensitive."""

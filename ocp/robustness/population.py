@@ -14,14 +14,14 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES, step
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import residual_samples
 from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps, node_times, rollout_along
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 _BLOCK = 50
 """Plants a call: their intermediate values fit the processor's cache."""

@@ -9,9 +9,9 @@ from itertools import product
 from typing import Any
 
 from quietarm.models import Body, Expression, JointMotion, Plant
-from quietarm.ocp.base.checks import finite
+from quietarm.ocp.checks import finite
 from quietarm.ocp.simulation.errors import checked_ranges, with_errors
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 MOST_RANGES = 4
 """Errors at once: each of them doubles the corners at which a residual is held."""

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp.base.ranges import NotNegative
+from quietarm.ocp.checks import NotNegative
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness.population import ErrorPopulation
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
 """Errors along each side of the grid, by the number of ranges."""

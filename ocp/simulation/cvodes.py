@@ -16,12 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
-from quietarm.ocp.base.errors import SolverFailedError
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.threads import silent_errors
+from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.interrupts import keep_interrupts, silent_errors
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import fastest_mode
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 CVODES = {
     "linear_multistep_method": "adams",  # order up to 12: a fifth of the steps of BDF's 5

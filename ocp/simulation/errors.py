@@ -13,9 +13,8 @@ import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.contract import outputs_of
 from quietarm.models.joint_motion import Modes
-from quietarm.ocp.base.checks import finite, positive
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.names import has_no
+from quietarm.ocp.checks import finite, has_no, positive
+from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.simulation.collocation import modal_system
 
 FREQUENCY, DAMPING = "frequency", "damping"

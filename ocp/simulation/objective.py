@@ -11,9 +11,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion
+from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
-from quietarm.ocp.task.point_to_point import PointToPoint
-from quietarm.ocp.task.quantities import QUANTITIES
+from quietarm.ocp.task import PointToPoint
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)

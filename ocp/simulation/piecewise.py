@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 Law = Callable[..., JointMotion]
 """How the joint moves on a piece, by what it is given there and the fraction of the piece.

@@ -10,11 +10,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import JointMotion, Plant
-from quietarm.ocp.base.checks import whole
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import whole
+from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.simulation.collocation import NODES, modal_system, step
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 MOST_SAMPLES = 200_000
 _TIMES_AT_ONCE = 256

@@ -19,8 +19,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
@@ -41,7 +40,7 @@ from quietarm.ocp.simulation.extremes import extremes
 from quietarm.ocp.simulation.objective import Motion, WithPeaks, beyond_quadratic, resolved_energy
 from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
 from quietarm.ocp.simulation.residual import fastest_mode, residual_samples
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 _STEPS, _SMOOTH_STEPS = 500, 250
 """Least number of steps of the quadrature, in all and where nothing breaks: its nodes are at most a

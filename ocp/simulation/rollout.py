@@ -11,9 +11,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.ocp.base.checks import whole
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.threads import one_at_a_time
+from quietarm.ocp.checks import whole
+from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
@@ -26,7 +25,7 @@ from quietarm.ocp.simulation.collocation import (
 )
 from quietarm.ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
 from quietarm.ocp.simulation.residual import fastest_mode, residual_matrix
-from quietarm.ocp.task.point_to_point import PointToPoint
+from quietarm.ocp.task import PointToPoint
 
 MOST_STEPS = 20_000
 """Of any simulation by fixed steps: finer ones differ by rounding alone."""

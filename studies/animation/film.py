@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.base.checks import positive, whole
-from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.checks import positive, whole
+from quietarm.ocp.files import write_whole
 from quietarm.studies.animation.cast import cast_of
 from quietarm.studies.animation.formats import PAUSE, WRITERS, format_of
 from quietarm.studies.animation.stage import frames_of

@@ -12,8 +12,8 @@ from keyword import iskeyword
 
 import click
 from quietarm.ocp import FileFormatError, QuietarmError
-from quietarm.ocp.base.interrupts import as_ctrl_c
-from quietarm.ocp.base.names import unknown
+from quietarm.ocp.checks import unknown
+from quietarm.ocp.interrupts import as_ctrl_c
 
 BAD_INPUT, NOT_SOLVED = 2, 1
 

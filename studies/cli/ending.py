@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from quietarm.ocp import QuietarmError
-from quietarm.ocp.base.files import unwritable
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.files import unwritable
+from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import STDOUT, File
 from quietarm.studies.display.words import print_lines
-from quietarm.studies.report.document import Document
-from quietarm.studies.report.terminal import show
+from quietarm.studies.document.blocks import Document
+from quietarm.studies.document.terminal import show
 from rich.console import Console
 
 _OF_A_FILE = (OSError, ValueError, QuietarmError)

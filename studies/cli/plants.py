@@ -8,7 +8,7 @@ from typing import Any
 
 from quietarm.models import Plant, known_plants
 from quietarm.ocp import UncertainPlant
-from quietarm.ocp.base.names import has_no, unknown
+from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import once, parse_share
 
 

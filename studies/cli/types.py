@@ -10,8 +10,8 @@ from typing import Any
 
 import click
 from quietarm.models import load_plant_file
-from quietarm.ocp.base.files import check_folder, check_writable
-from quietarm.ocp.base.names import unknown
+from quietarm.ocp.checks import unknown
+from quietarm.ocp.files import check_folder, check_writable
 from quietarm.studies.cli.plants import parse_error, parse_plant, parse_setting
 from quietarm.studies.cli.quantities import (
     parse_coefficients,

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp import Front, PointToPoint
-from quietarm.ocp.answers.documents import plain
-from quietarm.ocp.base.checks import not_negative, positive, whole
+from quietarm.ocp.checks import not_negative, positive, whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.robust import on_same_samples
+from quietarm.ocp.saved import plain
 from quietarm.studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
 from quietarm.studies.paper import task_difference
 from quietarm.studies.registry.methods import Method, method_of

@@ -8,8 +8,8 @@ from operator import attrgetter
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.display.words import millimetres
-from quietarm.studies.report.prose import told
-from quietarm.studies.report.table import Cell, Line, Table, table_of
+from quietarm.studies.document.prose import told
+from quietarm.studies.document.table import Cell, Line, Table, table_of
 
 _ENERGY, _SHARE, _PERCENT, _COUNT, _MISS = "{:.5g}", "{:.4f}", "{:.2f}", "{:.0f}", "{:.2g}"
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics import NamedProblem, PopulationObjective
 from quietarm.ocp import QuietarmError, plan_move
-from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.ocp.answers.saved import Saved
-from quietarm.ocp.base.ranges import CountFromOne, Positive, Share
+from quietarm.ocp.checks import CountFromOne, Positive, Share
 from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.saved import Saved
 
 LEVEL = 1e-3
 """Residual [m] within which the energy is minimised."""

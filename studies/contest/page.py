@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.files import write_whole
 from quietarm.studies.contest.figures import (
     anytime_figure,
     attainment_figure,
@@ -40,7 +40,7 @@ from quietarm.studies.contest.tables import (
 )
 from quietarm.studies.display.saving import File, drawing, inside
 from quietarm.studies.display.words import counted, title_of
-from quietarm.studies.report.document import (
+from quietarm.studies.document.blocks import (
     Block,
     Bullets,
     Document,
@@ -49,7 +49,7 @@ from quietarm.studies.report.document import (
     Section,
     Text,
 )
-from quietarm.studies.report.files import page
+from quietarm.studies.document.files import page
 
 PAGE, REFERENCES, TABLES, FIGURES = "contest.html", "references.bib", "tables", "figures"
 PLACES = (PAGE, REFERENCES, f"{TABLES}/any", f"{FIGURES}/any")

@@ -12,7 +12,7 @@ from quietarm.studies.contest.names import is_own, label_of, method_in
 from quietarm.studies.contest.statistics import ALPHA, Ranking, why_none
 from quietarm.studies.contest.tables import evaluations_words
 from quietarm.studies.display.words import counted, versions_of
-from quietarm.studies.report.prose import told
+from quietarm.studies.document.prose import told
 
 _ALWAYS = ("casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment")
 _STATISTICS = ("scipy", "friedman", "demsar", "mannwhitney", "holm", "varghadelaney")

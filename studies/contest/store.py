@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics import PROBLEMS, NamedProblem, problem_of
 from quietarm.metaheuristics.budget.record import Mark, Scale, Visits
 from quietarm.ocp import CycloidPolynomial, FileFormatError, Front
-from quietarm.ocp.answers.saved import Saved
-from quietarm.ocp.base.ranges import CountFromOne, Positive
+from quietarm.ocp.checks import CountFromOne, Positive
+from quietarm.ocp.saved import Saved
 from quietarm.studies.comparison.staircase import filled
 from quietarm.studies.contest.landscape import Landscape
 from quietarm.studies.contest.names import folder_of

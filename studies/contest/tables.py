@@ -10,7 +10,7 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.contest.measures import TARGETS, Arena, Field, quartiles
 from quietarm.studies.contest.statistics import ALPHA, Pair, Ranking
 from quietarm.studies.display.words import millimetres
-from quietarm.studies.report.table import Cell, Column, Line, Table, table_of
+from quietarm.studies.document.table import Cell, Column, Line, Table, table_of
 
 _PERCENT = "{:.3g} %"
 _THIRDS = ("still", "middle", "cheap")

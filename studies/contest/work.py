@@ -10,13 +10,12 @@ from pathlib import Path
 from quietarm.metaheuristics import NamedProblem
 from quietarm.metaheuristics.budget.record import Scale
 from quietarm.metaheuristics.budget.run import number_of_evaluations, search_within
-from quietarm.metaheuristics.sharing.pieces import Done, Listener, Piece, Say
-from quietarm.metaheuristics.sharing.running import run_pieces
+from quietarm.metaheuristics.sharing.pieces import Done, Listener, Piece, Say, run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import QuietarmError, SolverFailedError
-from quietarm.ocp.answers.provenance import Setting
-from quietarm.ocp.base.files import read_bytes
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.files import read_bytes
+from quietarm.ocp.interrupts import note_interrupts
+from quietarm.ocp.record import Setting
 from quietarm.studies.contest.asked import Contest, Planned, check_alike
 from quietarm.studies.contest.landscape import Landscape, landscape_of
 from quietarm.studies.contest.names import name_given

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from quietarm.ocp.base.files import check_writable, write_whole
+from quietarm.ocp.files import check_writable, write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from quietarm.ocp.base.checks import whole
+from quietarm.ocp.checks import whole
 
 Dash = str | tuple[int, tuple[float, ...]]
 

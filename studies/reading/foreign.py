@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
-from quietarm.ocp.base.files import read_bytes
+from quietarm.ocp.files import read_bytes
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ from quietarm.metaheuristics import MoveFunction
 from quietarm.metaheuristics.objective.claims import FIGURES, agrees
 from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError
-from quietarm.ocp.answers.provenance import REST, Setting
-from quietarm.ocp.base.checks import whole
-from quietarm.ocp.front.evaluation import refuse_beyond_box
+from quietarm.ocp.checks import whole
+from quietarm.ocp.front.points import refuse_beyond_box
+from quietarm.ocp.record import REST, Setting
 from quietarm.studies.reading.foreign import MOST_MOTIONS, Found
 
 if TYPE_CHECKING:

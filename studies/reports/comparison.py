@@ -10,8 +10,8 @@ from quietarm.ocp.floor.search import energy_floor
 from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.comparison.tables import how_to_read, runs_table, tables, units
 from quietarm.studies.display.words import title_of
+from quietarm.studies.document.blocks import Bullets, Document, Picture, Section
 from quietarm.studies.paper import paper_points
-from quietarm.studies.report.document import Bullets, Document, Picture, Section
 from rich.console import Console
 
 if TYPE_CHECKING:

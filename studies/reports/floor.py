@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from quietarm.ocp import CycloidPolynomial, Floor, Plan, SolverFailedError, plan_move
-from quietarm.studies.report.document import Document, Facts
+from quietarm.studies.document.blocks import Document, Facts
 from quietarm.studies.reports.plan import figure_rows, move_rows, stopped_words
 
 TERMS = 6

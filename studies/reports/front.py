@@ -16,7 +16,7 @@ from quietarm.ocp.front.checking import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness.worst import worst_of
 from quietarm.studies.display.words import counted, millimetres
-from quietarm.studies.report.document import Document, Lines
+from quietarm.studies.document.blocks import Document, Lines
 from quietarm.studies.reports.plan import worst_in_words
 
 _SOLVERS = {"sqp": "sequential quadratic programs", "ipopt": "IPOPT"}

@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
-from quietarm.ocp.answers.provenance import AGREEMENT
 from quietarm.ocp.plan.robust import EXCESS
-from quietarm.ocp.task.quantities import QUANTITIES
+from quietarm.ocp.quantities import QUANTITIES
+from quietarm.ocp.record import AGREEMENT
 from quietarm.studies.display.words import millimetres, move_of, plant_words
-from quietarm.studies.report.document import Document, Facts, Lines
+from quietarm.studies.document.blocks import Document, Facts, Lines
 
 Row = tuple[str, str]
 _ROUNDING = 1e-12

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from quietarm.ocp import Plan, Robustness, Sweep
 from quietarm.ocp.robustness.measures import TOLERATED
 from quietarm.studies.display.words import move_of, plant_words
-from quietarm.studies.report.document import Bullets, Document, Picture, Section
-from quietarm.studies.report.table import Cell, Column, Table
+from quietarm.studies.document.blocks import Bullets, Document, Picture, Section
+from quietarm.studies.document.table import Cell, Column, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,9 +15,9 @@ from quietarm.metaheuristics.sharing.pieces import (
     Listener,
     Piece,
     Say,
+    run_pieces,
     to_the_end,
 )
-from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import HERE, Workers
 from quietarm.ocp import (
     CrossCheck,
@@ -34,7 +34,7 @@ from quietarm.ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.robustness.measures import tolerated_residual
 from quietarm.ocp.simulation.errors import FREQUENCY
 from quietarm.studies.paper import (

@@ -7,8 +7,7 @@ from itertools import pairwise
 
 from quietarm.ocp import Plan
 from quietarm.studies.display.words import title_of
-from quietarm.studies.paper import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH, Case
-from quietarm.studies.report.document import (
+from quietarm.studies.document.blocks import (
     Block,
     Bullets,
     Document,
@@ -17,7 +16,8 @@ from quietarm.studies.report.document import (
     Text,
     Verdict,
 )
-from quietarm.studies.report.prose import told
+from quietarm.studies.document.prose import told
+from quietarm.studies.paper import ARM_HALF, EARLIER, SINGLE_LINK_SIXTH, Case
 from quietarm.studies.reproduction.pictures import (
     against_earlier,
     floor_dots,

@@ -9,8 +9,8 @@ from operator import attrgetter
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, Spread
 from quietarm.metaheuristics.sharing.pieces import Done, Piece
 from quietarm.ocp import Floor, Front, Plan
+from quietarm.studies.document.table import Cell, Column, Line, Table, table_of
 from quietarm.studies.paper import CONDITIONS, EARLIER, Case
-from quietarm.studies.report.table import Cell, Column, Line, Table, table_of
 from quietarm.studies.reproduction.recompute import TERMS, Reproduction, RowResult
 from quietarm.studies.reproduction.systems import FREQUENCY_ERROR, SEARCHES, System, Systems
 

@@ -10,8 +10,8 @@ import numpy as np
 from quietarm.studies.comparison.measures import Comparison, Group
 from quietarm.studies.comparison.staircase import within
 from quietarm.studies.display.words import millimetres, title_of
+from quietarm.studies.document.prose import percents, told
 from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, Method
-from quietarm.studies.report.prose import percents, told
 from quietarm.studies.study.work import CaseStudy, Study
 
 STILL_LEVEL = 1

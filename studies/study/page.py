@@ -11,15 +11,12 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from quietarm.metaheuristics import PRESETS
-from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.comparison.tables import how_to_read, tables, units
 from quietarm.studies.display.saving import File, inside
 from quietarm.studies.display.words import counted, millimetres, title_of, versions_of
-from quietarm.studies.figures.axes import legend_below, new_figure
-from quietarm.studies.figures.comparison import BANDS, PANELS, looks, panel_figure
-from quietarm.studies.registry.methods import PAPERS, Method
-from quietarm.studies.report.document import (
+from quietarm.studies.document.blocks import (
     Bullets,
     Contents,
     Document,
@@ -28,9 +25,12 @@ from quietarm.studies.report.document import (
     Section,
     Text,
 )
-from quietarm.studies.report.files import page
-from quietarm.studies.report.prose import told
-from quietarm.studies.report.table import Line, Table, table_of
+from quietarm.studies.document.files import page
+from quietarm.studies.document.prose import told
+from quietarm.studies.document.table import Line, Table, table_of
+from quietarm.studies.figures.axes import legend_below, new_figure
+from quietarm.studies.figures.comparison import BANDS, PANELS, looks, panel_figure
+from quietarm.studies.registry.methods import PAPERS, Method
 from quietarm.studies.study.findings import STILL_LEVEL, at_rest, case_findings, findings, gap
 from quietarm.studies.study.work import CaseStudy, Study, StudySettings
 

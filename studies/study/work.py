@@ -19,9 +19,9 @@ from quietarm.metaheuristics.sharing.pieces import (
     NotTriedError,
     Piece,
     Say,
+    run_pieces,
     to_the_end,
 )
-from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -34,9 +34,9 @@ from quietarm.ocp import (
     energy_floor,
     polish_front,
 )
-from quietarm.ocp.answers.provenance import number_of_points
-from quietarm.ocp.base.checks import whole
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.checks import whole
+from quietarm.ocp.interrupts import note_interrupts
+from quietarm.ocp.record import number_of_points
 from quietarm.studies.comparison.measures import Comparison, compare_fronts
 from quietarm.studies.display.words import title_of
 from quietarm.studies.paper import CONDITIONS, Case, PaperPoint, paper_points

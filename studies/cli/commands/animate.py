@@ -49,9 +49,9 @@ def animate(
     from quietarm.studies.animation.formats import format_of
     from quietarm.studies.cli.ending import finish
     from quietarm.studies.display.progress import count
+    from quietarm.studies.document.blocks import Document, Lines
     from quietarm.studies.figures import Line
     from quietarm.studies.reading.saved import load_plans
-    from quietarm.studies.report.document import Document, Lines
     from rich.console import Console
 
     kind = format_of(output)

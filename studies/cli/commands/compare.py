@@ -48,8 +48,8 @@ def compare(
     from quietarm.ocp import QuietarmError
     from quietarm.studies.cli.ending import finish
     from quietarm.studies.comparison.measures import FILL, compare_fronts
+    from quietarm.studies.document.files import document_files
     from quietarm.studies.reading.saved import load_front
-    from quietarm.studies.report.files import document_files
     from quietarm.studies.reports.comparison import comparison_document, with_floor
 
     errors, trouble = Console(stderr=True), None

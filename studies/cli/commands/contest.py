@@ -88,7 +88,7 @@ def contest(
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics.sharing.workers import Workers
     from quietarm.ocp import QuietarmError
-    from quietarm.ocp.base.files import check_inside
+    from quietarm.ocp.files import check_inside
     from quietarm.studies.cli.ending import Together, finish
     from quietarm.studies.contest.asked import Contest
     from quietarm.studies.contest.measures import arenas_of
@@ -100,7 +100,7 @@ def contest(
     from quietarm.studies.contest.work import named_files, pieces_of, run_contest, set_up
     from quietarm.studies.display.progress import progress, working
     from quietarm.studies.display.words import print_lines
-    from quietarm.studies.report.document import Document, Lines
+    from quietarm.studies.document.blocks import Document, Lines
 
     names = tuple(name.strip() for name in methods.split(","))
     asked = Contest(

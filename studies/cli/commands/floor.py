@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 from quietarm.ocp import PointToPoint, energy_floor
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import task_options

@@ -19,7 +19,7 @@ from quietarm.ocp import (
     evaluate_coefficients,
     plan_move,
 )
-from quietarm.ocp.base.interrupts import note_interrupts
+from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.plan.robust import limit_of
 from quietarm.ocp.program.solving import Solver
 from quietarm.studies.cli.ending import finish, interruption

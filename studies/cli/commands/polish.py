@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 from quietarm.ocp import Front, Gain, polish_front
-from quietarm.ocp.base.checks import whole
+from quietarm.ocp.checks import whole
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import plant_file_option
@@ -18,9 +18,9 @@ from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, WHOLE
 from quietarm.studies.display.progress import count, working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.display.words import counted, millimetres
+from quietarm.studies.document.blocks import Document, Lines
+from quietarm.studies.document.table import Column, Table
 from quietarm.studies.reading.saved import load_front
-from quietarm.studies.report.document import Document, Lines
-from quietarm.studies.report.table import Column, Table
 from quietarm.studies.reports.front import failure_lines
 from rich.console import Console
 

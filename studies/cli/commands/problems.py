@@ -14,7 +14,7 @@ from quietarm.studies.cli.types import FOLDER, Parsed
 from quietarm.studies.display.progress import progress
 from quietarm.studies.display.saving import inside
 from quietarm.studies.display.words import error_words
-from quietarm.studies.report.document import Document, Lines
+from quietarm.studies.document.blocks import Document, Lines
 from rich.console import Console
 
 

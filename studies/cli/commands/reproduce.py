@@ -37,8 +37,8 @@ def reproduce(
     from quietarm.studies.cli.ending import finish
     from quietarm.studies.display.progress import progress
     from quietarm.studies.display.saving import inside
-    from quietarm.studies.report.document import Document, Lines
-    from quietarm.studies.report.files import document_files
+    from quietarm.studies.document.blocks import Document, Lines
+    from quietarm.studies.document.files import document_files
     from quietarm.studies.reproduction.recompute import pieces_of_paper, recompute_paper
     from quietarm.studies.reproduction.report import reproduction_document
     from quietarm.studies.reproduction.tables import unfinished_table

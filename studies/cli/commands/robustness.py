@@ -14,8 +14,8 @@ from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import FOLDER, INPUT, SHARE, WHOLE
 from quietarm.studies.display.progress import count
+from quietarm.studies.document.files import document_files
 from quietarm.studies.reading.saved import load_plans
-from quietarm.studies.report.files import document_files
 from quietarm.studies.reports.robustness import Figured, robustness_document
 from rich.console import Console
 

@@ -84,9 +84,9 @@ def study(
     from quietarm.studies.cli.ending import Together, finish
     from quietarm.studies.display.progress import progress
     from quietarm.studies.display.words import counted
+    from quietarm.studies.document.blocks import Bullets, Document
     from quietarm.studies.paper import CONDITIONS, Case
     from quietarm.studies.reading.saved import load_front
-    from quietarm.studies.report.document import Bullets, Document
     from quietarm.studies.study.findings import case_findings, findings
     from quietarm.studies.study.page import front_files, page_file
     from quietarm.studies.study.work import StudySettings, amount_of_work, run_study

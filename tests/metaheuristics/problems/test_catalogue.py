@@ -12,8 +12,8 @@ from quietarm.metaheuristics.objective.claims import check_figures
 from quietarm.metaheuristics.problems import finding
 from quietarm.metaheuristics.problems.catalogue import FRONTS
 from quietarm.ocp import CycloidPolynomial, evaluate_coefficients, weighted_front
-from quietarm.ocp.answers.provenance import SolveSettings
 from quietarm.ocp.plan.solver import plan_at_samples
+from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.errors import with_errors
 
 NAMES = pytest.mark.parametrize("name", PROBLEMS)

@@ -11,7 +11,7 @@ from quietarm.metaheuristics import PopulationObjective, search
 from quietarm.metaheuristics.objective.population import CANDIDATE_STEPS
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.answers.documents import plain
+from quietarm.ocp.saved import plain
 
 pi = math.pi
 SINGLE_LINK, ARM = SingleLinkManipulator(), ArmOnFlexibleLink()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from quietarm.ocp.program.batch import batch
 from quietarm.ocp.program.sqp import WIDTHS
-from quietarm.ocp.task.point_to_point import LIMITS
+from quietarm.ocp.task import LIMITS
 
 import quietarm as qa
 

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
+from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     energy_derivatives,
     resolved_energy,
 )
-from quietarm.ocp.task.quantities import QUANTITIES
 
 import quietarm as qa
 

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 from quietarm.studies.contest import page, store
-from quietarm.studies.report.document import Section
+from quietarm.studies.document.blocks import Section
 from small_contest import LINE
 
 

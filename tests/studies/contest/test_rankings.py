@@ -9,7 +9,7 @@ import pytest
 from quietarm.studies.contest.measures import Arena, Field, arenas_of
 from quietarm.studies.contest.page import contest_document, report_files
 from quietarm.studies.contest.store import Store
-from quietarm.studies.report.files import page as page_of
+from quietarm.studies.document.files import page as page_of
 from small_contest import NAME, rows_of
 
 MISSING = {

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import PointToPoint
 from quietarm.studies.comparison.tables import runs_table, tables
+from quietarm.studies.document.files import table_in_markdown
 from quietarm.studies.figures.comparison import (
     BANDS,
     PANELS,
@@ -21,7 +22,6 @@ from quietarm.studies.figures.comparison import (
     panel_figure,
 )
 from quietarm.studies.paper import ARM_HALF, SINGLE_LINK_HALF_1_0, condition_of, paper_points
-from quietarm.studies.report.files import table_in_markdown
 
 compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)
 

@@ -5,8 +5,8 @@ import dataclasses
 import io
 
 import pytest
+from quietarm.studies.document.files import table_in_markdown
 from quietarm.studies.paper import ARM_HALF, CONDITIONS, ROWS
-from quietarm.studies.report.files import table_in_markdown
 from quietarm.studies.reproduction.pictures import floor_dots
 from quietarm.studies.reproduction.tables import finding, floor_table, multiples
 

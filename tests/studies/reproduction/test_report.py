@@ -5,13 +5,13 @@ import io
 import re
 
 import pytest
+from quietarm.studies.document.files import document_files
+from quietarm.studies.document.terminal import show
 from quietarm.studies.figures import BLUE, GREEN, RED
 from quietarm.studies.paper import (
     ARM_HALF,
     SINGLE_LINK_SIXTH,
 )
-from quietarm.studies.report.files import document_files
-from quietarm.studies.report.terminal import show
 from quietarm.studies.reproduction.pictures import redrawn
 from quietarm.studies.reproduction.report import claims, reproduction_document
 from rich.console import Console

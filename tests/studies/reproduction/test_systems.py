@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from quietarm.ocp import evaluate_coefficients
+from quietarm.studies.document.files import table_in_markdown
 from quietarm.studies.paper import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
@@ -18,7 +19,6 @@ from quietarm.studies.paper import (
     residual_level,
 )
 from quietarm.studies.registry.methods import NSGA2, VEPSO
-from quietarm.studies.report.files import table_in_markdown
 from quietarm.studies.reproduction.pictures import systems_figure
 from quietarm.studies.reproduction.systems import searched
 from quietarm.studies.reproduction.tables import systems_table

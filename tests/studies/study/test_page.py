@@ -4,7 +4,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 
 import pytest
-from quietarm.studies.report.files import page as page_of
+from quietarm.studies.document.files import page as page_of
 from quietarm.studies.study.page import study_document
 from small_study import CASES
 

@@ -13,8 +13,8 @@ from quietarm.ocp import (
     SolverFailedError,
 )
 from quietarm.studies.comparison.measures import compare_fronts
+from quietarm.studies.document.files import page as page_of
 from quietarm.studies.paper import Case
-from quietarm.studies.report.files import page as page_of
 from quietarm.studies.study.findings import case_findings
 from quietarm.studies.study.page import study_document
 from quietarm.studies.study.work import Study, amount_of_work, run_study

@@ -8,8 +8,8 @@ import pytest
 from lines import MOVE, TWO_TERMS
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
-from quietarm.ocp.answers.provenance import SolveSettings
-from quietarm.studies.report.terminal import show
+from quietarm.ocp.record import SolveSettings
+from quietarm.studies.document.terminal import show
 from quietarm.studies.reports.plan import plan_document
 from rich.console import Console
 

@@ -10,8 +10,8 @@ import quietarm.studies.cli.commands.plan
 import quietarm.studies.reading.saved
 import quietarm.studies.reproduction.recompute
 import quietarm.studies.study.work
+from quietarm.studies.document.files import document_files
 from quietarm.studies.paper import ROWS
-from quietarm.studies.report.files import document_files
 from quietarm.studies.reproduction.recompute import pieces_of_paper
 
 
@@ -52,7 +52,7 @@ def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(
     # what is in the files: tests/studies/reproduction
     every = document_files
     monkeypatch.setattr(
-        "quietarm.studies.report.files.document_files",
+        "quietarm.studies.document.files.document_files",
         lambda *given: [(path, Path.touch) for path, _ in every(*given)],
     )
     (folder / "results").mkdir()

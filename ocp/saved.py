@@ -1,8 +1,4 @@
-"""Answers as JSON with a format name and a version, and back; nothing in a file is ever run.
-
-`plain` gives a value in JSON's types, `typed` is its opposite: names are those of the attributes,
-and msgspec checks every entry against its type.
-"""
+"""Answers as JSON files: saved, and loaded to equal values."""
 
 from __future__ import annotations
 
@@ -14,15 +10,17 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from enum import Enum
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
 import msgspec
 import numpy as np
 from quietarm.models import Plant, file_of_plant, known_plants
-from quietarm.ocp.base.errors import FileFormatError
-from quietarm.ocp.base.files import read_bytes, write_whole
+from quietarm.ocp.errors import FileFormatError
+from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
+from quietarm.ocp.record import Provenance
 from quietarm.ocp.robustness.uncertain import UncertainPlant
+from quietarm.ocp.simulation.objective import Motion
 
 T = TypeVar("T")
 PLANT_FILE, UNCERTAIN = "plant_file", "uncertain"
@@ -185,3 +183,73 @@ def _named(what: str, entry: dict[str, Any], known: Mapping[str, type[Any]]) -> 
     except TypeError as error:  # an entry too many or too few, in Python's words
         said = re.sub(r"^.*__init__\(\) ", "", str(error))
         raise ValueError(f"its {what} {name!r}: {said}") from None
+
+
+class Saved:
+    """An answer that has a file format: JSON, versioned, never executed.
+
+    A subclass is a dataclass; its file has its attributes.
+    """
+
+    kind: ClassVar[str]
+    """What it is, in a word: its format is named quietarm-<kind>."""
+    version: ClassVar[int]
+    """Version of its format; files of later ones are refused."""
+
+    def save(self, path: str | Path) -> None:
+        """Write the answer as JSON, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Raises
+        ------
+        ValueError
+            When the file cannot be written.
+        """
+        write_document(path, self.kind, self.version, plain(self))
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read an answer that `save` wrote.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Self
+            A value equal to the one saved.
+
+        Raises
+        ------
+        FileFormatError
+            When the file holds something else, is not whole, or of a newer version.
+        """
+        return read_document(path, cls.kind, cls.version, cls)
+
+
+class MotionAnswer(Saved):
+    """An answer that is one motion. A subclass is a dataclass with the two entries below."""
+
+    motion: Motion
+    provenance: Provenance[Any]
+
+    @property
+    def energy(self) -> float:
+        """F2: driving energy [J], by the independent integrator."""
+        return self.motion.energy
+
+    @property
+    def residual(self) -> float:
+        """F1: largest absolute tip displacement after arrival [m], by the same."""
+        return self.motion.residual
+
+    @property
+    def complete(self) -> bool:
+        """Whether the solver ran to its end; False where Ctrl-C stopped it."""
+        return self.provenance.stopped is None

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from quietarm.studies.report.table import Table
+from quietarm.studies.document.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from quietarm.ocp.task.point_to_point import LIMITS
+from quietarm.ocp.task import LIMITS
 
 import quietarm as qa
 

@@ -6,9 +6,9 @@ import io
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from quietarm.studies.report.files import table_in_markdown
-from quietarm.studies.report.table import Column, Table
-from quietarm.studies.report.terminal import show_table
+from quietarm.studies.document.files import table_in_markdown
+from quietarm.studies.document.table import Column, Table
+from quietarm.studies.document.terminal import show_table
 from rich.console import Console
 
 TABLE = Table(

@@ -1,14 +1,19 @@
-"""The two ends of a front: at rest on arrival, and with any residual."""
+"""From a sweep's solutions to a front: its two ends, and its points put together."""
 
 from __future__ import annotations
 
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from quietarm.ocp.base.errors import SolverFailedError
+from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.front.answer import Front, reference_corner
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, SAMPLING, care_of, checked, front_point
-from quietarm.ocp.front.points import FailedPoint, FrontPoint
+from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
+from quietarm.ocp.front.robust import held_between
 from quietarm.ocp.front.sweep import SAME, Sweep
+from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.plan.feasibility import least_peaks
 from quietarm.ocp.plan.starts import from_starts
 from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS, verified
@@ -109,3 +114,42 @@ def _at_rest(sweep: Sweep) -> tuple[Solution, FrontPoint] | None:
         return None
     sweep.iterations += end.iterations - first.iterations
     return found, front_point(sweep, end, simulated)
+
+
+def front_of(
+    sweep: Sweep,
+    method: str,
+    found: Sequence[FrontPoint | FailedPoint],
+    points: int,
+    *,
+    gaps: Sequence[tuple[float, float]] = (),
+    iterations: int = 0,
+    complete: bool = True,
+    seconds: float = 0.0,
+    between: bool = True,
+) -> Front:
+    """Put points together to a front."""
+    excess = None
+    if between and complete:
+        found, excess, complete = held_between(sweep, found)
+    with note_interrupts():  # the points are found; the rest takes a moment
+        reference = reference_corner(sweep.task)
+    failures = tuple(point for point in found if isinstance(point, FailedPoint))
+    settings = sweep.settings
+    return Front(
+        task=sweep.task,
+        profile=sweep.profile,
+        points=non_dominated(point for point in found if isinstance(point, FrontPoint)),
+        method=method,
+        settings={"bound": settings.bound, "points": points, "starts": settings.starts,
+                  "steps": sweep.steps, "solver": settings.solver},
+        seed=settings.seed,
+        reference=reference,
+        iterations=sweep.iterations + iterations,
+        failed=len(failures),
+        failures=failures,
+        gaps=tuple(gaps),
+        excess=excess,
+        complete=complete,
+        seconds=seconds + time.perf_counter() - sweep.began,
+    )  # fmt: skip

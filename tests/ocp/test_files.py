@@ -7,7 +7,7 @@ import sys
 import threading
 
 import pytest
-from quietarm.ocp.base.files import check_writable, write_whole
+from quietarm.ocp.files import check_writable, write_whole
 
 
 def _left_over(folder):
@@ -40,7 +40,7 @@ def test_a_disk_that_is_full_leaves_the_old_file_and_nothing_else(tmp_path):
     (tmp_path / "file").write_text("old")
     script = (
         "import resource, signal\n"
-        "from quietarm.ocp.base.files import write_whole\n"
+        "from quietarm.ocp.files import write_whole\n"
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))\n"
         "write_whole('file', 'a' * 100_000)\n"

@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 from matplotlib.figure import Figure
-from quietarm.studies.report.document import (
+from quietarm.studies.document.blocks import (
     Bullets,
     Contents,
     Document,
@@ -18,9 +18,9 @@ from quietarm.studies.report.document import (
     Text,
     Verdict,
 )
-from quietarm.studies.report.files import document_files, markdown, page
-from quietarm.studies.report.table import Column, Table
-from quietarm.studies.report.terminal import show
+from quietarm.studies.document.files import document_files, markdown, page
+from quietarm.studies.document.table import Column, Table
+from quietarm.studies.document.terminal import show
 from rich.console import Console
 
 NASTY = '<script>alert("1 & 2")</script>'

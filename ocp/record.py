@@ -11,8 +11,7 @@ from typing import Generic, Literal, TypeVar
 import casadi as ca
 import numpy as np
 from quietarm.models import __version__
-from quietarm.ocp.base.checks import finite, positive, whole
-from quietarm.ocp.base.ranges import CountFromOne, NotNegative
+from quietarm.ocp.checks import CountFromOne, NotNegative, finite, positive, whole
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.rollout import MOST_STEPS
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 from quietarm.ocp import Floor, Plan, energy_floor, plan_move
-from quietarm.ocp.base.interrupts import keep_interrupts
+from quietarm.ocp.interrupts import keep_interrupts
 
 
 def _swallow_ctrl_c():

@@ -9,9 +9,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.files import write_whole
 from quietarm.studies.display.saving import File, drawing, inside
-from quietarm.studies.report.document import (
+from quietarm.studies.document.blocks import (
     Block,
     Bullets,
     Document,
@@ -23,7 +23,7 @@ from quietarm.studies.report.document import (
     Text,
     Verdict,
 )
-from quietarm.studies.report.table import Table
+from quietarm.studies.document.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -92,7 +92,7 @@ def page(document: Document) -> str:
     from jinja2 import Environment, PackageLoader
 
     templates = Environment(
-        loader=PackageLoader("quietarm.studies", "report"),
+        loader=PackageLoader("quietarm.studies", "document"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from quietarm.ocp.base.errors import FileFormatError
+from quietarm.ocp.errors import FileFormatError
 
 MOST_BYTES = 100_000_000
 """Forty times a front of ten thousand points."""

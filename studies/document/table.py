@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
-from quietarm.ocp.base.files import write_whole
+from quietarm.ocp.files import write_whole
 
 Cell = str | int | float | None
 _PLAIN = "{:.4g}"

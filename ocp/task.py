@@ -8,10 +8,9 @@ from functools import lru_cache
 
 from quietarm.models import Plant
 from quietarm.models.contract import check_along
-from quietarm.ocp.base.checks import finite, positive
-from quietarm.ocp.base.interrupts import keep_interrupts
-from quietarm.ocp.base.threads import one_at_a_time
-from quietarm.ocp.task.quantities import QUANTITIES
+from quietarm.ocp.checks import finite, positive
+from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.quantities import QUANTITIES
 
 LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANTITIES.values()}
 """The limits that a task may set, with their units."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from quietarm.studies.display.words import print_lines
-from quietarm.studies.report.document import (
+from quietarm.studies.document.blocks import (
     Block,
     Bullets,
     Document,
@@ -16,7 +16,7 @@ from quietarm.studies.report.document import (
     Text,
     Verdict,
 )
-from quietarm.studies.report.table import Table
+from quietarm.studies.document.table import Table
 from rich import box
 from rich.console import Console
 from rich.padding import Padding

@@ -1,0 +1,91 @@
+"""Check the numbers and names that a user gives; a refusal names value and remedy."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import operator
+from collections.abc import Iterable
+from typing import Annotated, Any
+
+from msgspec import Meta
+
+
+def finite(name: str, value: Any, unit: str = "") -> float:
+    """A finite number as a float."""
+    wanted = f"number in {unit}" if unit else "number"
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is {value!r}; give a {wanted}") from None
+    if not math.isfinite(number):
+        raise ValueError(f"{name} is {value}; give a finite {wanted}")
+    return number
+
+
+def positive(name: str, value: Any, unit: str = "") -> float:
+    """A positive finite number as a float."""
+    number = finite(name, value, unit)
+    if number <= 0:
+        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
+    return number
+
+
+def not_negative(name: str, value: Any, unit: str = "") -> float:
+    """A finite number of 0 or more as a float."""
+    number = finite(name, value, unit)
+    if number < 0:
+        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give 0 or more")
+    return number
+
+
+def whole(name: str, value: Any, least: int, most: int | None = None, because: str = "") -> int:
+    """A whole number as an int."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = least - 1
+    if number < least:
+        raise ValueError(f"{name} is {value!r}; give a whole number from {least} up")
+    if most is not None and number > most:
+        raise ValueError(f"{name} is {number}; give at most {most}{because and f': {because}'}")
+    return number
+
+
+_ALIKE = 0.55
+"""Share of letters in common from which on a name is asked for."""
+_PART = 3
+"""So many letters of a longer name are enough."""
+
+
+def unknown(what: str, name: str, known: Iterable[str], also: str = "") -> str:
+    """The message about a name that is not known."""
+    known = list(known)
+    return f"unknown {what} {name!r}{_question(name, known)} (known: {', '.join(known)}{also})"
+
+
+def has_no(owner: str, what: str, name: str, known: Iterable[str]) -> str:
+    """The message about a name that something does not have."""
+    known = list(known)
+    listed = ", ".join(known) or "none"
+    return f"{owner} has no {what} {name!r}{_question(name, known)} (it has: {listed})"
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """A question for a message, with the known name that is most like an unknown one."""
+    known = list(known)
+    part = [other for other in known if len(name) >= _PART and name.lower() in other.lower()]
+    near = part or difflib.get_close_matches(name.lower(), known, n=1, cutoff=_ALIKE)
+    return f"did you mean {near[0]!r}? " if near else ""
+
+
+def _question(name: str, known: list[str]) -> str:
+    question = nearest(name, known).rstrip()
+    return f"; {question}" if question else ""
+
+
+NotNegative = Annotated[float, Meta(ge=0)]
+Positive = Annotated[float, Meta(gt=0)]
+Share = Annotated[float, Meta(ge=0, le=1)]
+Count = Annotated[int, Meta(ge=0)]
+CountFromOne = Annotated[int, Meta(ge=1)]

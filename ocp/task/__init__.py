@@ -1,4 +1,0 @@
-"""What is asked: a move of a plant, and the limits on it.
-
-May import `base`.
-"""
