@@ -43,12 +43,14 @@ TESTS = {
         "models/test_plants.py",
         "models/test_contract.py",
         "models/test_plant_file.py",
-        "ocp/task/test_point_to_point.py",
+        "ocp/test_task.py",
+        "models/test_drawing.py",
     ],
     "models/single_link.py": ["models/test_plants.py", "models/test_drawing.py"],
     "models/dual_link.py": ["models/test_dual_link.py", "models/test_drawing.py"],
     "models/arm_on_flexible_link.py": ["models/test_plants.py", "models/test_drawing.py"],
     "ocp/simulation/collocation.py": [
+        "ocp/program/test_batch.py",
         "ocp/simulation/test_jerk.py",
         "ocp/simulation/test_rollout.py",
         "ocp/robustness/test_uncertain.py",
@@ -62,6 +64,7 @@ TESTS = {
         "ocp/profiles/test_own.py",
         "ocp/profiles/test_shapers.py",
         "ocp/simulation/test_jerk.py",
+        "ocp/simulation/test_refusals.py",
     ],
     "ocp/profiles/polynomial.py": ["ocp/profiles/test_polynomial.py"],
     "ocp/simulation/residual.py": [
@@ -70,12 +73,19 @@ TESTS = {
         "ocp/profiles/test_shapers.py",
         "ocp/plan/test_shaping.py",
     ],
-    "ocp/simulation/rollout.py": ["ocp/simulation/test_rollout.py", "ocp/simulation/test_jerk.py"],
+    "ocp/simulation/rollout.py": [
+        "ocp/simulation/test_rollout.py",
+        "ocp/simulation/test_refusals.py",
+        "ocp/simulation/test_jerk.py",
+        "ocp/program/test_batch.py",
+    ],
     "ocp/simulation/resimulation.py": [
         "ocp/simulation/test_resimulation.py",
         "ocp/simulation/test_third_opinion.py",
         "ocp/simulation/test_closed_forms.py",
         "ocp/simulation/test_free_motions.py",
+        "ocp/simulation/test_refusals.py",
+        "ocp/robustness/test_uncertain.py",
     ],
 }
 """The modules to change, and the tests that should notice."""

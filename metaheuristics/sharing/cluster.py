@@ -11,7 +11,7 @@ import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from tempfile import TemporaryDirectory
@@ -116,8 +116,9 @@ def _end(cluster: LocalCluster) -> None:
     """End the workers at once, whatever they do: what they found has been handed over."""
     for nanny in cluster.workers.values():
         nanny.close_gracefully()  # else it starts the worker again while the cluster ends
-        if nanny.pid:
-            os.kill(nanny.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
+        with suppress(ProcessLookupError):  # it ended by itself, but its nanny has not noticed
+            if nanny.pid:
+                os.kill(nanny.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
 
 
 def _ask(address: str) -> None:

@@ -50,6 +50,24 @@ def test_the_tips_of_the_two_links_go_the_same_way_round():
     assert second == pytest.approx([-0.5, -0.2])
 
 
+def test_a_plant_without_a_drawing_is_a_straight_link_for_each_tip():
+    class Two(qa.SingleLinkManipulator):
+        structure = qa.Plant.structure
+
+    first, second, joint = Two().structure(0.0, [0.1, -0.2])
+    assert first.points == pytest.approx(np.array([[0, 0], [1, 0.1]]))
+    assert second.points == pytest.approx(np.array([[0, 0], [1, -0.2]]))
+    assert joint.points == pytest.approx(np.zeros((1, 2)))
+    assert [(body.rigid, body.tip) for body in (first, second, joint)] == [
+        (True, True), (True, True), (True, False)
+    ]  # fmt: skip
+
+
+def test_links_bend_and_joints_do_not():
+    first, second, joint = qa.DualLinkManipulator().structure(0.0, [0.0, 0.0])
+    assert [body.rigid for body in (first, second, joint)] == [False, False, True]
+
+
 def test_the_arm_turns_as_the_signs_of_its_equations_say():
     # The coupling of eq (13), (alpha2 + alpha3 cos theta) theta'' with alpha3 > 0 and alpha2 < 0:
     # at 0 rad a growing joint angle moves the arm towards positive w; the arm's own turning, which

@@ -1,6 +1,7 @@
 """The tip's motion after arrival, against the free decay of a damped oscillator."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from quietarm.ocp.simulation.residual import (
     extreme_rows,
     fastest_mode,
     residual_samples,
+    residuals_at_rest,
 )
 
 import quietarm as qa
@@ -52,6 +54,18 @@ def test_every_tip_decays_freely(plant, target, modes, window):
         for i, (phi, omega, zeta) in enumerate(modes):
             expected = phi * _decay(W[i], dW[i], omega, zeta, t)
             assert tips[:, i] == pytest.approx(expected, abs=1e-8 if len(t) == 101 else 1e-12)
+
+
+@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+def test_many_moves_leave_what_each_leaves_alone(tasks, name):
+    # By modal decomposition instead of the matrix of one move; both sample as closely.
+    random, targets = np.random.default_rng(4), np.array([0.3, -1.2, 2.0])
+    arrivals = random.uniform(-0.1, 0.1, (3, 2 * tasks[name].plant.modes))
+    for one, arrival, residual in zip(
+        targets, arrivals, residuals_at_rest(tasks[name], targets, arrivals), strict=True
+    ):
+        alone = qa.residual_matrix(replace(tasks[name], target=one)) @ arrival
+        assert residual == pytest.approx(np.abs(alone).max(), rel=5e-5)
 
 
 def test_the_largest_entry_is_the_amplitude():
