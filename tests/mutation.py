@@ -78,6 +78,7 @@ TESTS = {
         "ocp/simulation/test_refusals.py",
         "ocp/simulation/test_jerk.py",
         "ocp/program/test_batch.py",
+        "metaheuristics/objective/test_population.py",
     ],
     "ocp/simulation/resimulation.py": [
         "ocp/simulation/test_resimulation.py",
