@@ -14,7 +14,7 @@ from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.checks import positive
-from quietarm.ocp.quantities import QUANTITIES
+from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.registry.methods import NSGA2, VEPSO
 
 

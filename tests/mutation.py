@@ -47,7 +47,11 @@ TESTS = {
         "models/test_drawing.py",
     ],
     "models/single_link.py": ["models/test_plants.py", "models/test_drawing.py"],
-    "models/dual_link.py": ["models/test_dual_link.py", "models/test_drawing.py"],
+    "models/dual_link.py": [
+        "models/test_dual_link.py",
+        "models/test_drawing.py",
+        "models/test_plants.py",
+    ],
     "models/arm_on_flexible_link.py": ["models/test_plants.py", "models/test_drawing.py"],
     "ocp/simulation/collocation.py": [
         "ocp/program/test_batch.py",

@@ -14,11 +14,11 @@ from quietarm.ocp import Front, FrontPoint, JointProfile, Plan, PointToPoint
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.plan.verification import OVERRUN
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.robustness.worst import worst_at, worst_of
 from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.task import QUANTITIES
 
 _SAMPLE = 100
 """Points that are evaluated again: as many as one call takes. An edit or a conversion rarely leaves

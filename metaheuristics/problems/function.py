@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
 from quietarm.ocp import CycloidPolynomial, JointProfile, PointToPoint
 from quietarm.ocp.checks import unknown
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.record import coefficient_bound
 from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
 

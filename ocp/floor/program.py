@@ -18,7 +18,6 @@ from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.program.ipopt import OPTIONS, Point, compiled, run_ipopt
 from quietarm.ocp.program.solution import ENERGY
-from quietarm.ocp.quantities import QUANTITIES, ask_for_jerk
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     GAUSS_WEIGHTS,
@@ -28,8 +27,9 @@ from quietarm.ocp.simulation.collocation import (
     mesh,
     step,
 )
+from quietarm.ocp.simulation.objective import power_of
 from quietarm.ocp.simulation.rollout import march
-from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.task import QUANTITIES, PointToPoint, ask_for_jerk
 
 _AT_AN_END, _SHRINK = 3, 4.0
 """The first and last interval are cut at 1/4, 1/16 and 1/64 of their length: without a limit
@@ -228,7 +228,7 @@ def _at_nodes(
             plant.torque(joint, node.W, node.dW, node.ddW),
             plant.tip_displacements(node.W),
         )
-        values[POWER].append(torque * joint.speed)
+        values[POWER].append(power_of(torque, joint.speed))
         for name in names:
             if QUANTITIES[name].derivative is None:
                 values.setdefault(name, []).extend(QUANTITIES[name].of(joint, tips, torque))

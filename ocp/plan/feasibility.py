@@ -12,8 +12,8 @@ from quietarm.ocp.plan.verification import Checked
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
 from quietarm.ocp.program.solving import Row, solve
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.objective import WithPeaks
+from quietarm.ocp.task import QUANTITIES
 
 UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
 """Unit of every quantity that may be limited."""

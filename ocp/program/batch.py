@@ -23,10 +23,10 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.expressions import Kind, function_of_derivatives, function_of_values
 from quietarm.ocp.program.node import PathFunctions
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.rollout import node_times
+from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
 _BLOCKS, _MANY = (1, 2, 4, 8), 100

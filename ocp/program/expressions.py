@@ -14,11 +14,11 @@ import numpy as np
 from quietarm.models import Plant
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places, elementwise
-from quietarm.ocp.quantities import QUANTITIES, ask_for_jerk
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, Step, step
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.objective import energy_derivatives, resolved_energy
 from quietarm.ocp.simulation.rollout import march, node_times, symbolic_rollout
+from quietarm.ocp.task import QUANTITIES, ask_for_jerk
 
 _LEAST_SLOPE = 1e-4
 """Smaller slopes of the power at its zeros count as this share of its root mean square."""

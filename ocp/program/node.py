@@ -10,9 +10,10 @@ from collections.abc import Sequence
 import casadi as ca
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.collocation import end_to_end
 from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.simulation.objective import power_of
+from quietarm.ocp.task import QUANTITIES
 
 Places = list[tuple[int, int]]
 """Rows and columns of a matrix's nonzeros."""
@@ -101,7 +102,7 @@ class NodeFunctions:
         wrong = with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
         forcing = ca.vertcat(*wrong.modal_accelerations(joint, W, dW))
         torque, tips = wrong.torque(joint, W, dW, ddW), wrong.tip_displacements(W)
-        values = [[torque * joint.speed]]
+        values = [[power_of(torque, joint.speed)]]
         values += [list(QUANTITIES[name].of(joint, tips, torque)) for name in quantities]
         self.rows = [len(of) for of in values]
         outputs = ca.vertcat(*(one for of in values for one in of))

@@ -19,6 +19,7 @@ from quietarm.models.joint_motion import Modes
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import keep_interrupts, silent_errors
 from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.simulation.objective import power_of
 from quietarm.ocp.simulation.residual import fastest_mode
 from quietarm.ocp.task import PointToPoint
 
@@ -83,7 +84,7 @@ class Trajectory:
             modes=rows[:, 4:m],
             tips=rows[:, m:-1],
             torque=rows[:, -1],
-            power=rows[:, -1] * rows[:, 1],
+            power=power_of(rows[:, -1], rows[:, 1]),
             jerk=rows[:, 3],
         )
 

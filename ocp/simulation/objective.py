@@ -6,19 +6,24 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
-from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.task import QUANTITIES, PointToPoint
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
 ).tolist()
 _TINY = 1e-300
+
+
+def power_of(torque: Any, speed: Any) -> Any:
+    """The joint's mechanical power [W], of any kind: what F2 and the net work are integrals of."""
+    return torque * speed
 
 
 def resolved_energy(

@@ -37,7 +37,13 @@ from quietarm.ocp.simulation.cvodes import (
 )
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.extremes import extremes
-from quietarm.ocp.simulation.objective import Motion, WithPeaks, beyond_quadratic, resolved_energy
+from quietarm.ocp.simulation.objective import (
+    Motion,
+    WithPeaks,
+    beyond_quadratic,
+    power_of,
+    resolved_energy,
+)
 from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
 from quietarm.ocp.simulation.residual import fastest_mode, residual_samples
 from quietarm.ocp.task import PointToPoint
@@ -241,7 +247,7 @@ def _figures(
     errors = ca.MX.sym("e", len(names))
     states, outputs = _along(plant, law, shape, fractions, names)(given, errors)
     rows = ca.vertsplit(outputs)
-    power = ca.reshape(rows[-1] * rows[1], len(fractions), shape[1])[1:-1, :]
+    power = ca.reshape(power_of(rows[-1], rows[1]), len(fractions), shape[1])[1:-1, :]
     h = given[-1, :].T @ mesh(ca.DM(np.arange(steps)).T, steps)[1]
     at_nodes = [power[node::NODES, :].T for node in range(NODES)]
     beyond = (ca.horzcat(*at_nodes) @ weights for weights in beyond_quadratic(steps))

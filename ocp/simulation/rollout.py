@@ -23,7 +23,7 @@ from quietarm.ocp.simulation.collocation import (
     mesh,
     step,
 )
-from quietarm.ocp.simulation.objective import Motion, beyond_quadratic, resolved_energy
+from quietarm.ocp.simulation.objective import Motion, beyond_quadratic, power_of, resolved_energy
 from quietarm.ocp.simulation.residual import fastest_mode, residual_matrix
 from quietarm.ocp.task import PointToPoint
 
@@ -60,9 +60,8 @@ class SymbolicRollout:
     @property
     def power(self) -> list[Expression]:
         """Mechanical power of the joint at each Gauss node [W]."""
-        return [
-            torque * joint.speed for torque, joint in zip(self.torque, self.joints, strict=True)
-        ]
+        nodes = zip(self.torque, self.joints, strict=True)
+        return [power_of(torque, joint.speed) for torque, joint in nodes]
 
     @property
     def energy(self) -> Expression:

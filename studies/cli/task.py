@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.quantities import QUANTITIES, Quantity
+from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, typed
 from quietarm.studies.cli.plants import chosen_plant, uncertain
 from quietarm.studies.cli.quantities import parse_rate

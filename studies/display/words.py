@@ -8,7 +8,7 @@ from math import degrees
 
 from quietarm.models import Plant
 from quietarm.ocp import Front, PointToPoint
-from quietarm.ocp.quantities import QUANTITIES
+from quietarm.ocp.task import QUANTITIES
 from rich.console import Console
 
 

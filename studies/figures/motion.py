@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
-from quietarm.ocp.quantities import QUANTITIES
+from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import error_words, title_of
 from quietarm.studies.figures.axes import (
     TITLE,

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.plan.robust import EXCESS
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.record import AGREEMENT
+from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import millimetres, move_of, plant_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
 

@@ -68,6 +68,26 @@ def test_links_bend_and_joints_do_not():
     assert [body.rigid for body in (first, second, joint)] == [False, False, True]
 
 
+@pytest.mark.parametrize(
+    ("plant", "length"),  # the paper's plate and link, and the two links of docs/physics.md
+    [
+        (qa.SingleLinkManipulator, 0.475),
+        (qa.ArmOnFlexibleLink, 0.55),
+        (qa.DualLinkManipulator, 0.5),
+    ],
+)
+def test_deflections_are_small_up_to_a_tenth_of_the_link(plant, length):
+    assert plant.small_deflection == pytest.approx(length / 10)
+
+
+def test_the_arms_link_is_clamped_at_the_origin_and_bears_a_rigid_arm():
+    clamp, link, arm, motor = qa.ArmOnFlexibleLink().structure(0.7, [0.02])
+    assert [body.rigid for body in (clamp, link, arm, motor)] == [True, False, True, True]
+    assert clamp.points.mean(axis=0) == pytest.approx([0, 0])  # as far up as down
+    assert clamp.points[:, 0] == pytest.approx([0, 0])
+    assert link.points[0] == pytest.approx([0, 0])
+
+
 def test_the_arm_turns_as_the_signs_of_its_equations_say():
     # The coupling of eq (13), (alpha2 + alpha3 cos theta) theta'' with alpha3 > 0 and alpha2 < 0:
     # at 0 rad a growing joint angle moves the arm towards positive w; the arm's own turning, which

@@ -16,8 +16,8 @@ from quietarm.ocp import (
     rollout,
     sample_trajectory,
 )
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.residual import fastest_mode
+from quietarm.ocp.task import QUANTITIES
 
 LIMITS = tuple(QUANTITIES)
 

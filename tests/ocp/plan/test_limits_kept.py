@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move
-from quietarm.ocp.quantities import QUANTITIES
+from quietarm.ocp.task import QUANTITIES
 from scipy.integrate import solve_ivp
 
 MOVES = {

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
-from quietarm.ocp.quantities import QUANTITIES
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     energy_derivatives,
     resolved_energy,
 )
+from quietarm.ocp.task import QUANTITIES
 
 import quietarm as qa
 
@@ -203,4 +203,5 @@ def test_what_passes_a_limit_is_named_with_its_share_of_it():
     assert motion.passed({"residual": 1e-3, "jerk": 1.0}) == pytest.approx(
         {"residual": 2.0, "jerk": math.inf}
     )
+    assert motion.passed({"torque": 0.3}) == {}  # it may be reached
     assert motion.passed({"residual": 0.0}) == {}  # rest is judged elsewhere

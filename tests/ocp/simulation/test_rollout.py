@@ -107,6 +107,7 @@ def test_default_steps_resolve_the_profile_and_the_fastest_mode():
     # ROLLOUT_STEPS at least; two a radian of the fastest mode.
     assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8)) == ROLLOUT_STEPS
     assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 400
+    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(omega=9999.5), 1.0, 1.0)) == 19999
     assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 10.0)) == 209  # 2 * 104.3
     assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
 

@@ -83,3 +83,5 @@ def test_scipy_agrees_at_every_sample(case):
     assert found.tips == pytest.approx(other.phi * states[: other.modes].T, abs=3e-9)
     assert found.torque == pytest.approx(torque, abs=1e-8)
     assert found.power == pytest.approx(torque * joint[:, 1], abs=1e-7)
+    alone = qa.sample_trajectory(task, qa.CycloidPolynomial(len(a)), a, times[20])
+    assert alone.modes[0] == pytest.approx(found.modes[20], abs=1e-9)

@@ -18,7 +18,7 @@ import quietarm.studies.reproduction.recompute
 import quietarm.studies.study.work
 from lines import EVERY_FILE, MOVE, PLAN, TWO_TERMS, run
 from quietarm.ocp import InfeasibleTaskError, Plan
-from quietarm.ocp.quantities import QUANTITIES
+from quietarm.ocp.task import QUANTITIES
 
 
 @pytest.fixture(scope="module")
