@@ -69,11 +69,10 @@ def test_links_bend_and_joints_do_not():
 
 
 @pytest.mark.parametrize(
-    ("plant", "length"),  # the paper's plate and link, and the two links of docs/physics.md
+    ("plant", "length"),  # of the paper's plate and link
     [
         (qa.SingleLinkManipulator, 0.475),
         (qa.ArmOnFlexibleLink, 0.55),
-        (qa.DualLinkManipulator, 0.5),
     ],
 )
 def test_deflections_are_small_up_to_a_tenth_of_the_link(plant, length):
