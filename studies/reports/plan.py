@@ -13,6 +13,10 @@ from quietarm.studies.display.words import millimetres, move_of, plant_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
 
 Row = tuple[str, str]
+REST = 1e-6
+"""Residuals below this [m] count as rest in words."""
+_HARD = 5
+"""Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
 _ROUNDING = 1e-12
 """Angles below this [rad] are rounding errors."""
 
@@ -23,7 +27,7 @@ def plan_document(plan: Plan, notes: Sequence[str] = ()) -> Document:
     rows = [
         *move_rows(plan.task, motion),
         _choice(plan),
-        ("energy F2", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
+        ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
         *_worst_rows(plan),
         ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
@@ -102,17 +106,35 @@ def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
     return [
         (
-            "residual F1",
-            f"{millimetres(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
+            "residual (F1)",
+            f"{_left(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
         ),
         *((f"peak {name}", _peak(name, task, motion)) for name in known),
         ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot > _ROUNDING else "none"),
     ]
 
 
+def _left(residual: float) -> str:
+    """What is left after arrival; below a thousandth of a millimetre nobody sees a difference."""
+    return f"at rest (below {millimetres(REST)})" if residual < REST else millimetres(residual)
+
+
 def _peak(name: str, task: PointToPoint, motion: Motion) -> str:
     peak, unit = motion.peak(name), QUANTITIES[name].unit
-    return f"{millimetres(peak)}{_large(task, motion)}" if unit == "m" else f"{peak:.4g} {unit}"
+    if unit == "m":
+        return f"{millimetres(peak)}{_large(task, motion)}"
+    return f"{peak:.4g} {unit}{_hard(name, task, peak)}"
+
+
+def _hard(name: str, task: PointToPoint, peak: float) -> str:
+    """A warning where nothing limits a motion that accelerates far harder than the cycloid."""
+    cycloid = 2 * math.pi * abs(task.span) / task.duration**2  # of eq (1) with U = t / TE
+    if name != "acceleration" or task.limits or peak <= _HARD * cycloid:
+        return ""
+    return (
+        f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; give what the drive can do, "
+        "as --acceleration-limit or --torque-limit)"
+    )
 
 
 def _large(task: PointToPoint, motion: Motion) -> str:
