@@ -83,8 +83,8 @@ def _check_equations(plant: Plant) -> None:
     _check_finite(plant, points, values, slopes)
     _check_side_by_side(plant, values, beside[kept])
     _check_rest(plant, points[:, -1, 0], values)
-    by_argument = slopes[:, -1].reshape(len(points), 3 * (1 + modes), -1)
-    _check_stable(plant, points[:, -1, 0], by_argument[:, 3 : 3 + 2 * modes, :modes])
+    angles = points[:, -1, 0]
+    _check_stable(plant, angles, slopes_at_rest(plant, angles)[:, 3 : 3 + 2 * modes, :modes])
 
 
 @lru_cache(maxsize=1024)
@@ -118,6 +118,14 @@ def _equations(plant: Plant) -> ca.Function:
     x, outputs = _symbolic(plant)
     slopes = ca.vec(ca.jacobian(outputs, x))
     return ca.Function("equations", [x], [ca.densify(outputs), ca.densify(slopes)])
+
+
+def slopes_at_rest(plant: Plant, angles: Array) -> Array:
+    """Slopes with the joint at rest at angles [rad]: (angles, arguments, outputs)."""
+    columns = np.zeros((3 * (1 + plant.modes), len(angles)))
+    columns[0] = angles
+    slopes = _equations(plant)(columns)[1].full().T
+    return slopes.reshape(len(angles), len(columns), -1)
 
 
 def _symbolic(plant: Plant) -> tuple[ca.SX, ca.SX]:

@@ -20,6 +20,7 @@ import numpy as np
 from quietarm.models.contract import check_contract
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
+from quietarm.models.passive import check_passive
 
 
 def parameter(default: float, unit: str, source: str) -> Any:
@@ -49,8 +50,9 @@ class Plant(ABC):
     and gives three equations: `modal_accelerations`, `torque` and `tip_displacements`. For a given
     joint motion the modal accelerations must be affine in the modal amplitudes and their rates, and
     the tip displacements linear in the amplitudes; with the joint at rest the structure must stay
-    at rest, and no mode may grow; moving the joint must take torque. `validate` checks all of
-    it. The equations may have no value at some angles; a move must not pass these.
+    at rest, and no mode may grow; the joint must have inertia, and yield no work from rest.
+    `validate` checks all of it. The equations may have no value at some angles; a move must not
+    pass these.
 
     Raises
     ------
@@ -188,9 +190,10 @@ class Plant(ABC):
             When the class lacks its modes or the dataclass above it, a method takes other arguments
             or returns something else than it should, does not take symbols or mixes them, is not
             finite at rest, or the modes are not affine, not at rest with the joint, or unstable;
-            when moving the joint takes no torque.
+            when the joint has no positive inertia, or yields work from rest.
         """
         check_contract(self)
+        check_passive(self)
 
 
 _OF_CLASS = {"name": "str", "modes": "int", "small_deflection": "float | None"}

@@ -128,8 +128,7 @@ class PointToPoint:
 
     @one_at_a_time
     def __post_init__(self) -> None:
-        for part in self.plant.parts:
-            _validate(part)
+        _validate(self.plant)
         for name in ("start", "target"):
             angle = finite(name, getattr(self, name), "rad")
             if abs(angle) > MOST_ANGLE:

@@ -9,6 +9,7 @@ from itertools import product
 from typing import Any
 
 from quietarm.models import Body, Expression, JointMotion, Plant
+from quietarm.models.contract import check_contract
 from quietarm.ocp.checks import finite
 from quietarm.ocp.simulation.errors import checked_ranges, with_errors
 from quietarm.ocp.task import PointToPoint
@@ -94,9 +95,14 @@ class UncertainPlant(Plant):
         return self.assumed.parameters
 
     def validate(self) -> None:
-        """Check the contract of every part."""
-        for part in self.parts:
-            part.validate()
+        """Check the assumed plant, and the contract of every other part.
+
+        An error of one parameter alone may make a plant that cannot exist, as others that belong to
+        it stay as they are.
+        """
+        self.assumed.validate()
+        for part in self.parts[1:]:
+            check_contract(part)
 
     def modal_accelerations(
         self, joint: JointMotion, W: Sequence[Expression], dW: Sequence[Expression]

@@ -11,7 +11,7 @@ from numbers import Real
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.models.contract import outputs_of
+from quietarm.models.contract import check_contract, outputs_of
 from quietarm.models.joint_motion import Modes
 from quietarm.ocp.checks import finite, has_no, positive
 from quietarm.ocp.interrupts import keep_interrupts
@@ -128,7 +128,7 @@ def _checked_range(plant: Plant, name: str, size: float) -> float:
         )
     for error in (-size, size):
         try:
-            with_errors(plant, {name: error}).validate()
+            check_contract(with_errors(plant, {name: error}))
         except ValueError as problem:
             side = "lower" if error < 0 else "higher"
             raise ValueError(f"with {name} {100 * size:g} % {side}, {problem}") from None

@@ -18,7 +18,7 @@ class Sound(Plant):
         return [-(self.omega**2) * W[0] - joint.acceleration]
 
     def torque(self, joint, W, dW, ddW):
-        return joint.acceleration + ddW[0]
+        return 2 * joint.acceleration + ddW[0]
 
     def tip_displacements(self, W):
         return [W[0]]

@@ -11,9 +11,9 @@ import quietarm as qa
 
 LINEAR = qa.SingleLinkManipulator(beta2=0.0, zeta=0.0)
 RANGES = {
-    "single link": {"frequency": 0.2, "damping": 0.5, "beta1": 0.1, "alpha1": 0.1, "phi": 0.05},
+    "single link": {"frequency": 0.2, "damping": 0.5, "beta2": 0.3, "c": 0.1, "phi": 0.05},
     "arm": {"frequency": 0.2, "alpha1": 0.5, "alpha3": 0.1, "beta2": 0.3, "c": 0.2},
-    "two links": {"omega1": 0.15, "omega2": 0.15, "a2": 0.1, "b1": 0.9, "g1": 0.05},
+    "two links": {"omega1": 0.15, "omega2": 0.15, "c": 0.1, "b1": 0.9, "a2": 0.01},
 }
 
 

@@ -16,7 +16,7 @@ MOVE = [0.003347, -0.1697]  # the paper's, N = 2
 
 @pytest.fixture(scope="module")
 def task():
-    plant = qa.UncertainPlant(qa.SingleLinkManipulator(), {"frequency": 0.1, "beta1": 0.05})
+    plant = qa.UncertainPlant(qa.SingleLinkManipulator(), {"frequency": 0.1, "phi": 0.05})
     return qa.PointToPoint(plant, target=pi / 6, duration=0.8)
 
 
@@ -76,7 +76,7 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
 @pytest.mark.parametrize(
     ("ranges", "samples", "complaint"),
     [
-        (dict.fromkeys(["alpha1", "alpha2", "c", "beta1", "omega"], 0.1), (), "give at most 4"),
+        (dict.fromkeys(["phi", "beta2", "c", "zeta", "omega"], 0.1), (), "give at most 4"),
         ({"omega": 0.1}, ((0.1, 0.1),), "has 2 errors; give 1"),
         ({"omega": 0.1}, ((0.2,),), r"error of omega in a sample is 0.2; give one within \+-0.1"),
         ({"omega": 0.1}, ((float("nan"),),), "is nan; give a finite number"),
