@@ -30,21 +30,32 @@ class ArmOnFlexibleLink(Plant):
     """A tenth of the link's length: there the linear stiffness of a cantilever is 1 %
     off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
 
-    alpha1: float = parameter(-1.055e-1, "-", "eq (15)")
-    alpha2: float = parameter(-9.949e-3, "m", "eq (15)")
-    alpha3: float = parameter(5.256e-2, "m", "eq (15)")
-    alpha4: float = parameter(7.634e-2, "-", "eq (15)")
-    zeta: float = parameter(1.500e-3, "-", "eq (15)")
-    omega: float = parameter(7.320, "rad/s", "eq (15)")
-    beta1: float = parameter(5.366e-3, "kg m^2", "eq (15)")
-    beta2: float = parameter(-4.944e-3, "kg m", "eq (15)")
-    beta3: float = parameter(2.399e-2, "kg m", "eq (15)")
-    c: float = parameter(1.965e-2, "N m s", "eq (15)")
+    alpha1: float = parameter(
+        -1.055e-1, "-", "eq (15)", "how the arm's angle changes the mode's mass"
+    )
+    alpha2: float = parameter(
+        -9.949e-3, "m", "eq (15)", "push on the mode by the joint's acceleration"
+    )
+    alpha3: float = parameter(
+        5.256e-2, "m", "eq (15)", "that push times the cosine of the joint's angle"
+    )
+    alpha4: float = parameter(7.634e-2, "-", "eq (15)", "drag on the mode by the turning arm")
+    zeta: float = parameter(1.500e-3, "-", "eq (15)", "damping ratio of the mode")
+    omega: float = parameter(
+        7.320, "rad/s", "eq (15)", "frequency of the mode, arm across the link"
+    )
+    beta1: float = parameter(5.366e-3, "kg m^2", "eq (15)", "inertia of the arm")
+    beta2: float = parameter(-4.944e-3, "kg m", "eq (15)", "torque by the mode's acceleration")
+    beta3: float = parameter(
+        2.399e-2, "kg m", "eq (15)", "that torque times the cosine of the joint's angle"
+    )
+    c: float = parameter(1.965e-2, "N m s", "eq (15)", "viscous friction of the joint")
     phi: float = parameter(
         0.508,
         "-",
         "mode shape at the tip, not printed: beta3 / (M lbar) with M = 0.450 kg and "
         "lbar = 0.105 m; see docs/physics.md",
+        "displacement of the tip per modal amplitude",
     )
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:

@@ -8,14 +8,15 @@ its real part is not negative for any s whose own is positive.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models.contract import slopes_at_rest
+from quietarm.models.contract import check_contract, slopes_at_rest
 
 if TYPE_CHECKING:
     from quietarm.models.plant import Plant
@@ -44,7 +45,7 @@ def check_passive(plant: Plant) -> None:
         raise ValueError(
             f"plant {plant.name!r} has no positive inertia: with the joint at rest at "
             f"{angles[worst]:.4g} rad an acceleration of 1 rad/s^2 takes {inertia[worst]:.3g} N m, "
-            f"with the modes that follow; check {_that_matter(plant, angles[worst], _inertia)}"
+            f"with the modes that follow; check {_that_matter(plant, angles[worst])}"
         )
     shares = _work_shares(slopes)
     worst = int(shares.argmin())
@@ -52,20 +53,39 @@ def check_passive(plant: Plant) -> None:
         raise ValueError(
             f"plant {plant.name!r} yields work from rest: a joint that swings about "
             f"{angles[worst]:.4g} rad gets back more than it gave, as its torque and its modes do "
-            f"not belong together; check the signs of "
-            f"{_that_matter(plant, angles[worst], _work_shares)}"
+            f"not belong together; check the sign of {_of_wrong_sign(plant, angles[worst])}"
         )
 
 
-def _that_matter(plant: Plant, angle: float, measure: Callable[[Array], Array]) -> str:
-    """The parameters on which a measure depends most."""
+def _that_matter(plant: Plant, angle: float) -> str:
+    """The parameters on which the inertia depends, the most important first."""
     at = np.array([angle])
-    before, changes = measure(slopes_at_rest(plant, at))[0], dict[str, float]()
-    for name, value in plant.parameters.items():
-        changed = replace(plant, **{name: value * (1 - _STEP)})
-        changes[name] = abs(measure(slopes_at_rest(changed, at))[0] - before)
+    changes = {
+        name: abs(
+            float(_inertia(slopes_at_rest(one, at))[0] - _inertia(slopes_at_rest(plant, at))[0])
+        )
+        for name, one in _with_each(plant, 1 - _STEP)
+    }
     matter = [name for name in changes if changes[name] > 0]
-    return ", ".join(sorted(matter, key=lambda name: -changes[name])[:3]) or "its equations"
+    return ", ".join(sorted(matter, key=lambda name: -changes[name])) or "its equations"
+
+
+def _of_wrong_sign(plant: Plant, angle: float) -> str:
+    """The parameters that would mend the plant with the other sign."""
+
+    def mends(one: Plant) -> bool:
+        with suppress(ValueError):
+            check_contract(one)
+            return bool(_work_shares(slopes_at_rest(one, np.array([angle])))[0] >= -_IDENTIFIED)
+        return False
+
+    mended = [name for name, one in _with_each(plant, -1) if mends(one)]
+    return " or ".join(mended) or "its equations"
+
+
+def _with_each(plant: Plant, factor: float) -> Iterator[tuple[str, Plant]]:
+    for name, value in plant.parameters.items():
+        yield name, replace(plant, **{name: factor * value})
 
 
 def _inertia(slopes: Array) -> Array:

@@ -23,7 +23,7 @@ from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.passive import check_passive
 
 
-def parameter(default: float, unit: str, source: str) -> Any:
+def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
     """Declare a parameter of a plant, with its unit and the source of its value.
 
     Parameters
@@ -34,13 +34,15 @@ def parameter(default: float, unit: str, source: str) -> Any:
         SI unit, ``"-"`` where there is none.
     source : str
         Equation, table or reason.
+    meaning : str, optional
+        What it is, in words.
 
     Returns
     -------
     dataclasses.Field
         The field, for use in a frozen dataclass.
     """
-    return field(default=default, metadata={"unit": unit, "source": source})
+    return field(default=default, metadata={"unit": unit, "source": source, "meaning": meaning})
 
 
 class Plant(ABC):

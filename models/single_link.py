@@ -24,19 +24,24 @@ class SingleLinkManipulator(Plant):
     """A tenth of the plate's length: there the linear stiffness of a cantilever is 1 %
     off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
 
-    alpha1: float = parameter(2.383e-2, "kg m^2", "eq (10)")
-    alpha2: float = parameter(9.261e-2, "kg m", "eq (10)")
-    c: float = parameter(3.091e-2, "N m s", "eq (10)")
-    beta1: float = parameter(2.555e-1, "m", "eq (10)")
-    beta2: float = parameter(2.614e-1, "-", "eq (10)")
-    zeta: float = parameter(9.636e-3, "-", "eq (10)")
-    omega: float = parameter(10.43, "rad/s", "eq (10)")
+    alpha1: float = parameter(
+        2.383e-2, "kg m^2", "eq (10)", "inertia of hub and rigid link together"
+    )
+    alpha2: float = parameter(9.261e-2, "kg m", "eq (10)", "torque by the mode's acceleration")
+    c: float = parameter(3.091e-2, "N m s", "eq (10)", "viscous friction of the joint")
+    beta1: float = parameter(
+        2.555e-1, "m", "eq (10)", "push on the mode by the joint's acceleration"
+    )
+    beta2: float = parameter(2.614e-1, "-", "eq (10)", "stiffening by the joint's speed squared")
+    zeta: float = parameter(9.636e-3, "-", "eq (10)", "damping ratio of the mode")
+    omega: float = parameter(10.43, "rad/s", "eq (10)", "frequency of the mode, hub held")
     phi: float = parameter(
         2.28,
         "-",
         "mode shape at the tip, not printed: the paper's residual amplitude of 'about 7.7 cm' for "
         "the plain cycloid (pi/6 in 0.8 s) over the max |W| of 0.03382 m computed for it; see "
         "docs/physics.md",
+        "displacement of the tip per modal amplitude",
     )
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:

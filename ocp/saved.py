@@ -194,7 +194,7 @@ class Saved:
     kind: ClassVar[str]
     """What it is, in a word: its format is named quietarm-<kind>."""
     version: ClassVar[int]
-    """Version of its format; files of later ones are refused."""
+    """Version of its format; files of any other are refused."""
 
     def save(self, path: str | Path) -> None:
         """Write the answer as JSON, whole or not at all.
@@ -228,7 +228,7 @@ class Saved:
         Raises
         ------
         FileFormatError
-            When the file holds something else, is not whole, or of a newer version.
+            When the file holds something else, is not whole, or of another version.
         """
         return read_document(path, cls.kind, cls.version, cls)
 

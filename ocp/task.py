@@ -70,7 +70,7 @@ QUANTITIES: Mapping[str, Quantity] = MappingProxyType({
         Quantity("deflection", "m", "tip displacement", lambda joint, tips, torque: tips),
     )
 })  # fmt: skip
-"""Every quantity by its name."""
+"""Every quantity by its name; each has fields for its limit below and for its peak in `Motion`."""
 
 
 def ask_for_jerk(names: Iterable[str]) -> bool:
@@ -83,7 +83,7 @@ LIMITS: Mapping[str, str] = {quantity.limit: quantity.unit for quantity in QUANT
 MOST_ANGLE, LEAST_DURATION, MOST_DURATION = 1e6, 1e-6, 1e6
 """Beyond these [rad, s, s] no joint moves, and double precision does not follow."""
 LEAST_MOVE = 1e-6
-"""Of a shorter move [rad] the integrators' absolute tolerances would be a part that shows."""
+"""Below this [rad] the integrators' absolute tolerances are no longer small beside the move."""
 
 
 @dataclass(frozen=True)

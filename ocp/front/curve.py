@@ -19,9 +19,9 @@ from quietarm.ocp.plan.starts import from_starts
 from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS, verified
 from quietarm.ocp.program.solution import ENERGY, RESIDUAL, STILL, Solution
 
-_LESS_AND_LESS = (1.0, 0.1, 0.02, 2e-3)
+_ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)
 """Weights of the energy beside the residual, one solve after the other, on the way to the still end
-of an uncertain plant. There, to take another hundredth of the cheapest end's residual off would
+of an uncertain plant. At the last one, another hundredth of the cheapest end's residual less would
 cost five times the energy of the assumed plant's motion at rest."""
 
 
@@ -56,7 +56,7 @@ def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
     Where no motion arrives at rest, that end is the motion of least residual.
     """
     if between and sweep.task.errors:
-        return _of_uncertain(sweep)
+        return _ends_of_uncertain(sweep)
     still = _at_rest(sweep)  # first: it settles the number of steps
     cheapest = _best(sweep, np.inf)
     if still is None:
@@ -84,8 +84,10 @@ def _best(sweep: Sweep, residual_limit: float) -> Solution:
     return found.solution
 
 
-def _of_uncertain(sweep: Sweep) -> Ends:
-    """The ends from those of the assumed plant, whose energy it is: the cheapest is the same.
+def _ends_of_uncertain(sweep: Sweep) -> Ends:
+    """The ends of an uncertain plant, from those of the assumed one.
+
+    Its energy is that of the assumed plant, so the cheapest motion is the same.
 
     Neither rest at all samples nor the least residual is asked for: the first costs much energy
     and leaves no rest between the samples, the second any energy. The still end is where less
@@ -97,7 +99,7 @@ def _of_uncertain(sweep: Sweep) -> Ends:
     guesses = [assumed.cheapest.coefficients, assumed.still.coefficients]
     cheapest = sweep.best(guesses, sweep.ask())
     still = cheapest
-    for weight in _LESS_AND_LESS if cheapest.residual > STILL else ():
+    for weight in _ENERGY_WEIGHTS if cheapest.residual > STILL else ():
         weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / assumed.still.energy}
         found = sweep.best([still.coefficients], sweep.ask(minimise=weights))
         still = found if found.status.solved else still

@@ -22,7 +22,7 @@ from quietarm.ocp.record import SolveSettings, digits, number_of_points
 from quietarm.ocp.task import PointToPoint
 
 _SCOUTS = 5
-"""Limits between the ends at which all starts are tried; the points lie between those."""
+"""Limits between the ends that are solved first, from both ends and a random start."""
 _AUDITED = 4
 """One point in so many is also tried from random starts."""
 _ROUNDS = 3
@@ -52,9 +52,10 @@ def epsilon_front(
 ) -> Front:
     """Find the front of residual and energy by the gradient, least energy at each residual limit.
 
-    Both ends are found first, from several starts. Then come a few limits between them, from the
-    same starts, all at once. These tell how to space the points so that they lie evenly in both
-    objectives; all points are then solved at once, each from the solutions on either side.
+    Both ends are found first, from several starts. Then come a few limits between them, from both
+    ends and a random start, all at once. These tell how to space the points so that they lie
+    evenly in both objectives; all points are then solved at once, each from the solutions on either
+    side.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ def epsilon_front(
     at : sequence of float, optional
         Residuals [m] at which there is to be a point as well, where they lie between the ends.
     starts : int
-        Starts of the ends, and of points that the sweeps do not agree on.
+        Starts of the ends; from two on one random start tries the first limits and some points.
     seed : int
         Seed of the random starts.
     steps : int, optional
@@ -87,7 +88,7 @@ def epsilon_front(
     Front
         Method ``"epsilon"``; figures by the independent integrator. Points that could not be found
         are in its `failures`. Of an uncertain plant its task has the samples that this took, and
-        ``settings["excess"]`` is the share by which what a point leaves between them may pass its
+        its `excess` is the share by which what a point leaves between them may pass its
         residual. After Ctrl-C what was found until then, with ``complete`` false.
 
     Raises
@@ -111,7 +112,7 @@ def epsilon_front(
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
     found.append(checked(sweep, ends.cheapest, asked, free=True))
-    also = _between(ends, at)
+    also = _limits_at(ends, at)
     total = points + len(also)
     first, best, complete = Best(), Best(), True
     try:
@@ -162,7 +163,7 @@ def _spaced_limits(ends: Ends, scouts: Sequence[Solution], points: int) -> list[
     return np.interp(np.linspace(0.0, along[-1], points)[1:-1], along, residuals).tolist()
 
 
-def _between(ends: Ends, at: Sequence[float]) -> list[float]:
+def _limits_at(ends: Ends, at: Sequence[float]) -> list[float]:
     """Residual limits for those of these residuals that lie between the ends."""
     limits = [_JUST_BELOW * residual for residual in at]
     return [one for one in limits if ends.still.residual < one < ends.cheapest.residual]
@@ -181,8 +182,10 @@ def _solve_between(
         after = next(k for k, one in enumerate(known) if one.residual >= limit or one is known[-1])
         low, high = known[max(after - 1, 0)], known[after]
         share = (limit - low.residual) / max(high.residual - low.residual, STILL)
-        between = low.coefficients + np.clip(share, 0, 1) * (high.coefficients - low.coefficients)
-        starts += [(limit, a) for a in (between, low.coefficients, high.coefficients)]
+        on_the_line = low.coefficients + np.clip(share, 0, 1) * (
+            high.coefficients - low.coefficients
+        )
+        starts += [(limit, a) for a in (on_the_line, low.coefficients, high.coefficients)]
     _improve(sweep, best, starts, warm=True)
     audited = limits[_AUDITED // 2 :: _AUDITED]
     changed = _improve(sweep, best, [(limit, a) for limit in audited for a in sweep.guesses[1:2]])

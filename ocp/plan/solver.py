@@ -1,4 +1,4 @@
-"""The plan by a profile without coefficients: its only motion, evaluated."""
+"""`plan_move`: least energy within a residual limit, from several starts, verified."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
 _RESIDUAL_AGREEMENT = 5e-3
 _AT_REST = 0.3
-"""A residual at rest is corrected until it is below this share of that."""
+"""Of a limit, and of rest: by these shares may the two integrators' residuals differ."""
 _ROUNDS = 12
 _BELOW = 1 + 2e-8
 """A limit that is passed is tightened by this share beyond the excess: the solver's own tolerance,
@@ -70,7 +70,7 @@ def verified(
     passed to the solver, which goes on from where it stopped.
     """
     kept, used = ask.limits if kept is None else kept, dict(ask.limits)
-    still = max(STILL, STILL_SHARE * program.of_cycloid)
+    still = max(STILL, STILL_SHARE * program.plain_residual)
     tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * ask.limits.get(RESIDUAL, np.inf))
     tried: list[Verified] = []
 
@@ -110,7 +110,7 @@ def verified(
 
 
 def _from(program: Program, ask: Ask, found: Solution, solver: Solver) -> Solution:
-    """Go on from a solution beside the one that is asked for."""
+    """Solve again from a solution close by."""
     rows = [Row(program, ask, found.coefficients)]
     again = solve(rows, solver, warm=True).solutions[0]
     return replace(again, iterations=found.iterations + again.iterations)

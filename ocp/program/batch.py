@@ -30,11 +30,11 @@ from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
 _BLOCKS, _MANY = (1, 2, 4, 8), 100
-"""Rows of a compiled call with derivatives, where more rows take several; of one for values."""
+"""Rows of a compiled call with derivatives, of which more rows take several; and of one without."""
 _LEAST_STRETCH = 1e-3
 """Share of the largest speed below which a direction in a box counts as this share."""
 _PADDED = 200
-"""A function for more rows than are needed serves so many times, before one is built that fits."""
+"""So many times a larger function serves, its other rows idle, before one is built that fits."""
 
 
 @dataclass(frozen=True)

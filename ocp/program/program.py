@@ -50,8 +50,8 @@ class Program:
         self.parts = self.batch.parts
 
     @cached_property
-    def rests(self) -> list[Array]:
-        """What makes each plant's tip displacements of its state on arrival, a row a time."""
+    def tip_rows(self) -> list[Array]:
+        """For each plant, rows that give tip displacements from its state on arrival."""
         names = self.batch.kind.errors
         named = [dict(zip(names, errors.tolist(), strict=True)) for errors in self.errors]
         return [residual_rows(self.task, with_errors(self.plant, one)) for one in named]
@@ -69,7 +69,7 @@ class Program:
         return scale
 
     @property
-    def of_cycloid(self) -> float:
+    def plain_residual(self) -> float:
         """Residual of the plain motion [m]."""
         return self.peaks(self.plain)[RESIDUAL]
 
@@ -83,7 +83,7 @@ class Program:
         if name == ENERGY:
             return self.energy
         if name == RESIDUAL:
-            return max(float(np.abs(rows * self.scale).max()) for rows in self.rests) or 1.0
+            return max(float(np.abs(rows * self.scale).max()) for rows in self.tip_rows) or 1.0
         return self.peak(self.plain, name) or 1.0
 
     @keep_interrupts()  # casadi loses a Ctrl-C
@@ -94,7 +94,7 @@ class Program:
     def peaks(self, of: Derivatives, offset: Array | None = None) -> dict[str, float]:
         """The largest residual of all plants [m], and the peaks of the limited quantities."""
         arrival = of.arrival if offset is None else of.arrival + offset
-        left = [np.abs(r @ z).max() for r, z in zip(self.rests, arrival, strict=True)]
+        left = [np.abs(r @ z).max() for r, z in zip(self.tip_rows, arrival, strict=True)]
         return {RESIDUAL: float(max(left)), **{name: self.peak(of, name) for name, _ in self.parts}}
 
     def peak(self, of: Derivatives, name: str) -> float:

@@ -137,7 +137,7 @@ def _prices(stack: Stack, ended: Rows, i: int, program: Program, ask: Ask) -> di
             prices[name] = of / of_energy * program.energy / program.scale_of(name)
     if ask.at_rest:
         of_arrival = ended.of_c[i] / program.scale
-        of = _price_of_rest(of_arrival, program.rests[0])
+        of = _price_of_rest(of_arrival, program.tip_rows[0])
         prices[RESIDUAL] = of / of_energy * program.energy
     return prices
 

@@ -38,7 +38,7 @@ SHARP = (0.0,)
 _FINE = 1e-2
 """A stage ends where the model promises less than this share of its width."""
 _OPTIMAL, _MET = 1e-9, 1e-10
-"""A row is solved where the model promises no larger share of f and constraints are met so well."""
+"""A row is solved where the model promises less than this share of f; no violation is larger."""
 FEASIBLE = 1e-7
 """A row that ends otherwise is feasible with no larger violation."""
 _NEAR = 1e-3

@@ -74,12 +74,12 @@ class Stack:
         limited = any(np.isfinite(ask.limits.get(RESIDUAL, np.inf)) for ask in asks)
         if self.least != RESIDUAL and (self.at_rest or not limited):
             return np.zeros((len(asks), self.plants, 0, self._scale.shape[1]))
-        most = max(len(rows) for program in programs for rows in program.rests)
+        most = max(len(rows) for program in programs for rows in program.tip_rows)
         return np.array([
             [
                 np.pad(rows, ((0, most - len(rows)), (0, 0)))
                 / program.scale_of(RESIDUAL)
-                for rows in program.rests
+                for rows in program.tip_rows
             ]
             for program in programs
         ])  # fmt: skip

@@ -83,12 +83,12 @@ def energy_derivatives() -> ca.Function:
     breaks = ca.SX.sym("x", 2)
     c = _quadratic(ca.vertsplit(power))
     gradient = ca.gradient(_parted_energy(c, 0.0, 0.0, ca.vertsplit(breaks)), power)
-    is_zero = c[1] * c[1] > 4 * c[0] * c[2]  # else both breaks stand where the power is least
+    has_zeros = c[1] * c[1] > 4 * c[0] * c[2]  # else both breaks stand at its extreme
     bends = ca.SX.zeros(NODES, NODES)
     for i in range(2):
         x = breaks[i]
         at_zero = ca.gradient(c[0] + x * (c[1] + x * c[2]), power)
-        inside = ca.logic_and(is_zero, ca.logic_and(x > 0, x < 1))
+        inside = ca.logic_and(has_zeros, ca.logic_and(x > 0, x < 1))
         bend = 2 / ca.fmax(ca.fabs(c[1] + 2 * x * c[2]), least_slope)
         bends += ca.if_else(inside, bend, 0) * (at_zero @ at_zero.T)
     places = ca.vertcat(*_breaks(c))

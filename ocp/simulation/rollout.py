@@ -99,7 +99,7 @@ def symbolic_rollout(
     candidates : int
         Number of rows.
     jerk : bool
-        Whether the joints have a jerk, that at the times of `end_to_end`.
+        Whether the joint's jerk is computed as well, at the times of `end_to_end`.
 
     Returns
     -------
@@ -125,10 +125,10 @@ def node_times(steps: int, candidates: int = 1) -> tuple[list[ca.DM], ca.DM]:
 
 def rollout_along(plant: Plant, joints: list[JointMotion], h: Expression) -> SymbolicRollout:
     """Simulate the modes from rest along joint motions that are known at the nodes."""
-    steps_at_once = step(plant, joints, h)
-    W, dW, arrival = march(*steps_at_once.transition(), h.shape)
-    ddW = steps_at_once.accelerations(W, dW)
-    states = steps_at_once.nodes(W, dW, ddW)
+    every_step = step(plant, joints, h)
+    W, dW, arrival = march(*every_step.transition(), h.shape)
+    ddW = every_step.accelerations(W, dW)
+    states = every_step.nodes(W, dW, ddW)
     torque = [
         plant.torque(joint, node.W, node.dW, node.ddW)
         for joint, node in zip(joints, states, strict=True)

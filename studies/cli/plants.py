@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any
@@ -10,6 +11,9 @@ from quietarm.models import Plant, known_plants
 from quietarm.ocp import UncertainPlant
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import once, parse_share
+
+HERTZ_OF = "rad/s"
+"""The unit of parameters that may be given in Hz."""
 
 
 def parse_plant(name: str) -> type[Plant]:
@@ -78,9 +82,14 @@ def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
 
 
 def _number(entry: Field[Any], text: str) -> float:
+    hertz = text.removesuffix("Hz")
     try:
+        if hertz != text and entry.metadata.get("unit") == HERTZ_OF:
+            return 2 * math.pi * float(hertz)
         return float(text)
     except ValueError:
         unit = entry.metadata.get("unit", "-")
         wanted = "number" if unit == "-" else f"number in {unit}, without the unit"
+        if unit == HERTZ_OF:
+            wanted = f"number in {unit}, or one in Hz, as {entry.name}=3.2Hz"
         raise ValueError(f"parameter {entry.name} is {text!r}; give a {wanted}") from None

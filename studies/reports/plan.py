@@ -76,16 +76,13 @@ def stopped_words(after: str | None) -> str:
 def _verified_row(plan: Plan) -> Row:
     """How far the two integrators agree; the word `verified` only where that is near enough."""
     check = plan.verification
-    differ = (
-        f"{check.steps} fixed steps differ by {check.energy_share:.0e} in energy and "
-        f"{millimetres(abs(check.residual_difference))} in residual"
-    )
+    differ = f"{check.energy_share:.0e} in energy and {millimetres(abs(check.residual_difference))}"
     if check.agrees:
-        return "verified", f"by CVODES: {differ}"
+        return "verified", f"by CVODES, which differs by {differ}"
     remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
     return "not verified", (
-        f"the figures are by CVODES, and {differ}, where {AGREEMENT:g} of each is agreement; give "
-        f"{remedy}"
+        f"the figures are by CVODES; {check.steps} fixed steps differ by {differ} in residual, "
+        f"where {AGREEMENT:g} of each is agreement; give {remedy}"
     )
 
 

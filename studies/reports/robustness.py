@@ -12,6 +12,7 @@ from quietarm.ocp.robustness.measures import TOLERATED
 from quietarm.studies.display.words import move_of, plant_words
 from quietarm.studies.document.blocks import Bullets, Document, Picture, Section
 from quietarm.studies.document.table import Cell, Column, Table
+from quietarm.studies.reports.plan import REST
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,6 +34,21 @@ def robustness_table(plans: Figured) -> Table:
         row: list[Cell] = [label, plant_words(task.plant), move_of(task), plan.profile.label]
         rows.append([*row, *(cell(found) for _, cell in lines)])
     return Table("", [*columns, *(column for column, _ in lines)], rows)
+
+
+def _summary(plans: Figured) -> Table:
+    """A row for each plan: what it costs, what it leaves, and how far its plant may be wrong."""
+    some = next(iter(plans.values()))[1]
+    heads = ["energy [J]", "residual [mm]", "95 % of samples", "largest"]
+    columns = ["plan", *heads, *(f"{sweep.name} {_TOLERATED}" for sweep in some.sweeps)]
+    rows: list[list[Cell]] = []
+    for label, (plan, found) in plans.items():
+        left = [plan.residual, *(found.percentile("residual", share) for share in (95, 100))]
+        lengths = [_LENGTH(1e3 * one) if one > REST else "rest" for one in left]
+        ends = [sweep.insensitivity for sweep in found.sweeps]
+        tolerated = [f"{100 * e[0]:.2g} to {100 * e[1]:.2g} %" if e else "none" for e in ends]
+        rows.append([label, _DIGITS(plan.energy), *lengths, *tolerated])
+    return Table("", [Column(column) for column in columns], rows).turned()
 
 
 _Line = tuple[Column, Callable[[Robustness], float | None]]
@@ -123,6 +139,7 @@ def robustness_document(plans: Figured) -> Document:
     return Document(
         "Robustness",
         [
+            *([_summary(plans)] if len(plans) > 1 else []),
             table,
             Section("How to read it", [Bullets(how_to_read(plans), soft=True)]),
             Picture("robustness.png", picture, "Residual over errors"),

@@ -84,6 +84,13 @@ def test_what_is_wrong_is_told_in_one_line(changes, told):
         ({"zeta": 1e9}, r"2\.09e\+10"),
         ({"zeta": -0.01}, "unstable mode.*parameters"),
         ({"phi": 0.0}, "tip displacement 1 is 0"),
+        # eqs (8), (9) from rest: torque per acceleration = alpha1 - alpha2 beta1
+        ({"alpha1": 0.02}, r"no positive inertia.* -0\.00366 N m.*check .*alpha1"),
+        ({"alpha1": 0.0, "alpha2": 0.0}, "no positive inertia"),
+        # the mode's mass is alpha2 / beta1 times the square of its shape
+        ({"alpha2": -0.09}, "yields work from rest.*sign of alpha2 or beta1"),
+        ({"zeta": 0.0, "beta1": -0.2, "c": 0.0}, "yields work from rest"),
+        ({"c": -0.03}, "yields work from rest.*sign of c"),
     ],
 )
 def test_parameters_that_no_plant_has_are_told(parameters, told):

@@ -66,7 +66,7 @@ def test_sweeps_change_one_thing_alone(evaluated):
         assert sweep.figures.residual[100] == found.assumed.residual[0]
 
 
-def of_cycloid(r, task, length):
+def plain_residual(r, task, length):
     """What a cycloid of this length leaves of an undamped mode of r times the frequency [m].
 
     W'' + w^2 W = -b theta'' is left with b / w |integral of theta'' exp(j w t)|, where
@@ -84,7 +84,7 @@ def left(shaper, r, task, profile):
         "zvd": math.cos(math.pi * r / 2) ** 2,
         "ei": abs(1.05 / 2 * math.cos(math.pi * r) + 0.95 / 2),
     }[shaper]
-    return share * of_cycloid(r, task, task.duration - profile.length)
+    return share * plain_residual(r, task, task.duration - profile.length)
 
 
 def ends(excess, step=1e-3):
@@ -103,7 +103,7 @@ def test_the_insensitivity_of_shapers_is_that_of_the_closed_form(shaper, duratio
     task = qa.PointToPoint(LINEAR, 1.0, duration)
     profile = qa.shaped_cycloid(task, shaper)
     found = qa.evaluate_robustness(task, profile, [], {"frequency": 0.6}, samples=1)
-    sweep, plain = found.sweeps[0], of_cycloid(1.0, task, duration)
+    sweep, plain = found.sweeps[0], plain_residual(1.0, task, duration)
     assert found.cycloid == pytest.approx(plain, rel=1e-5)
     expected = [left(shaper, 1 + error, task, profile) for error in sweep.errors]
     # The steps do not end where a cycloid begins, whose jerk jumps.

@@ -35,6 +35,25 @@ def test_a_plant_of_a_file_is_evaluated_as_from_python(call, named):
     assert Plan.load("plan.json") == evaluate_coefficients(PointToPoint(crane, 1.0, 3.0), [0.1])
 
 
+def test_frequencies_may_be_given_in_hertz(call):
+    code, _, _ = call(f"evaluate crane {MOVE} --plant-file crane.py --set omega=0.5Hz {GIVEN} "
+                      "--output plan.json")  # fmt: skip
+    assert code == 0
+    assert Plan.load("plan.json").task.plant.omega == pytest.approx(math.pi)
+
+
+def test_plants_are_listed_with_what_their_parameters_mean(call):
+    code, out, err = call("plants")
+    assert (code, err) == (0, "")
+    assert all(name in out for name in ("single-link", "arm-on-flexible-link", "dual-link"))
+    code, out, _ = call("plants single-link")
+    assert code == 0
+    assert "omega   10.43 rad/s: frequency of the mode, hub held  (eq (10))" in out
+    code, out, _ = call("plants --plant-file crane.py")
+    assert code == 0
+    assert out.startswith("crane")
+
+
 def test_plans_and_floors_are_found(call):
     for command in ("plan", "floor --starts 1 --tolerance 0.1"):
         code, out, err = call(f"{command} {MOVE} --plant-file crane.py --quiet --starts 1")
