@@ -31,6 +31,7 @@ def search(
     bound: float | None = None,
     population: int | None = None,
     generations: int | None = None,
+    evaluations: int | None = None,
     settings: Mapping[str, object] | None = None,
     seed: int = 0,
     threads: int = 1,
@@ -57,6 +58,8 @@ def search(
     population, generations : int, optional
         Individuals (particles in a swarm) and generations; those of the preset by default. With
         an algorithm of your own its population counts, and generations are required.
+    evaluations : int, optional
+        Candidates in all, in place of generations: as many whole generations as they suffice for.
     settings : mapping, optional
         What else a method known by name is set to, as ``{"crossover": 0.7}``; `Preset.settings`
         says what it has.
@@ -75,8 +78,8 @@ def search(
         Called with the front so far after the first generation and every second or so, for whom the
         search itself may be lost; its ``complete`` is false.
     warn : callable, optional
-        Called with a message when the last checkpoint could not be written, which does not stop
-        the search; by default it becomes a RuntimeWarning.
+        Called with a message when evaluations suffice for few generations, or the last checkpoint
+        could not be written, which do not stop the search; by default it becomes a RuntimeWarning.
 
     Returns
     -------
@@ -100,6 +103,8 @@ def search(
 
     profile = CycloidPolynomial() if profile is None else profile
     bound = profile.default_bound if bound is None else bound
+    if evaluations is not None:
+        generations = _generations(algorithm, population, generations, evaluations, warn)
     method, chosen, asked, own = _chosen(algorithm, task, bound, population, generations, settings)
     spec = SearchSpec(task, profile, method, asked, seed, own)
     objective = PopulationObjective(task, profile, threads=threads)
@@ -122,6 +127,24 @@ def search(
     if trouble:
         warn(f"the end of the search is in no checkpoint: {trouble}")
     return replace(front, complete=not interrupts)
+
+
+def _generations(
+    algorithm: str | Algorithm,
+    population: int | None,
+    generations: int | None,
+    evaluations: int,
+    warn: Callable[[str], None],
+) -> int:
+    """As many generations as evaluations suffice for."""
+    if generations is not None:
+        raise ValueError("evaluations stand in place of generations; leave one of them out")
+    if not isinstance(algorithm, str):
+        raise ValueError("evaluations are for a method known by name; give generations")
+    preset = preset_of(algorithm)
+    if few := preset.too_few(evaluations, population):
+        warn(few)
+    return preset.generations_for(evaluations, population)
 
 
 def _chosen(

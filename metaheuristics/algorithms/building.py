@@ -13,11 +13,16 @@ from pymoo.core.algorithm import Algorithm
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 from quietarm.metaheuristics.algorithms.settings import Value
+from quietarm.metaheuristics.algorithms.velocity import VelocityRule
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.algorithms.presets import Preset  # which loads this file late
 
-_OPERATORS: dict[str, Callable[..., Any]] = {"crossover": SBX, "mutation": PM}
+_OPERATORS: dict[str, Callable[..., Any]] = {
+    "crossover": SBX,
+    "mutation": PM,
+    "rule": VelocityRule,
+}
 
 
 def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algorithm:

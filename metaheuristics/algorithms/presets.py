@@ -27,6 +27,8 @@ from quietarm.ocp.checks import not_negative, positive, unknown
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
 
+FEW = 20
+"""With fewer generations a method has hardly begun."""
 PAPER_BOX: dict[str, float] = {"single-link": 0.2, "arm-on-flexible-link": 0.5}
 """Largest absolute coefficient in the paper's searches, by plant: eqs (12) and (17)."""
 POPULATION, GENERATIONS = 100, 400
@@ -130,6 +132,27 @@ class Preset:
         """
         return self.swarms * population * generations
 
+    def generations_for(self, evaluations: int, population: int | None = None) -> int:
+        """How many whole generations so many evaluations are; ValueError where not even one."""
+        size = self.swarms * (self.population if population is None else population)
+        if evaluations < size:
+            raise ValueError(
+                f"evaluations is {evaluations}, less than one generation of {self.name}, {size}; "
+                "give more, or a smaller population"
+            )
+        return evaluations // size
+
+    def too_few(self, evaluations: int, population: int | None = None) -> str:
+        """What to say where evaluations leave few generations; empty where they leave enough."""
+        count = self.generations_for(evaluations, population)
+        if count >= FEW or not self.settings:  # a baseline learns from no generation
+            return ""
+        size = self.population if population is None else population
+        return (
+            f"{evaluations} evaluations are {count} generations of {self.name} with a population "
+            f"of {size}; a smaller population leaves more of them"
+        )
+
 
 def preset_of(name: str) -> Preset:
     """A method by its name; ValueError suggests the nearest one."""
@@ -200,6 +223,14 @@ _ALL = (
             _velocity("velocity_limit", 1.0),
             Setting("archive_size", "archive_size", None,
                     "most points of the front; all are kept by default", count(2)),
+            Setting("inertia", "rule.inertia_start", 1.0,
+                    "share of its velocity that a particle keeps at first", not_negative),
+            Setting("last_inertia", "rule.inertia_end", 1.0, "that share at the end",
+                    not_negative),
+            Setting("constriction", "rule.constriction", 0.729, "factor of every velocity",
+                    positive),
+            Setting("cognitive", "rule.cognitive", 2.05, "pull to its own best", not_negative),
+            Setting("social", "rule.social", 2.05, "pull to the next swarm's best", not_negative),
         ),
         population=100, generations=200, swarms=2, most=100_000,
     ),
@@ -284,6 +315,10 @@ _ALL = (
                     yes_or_no),
         ),
     ),
+    Preset("random", "random search", "Bergstra and Bengio 2012",
+           f"{_OURS}.sampling:RandomSearch", (), most=100_000),
+    Preset("lhs", "latin hypercubes", "McKay, Beckman and Conover 1979",
+           f"{_OURS}.sampling:LatinHypercubes", (), most=2_000),
 )  # fmt: skip
 
 PRESETS: Mapping[str, Preset] = {preset.name: preset for preset in _ALL}

@@ -10,7 +10,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative
+from quietarm.ocp.checks import Count, NotNegative, Positive, not_negative, whole
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
     FailedPoint,
@@ -174,6 +174,7 @@ class Front(Saved):
         profile: JointProfile | None = None,
         settings: Mapping[str, Setting] | None = None,
         seed: int | None = None,
+        evaluations: int | None = None,
     ) -> Self:
         """The front of motions that were found elsewhere.
 
@@ -195,11 +196,13 @@ class Front(Saved):
             Settings of the method; a ``bound`` on the coefficients must be kept.
         seed : int, optional
             Seed of its random numbers.
+        evaluations : int, optional
+            Candidates that it took to find them; as many as there are motions by default.
 
         Returns
         -------
         Front
-            The front. `evaluations` counts all motions, `failed` those that CVODES cannot follow,
+            The front. `failed` those that CVODES cannot follow,
             `infeasible` those that break a limit by more than 1e-9.
 
         Raises
@@ -211,6 +214,8 @@ class Front(Saved):
         settings = settings_given({} if settings is None else settings)
         table = table_of(coefficients)
         profile = CycloidPolynomial(table.shape[1]) if profile is None else profile
+        if evaluations is not None:
+            evaluations = whole("evaluations", evaluations, len(table))
         found = evaluated(task, profile, table, settings.get("bound"))
         return cls(
             task=task,
@@ -220,7 +225,7 @@ class Front(Saved):
             settings=settings,
             seed=seed,
             reference=reference_corner(task),
-            evaluations=len(table),
+            evaluations=len(table) if evaluations is None else evaluations,
             failed=found.failed,
             infeasible=found.infeasible,
             seconds=time.perf_counter() - began,

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import casadi as ca
@@ -85,7 +85,8 @@ class Batch:
         self.kind = kind
         self._built: dict[int, BufferedFunction] = {}
         self._lent = dict.fromkeys(_BLOCKS, 0)
-        self._idle: list[BufferedFunction] = []
+        self._valued, self._singles = dict[int, ca.Function](), 0
+        self._idle: dict[int, list[BufferedFunction]] = {1: [], _MANY: []}
 
     def even_axes(self, boxed: bool = False) -> Array:
         """Axes along which the path's speed changes alike and independently.
@@ -138,9 +139,13 @@ class Batch:
             found.append((name, slice(first, first + count)))
         return found
 
-    @cached_property
-    def _valued(self) -> ca.Function:
-        return function_of_values(self.kind, _MANY)
+    def _for_values(self, rows: int) -> int:
+        """Rows of the function that values are asked of: one for who asks for single ones often."""
+        self._singles += rows == 1
+        size = 1 if rows == 1 and self._singles > _PADDED else _MANY
+        if size not in self._valued:
+            self._valued[size] = function_of_values(self.kind, size)
+        return size
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:
@@ -149,24 +154,26 @@ class Batch:
         Arguments as for `derivatives`; the energy takes in what neighbouring steps say, and is a
         little more exact.
         """
-        blocks = _blocks((coefficients, move, errors), _MANY)
+        size = self._for_values(len(coefficients))
+        blocks = _blocks((coefficients, move, errors), size)
+        evaluate = partial(self._values, size)
         if threads > 1 and len(blocks) > 1:
             with ThreadPoolExecutor(threads) as pool:
-                parts = list(pool.map(self._values, blocks))
+                parts = list(pool.map(evaluate, blocks))
         else:
-            parts = [self._values(block) for block in blocks]
+            parts = [evaluate(block) for block in blocks]
         energy, arrival, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
         return Values(energy[:, 0], arrival, limited)
 
-    def _values(self, block: list[Array]) -> list[Array]:
+    def _values(self, size: int, block: list[Array]) -> list[Array]:
         try:
-            function = self._idle.pop()
+            function = self._idle[size].pop()
         except IndexError:  # all are in use by other threads, or none is made yet
-            function = BufferedFunction(self._valued)
+            function = BufferedFunction(self._valued[size])
         rows = len(block[0])
-        found = function(*(_filled(one, _MANY).T for one in block))
+        found = function(*(_filled(one, size).T for one in block))
         copies = [one[:, :rows].T.copy() for one in found]
-        self._idle.append(function)
+        self._idle[size].append(function)
         return copies
 
     def derivatives(

@@ -48,6 +48,11 @@ class Entry:
         check_method(method, population, own)
         return cls(method, own, population, name_of(method, {**stated, **own}))
 
+    def too_few(self, evaluations: int) -> str:
+        """What to say where the evaluations leave few generations."""
+        search, _ = parts_of(self.method)
+        return PRESETS[search].too_few(evaluations, self.population) if search in PRESETS else ""
+
     def can_search(self, problem: NamedProblem) -> bool:
         """Whether it keeps the limits of a problem, where that has some."""
         search, _ = parts_of(self.method)

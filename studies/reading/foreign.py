@@ -17,7 +17,7 @@ from quietarm.ocp.files import read_bytes
 Array = NDArray[np.float64]
 
 MOST_MOTIONS = 1_000_000
-_COEFFICIENT = re.compile(r"(?:a|x|coefficient)[ _]?\(?\[?(\d+)\]?\)?", re.IGNORECASE)
+_COEFFICIENT = re.compile(r"(?:a|x|coefficient)?[ _]?\(?\[?(\d+)\]?\)?", re.IGNORECASE)
 _CLAIMS: Mapping[str, tuple[int, float]] = {
     "residual": (0, 1.0), "residual_m": (0, 1.0), "residual_mm": (0, 1e-3), "f1": (0, 1.0),
     "energy": (1, 1.0), "energy_j": (1, 1.0), "energy_mj": (1, 1e-3), "f2": (1, 1.0),
@@ -84,7 +84,10 @@ def _of_text(text: str) -> Found:
     between = next((mark for mark in (";", "\t", ",") if mark in lines[0][1]), None)
     rows = [(i, [cell.strip().strip('"') for cell in line.split(between)]) for i, line in lines]
     names = None
+    counted = [str(i) for i in range(len(rows[0][1]))]  # how pandas names columns without names
     try:
+        if len(counted) > 1 and rows[0][1] == counted:
+            raise ValueError
         _numbers(rows[0][1], between)
     except ValueError:
         names = rows.pop(0)[1]
@@ -112,6 +115,10 @@ def _by_columns(names: Sequence[str] | None, table: Array) -> Found:
     """What the columns of a table are."""
     claims = np.full((len(table), 2), np.nan)
     if names is None:
+        if min(table.shape) > 1 and np.array_equal(table[:, 0], np.arange(len(table))):
+            raise FileFormatError(
+                "its first column counts the rows; leave it out, in pandas by index=False"
+            )
         return Found(table, claims)
     numbered, ignored = dict[int, int](), list[str]()
     for column, name in enumerate(names):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +14,6 @@ from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.record import REST, Setting
 from quietarm.studies.reading.foreign import MOST_MOTIONS, Found
-
-if TYPE_CHECKING:
-    pass
 
 Array = NDArray[np.float64]
 
@@ -61,10 +57,13 @@ def import_front(
     found: Found,
     method: str,
     settings: dict[str, Setting],
+    evaluations: int | None = None,
 ) -> tuple[Front, list[Claim]]:
     """The front of coefficients from elsewhere, and how its claims compare."""
     table = found.coefficients
     whole("number of motions", len(table), 1, MOST_MOTIONS)
+    if evaluations is not None:
+        evaluations = whole("evaluations", evaluations, len(table))
     rows = np.array([_checked(i, row, profile, task) for i, row in enumerate(table, start=1)])
     refuse_beyond_box(profile, rows, settings.get("bound"))
     widest = max(float(np.abs(rows).max()), 1e-3)  # any box: the function needs one
@@ -80,7 +79,7 @@ def import_front(
     )
     front = replace(
         front,
-        evaluations=len(rows),
+        evaluations=evaluations or len(rows),
         failed=int(failed.sum()) + front.failed,
         infeasible=int(broken.sum()) + front.infeasible,
     )

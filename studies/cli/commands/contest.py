@@ -119,6 +119,9 @@ def contest(
     if not quiet and any(place.startswith("runs/") for place in store.kept):
         print_lines(errors, asked.how_far(store))
     warn_of_workers(errors, workers, len(pieces))
+    if not quiet:
+        few = (one.too_few(evaluations) for one in asked.entries.values())
+        print_lines(errors, *filter(None, few))
     with progress(len(pieces), errors, quiet=quiet) as begin:
         done = run_contest(pieces, store, asked.workers, begin)
     arenas, trouble = arenas_of(store), _why_not_whole(done, len(pieces))

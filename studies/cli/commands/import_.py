@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     "--terms", type=WHOLE, help="Refuse the file if it has another number of coefficients."
 )
 @click.option("--bound", type=float, help="Refuse coefficients beyond this box.")
+@click.option("--evaluations", type=WHOLE, help="Candidates that it took to find them.")
 @click.option("--method", help="What found them; by default the name of the file.")
 @click.option("--output", type=OUTPUT, help="Write the front to this JSON file.")
 @click.option("--csv", "csv_file", type=OUTPUT, help="Write its points to this CSV file.")
@@ -42,6 +43,7 @@ def import_(
     profile: str,
     terms: int | None,
     bound: float | None,
+    evaluations: int | None,
     method: str | None,
     output: Path | None,
     csv_file: Path | None,
@@ -80,7 +82,7 @@ def import_(
     name = method or file.stem
     with working("evaluating", Console(stderr=True), quiet=quiet):
         try:
-            front, claims = import_front(task, motions, found, name, settings)
+            front, claims = import_front(task, motions, found, name, settings, evaluations)
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
 

@@ -69,7 +69,8 @@ OTHERS = {
     "boundary": "reflect", "velocity_limit": 0.3, "archive_size": 7, "crossover": 0.75,
     "crossover_gene": 0.25, "crossover_eta": 9, "mutation": 0.25, "mutation_gene": 0.3,
     "mutation_eta": 9, "normalise": False, "neighbours": 5, "neighbour_mating": 0.5, "alpha": 3,
-    "adaptation": 0.2, "inertia": 0.5, "cognitive": 1, "social": 1, "elites": 4,
+    "adaptation": 0.2, "inertia": 0.5, "last_inertia": 0.5, "constriction": 0.7,
+    "cognitive": 1, "social": 1, "elites": 4,
     "first_velocity": "zero", "variant": "DE/best/2/exp", "scale": 0.5, "jitter": 0,
     "repair": "midway", "delta": 0.01, "objective_crowding": False, "coefficient_crowding": False,
 }  # fmt: skip

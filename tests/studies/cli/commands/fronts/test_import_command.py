@@ -103,6 +103,9 @@ FILES = {
         [np.arange(len(X)), X]).tolist()), "ignored: run"),
     "pandas.csv": (table(["", "a_1", "a_2"], np.column_stack(
         [np.arange(len(X)), X]).tolist()), "ignored: a column without a name"),
+    "pandas-numbers.csv": (table(["", "0", "1"], np.column_stack(
+        [np.arange(len(X)), X]).tolist()), "ignored: a column without a name"),
+    "pandas-no-index.csv": (table(["0", "1"], X.tolist()), "neither"),
     "mm.csv": (table(["a_1", "a_2", "residual_mm"], np.column_stack(
         [X, CLAIMS[:, 0] * 1e3]).tolist()), "residual is right"),
     "matrix.npy": (numpy_file(X), "neither"),
@@ -122,6 +125,15 @@ def test_files_of_many_kinds(call, folder, name):
     assert (code, err) == (0, "")
     assert_same(Front.load("f.json"))
     assert words in out
+
+
+def test_what_it_took_to_find_them_is_kept(call, folder):
+    written("f.csv", table(["a_1", "a_2"], X.tolist()))
+    assert call(f"import f.csv {IMPORT} --evaluations 2e4 --output f.json")[0] == 0
+    assert Front.load("f.json").evaluations == 20_000
+    code, _, err = call(f"import f.csv {IMPORT} --evaluations 1")
+    assert code == 2
+    assert f"evaluations is 1; give a whole number from {len(X)} up" in err
 
 
 def test_motions_that_others_beat_or_that_break_limits_are_left_out(call, folder):
@@ -151,6 +163,7 @@ BAD = [
     (b"\xff\xfe\x00", "it is no text"),
     ("a_1,a_2\nnan,0.1\n", "motion 1: coefficient 1 is nan; give a finite number"),
     ("a_1,a_2\n0.3,0.1\n", "beyond the stated bound of 0.2; correct it, or state a wider bound"),
+    ("0,0.1,0.1\n1,0.1,0.2\n", "its first column counts the rows; leave it out, in pandas by"),
     ("a_1\x1b[31m,a_2\n0.1,0.1\n", "there is no column for coefficient 1"),
 ]
 
