@@ -123,24 +123,28 @@ def ranks_figure(found: Ranking) -> Figure:
     ax, count = figure.subplots(), len(found.methods)
     bars, half = found.alike, (count + 1) // 2
     first = 0.5 + 0.35 * len(bars)
+    low, high = (1, count) if found.critical is not None else (found.ranks[0], found.ranks[-1])
+    room = 0.12 * max(high - low, 1)
     for place, (method, rank) in enumerate(zip(found.methods, found.ranks, strict=True)):
         left = place < half
         depth = first + (place if left else count - 1 - place) + 0.5
-        edge, side = (1 - 0.25, "right") if left else (count + 0.25, "left")
+        edge, side = (low - room, "right") if left else (high + room, "left")
         ax.plot([rank, rank, edge], [0, depth, depth], color="0.35", linewidth=0.9)
         name = f" {label_of(method)} ({rank:.2f}) "
         ax.text(edge, depth, name, va="center", ha=side, fontsize=9)
     for number, (begin, end) in enumerate(bars):
-        ends, depth = (found.ranks[begin] - 0.04, found.ranks[end] + 0.04), 0.35 * (number + 1)
+        beyond, depth = 0.16 * room, 0.35 * (number + 1)
+        ends = found.ranks[begin] - beyond, found.ranks[end] + beyond
         ax.plot(ends, (depth, depth), color="black", linewidth=3.5, solid_capstyle="butt")
-    longest = 1 + found.critical
-    ax.plot([1, longest], [-1.0, -1.0], "|-", color="black", linewidth=1.2)
-    words = f"  critical difference {found.critical:.2f}"
-    ax.text(longest, -1.0, words, va="center", fontsize=8)
-    ax.set_xlim(1 - 0.25, count + 0.25)
+    if found.critical is not None:
+        longest = 1 + found.critical
+        ax.plot([1, longest], [-1.0, -1.0], "|-", color="black", linewidth=1.2)
+        words = f"  critical difference {found.critical:.2f}"
+        ax.text(longest, -1.0, words, va="center", fontsize=8)
+        ax.set_xticks(range(1, count + 1))
+    ax.set_xlim(low - room, high + room)
     ax.set_ylim(first + half + 0.4, -1.5)
     ax.xaxis.tick_top()
-    ax.set_xticks(range(1, count + 1))
     ax.yaxis.set_visible(False)
     ax.spines[["left", "right", "bottom"]].set_visible(False)
     ax.spines["top"].set_position(("data", 0.0))

@@ -121,7 +121,7 @@ def section(arena: Arena, methods: Sequence[str]) -> Section:
 
 def _ranks(found: Ranking) -> Picture:
     name = f"ranks-{found.on.replace(' ', '-')}.png"
-    words = f"{_RANKS} Over {found.blocks}. {verdict(found)}"
+    words = f"{_RANKS} Over {found.over}. {verdict(found)}"
     return Picture(name, partial(ranks_figure, found), words)
 
 

@@ -9,13 +9,21 @@ from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
 from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, Field, methods_in
 from quietarm.studies.contest.names import is_own, label_of, method_in
-from quietarm.studies.contest.statistics import ALPHA, Ranking, why_none
+from quietarm.studies.contest.statistics import ALPHA, Ranking, nearest, why_none
 from quietarm.studies.contest.tables import evaluations_words
 from quietarm.studies.display.words import counted, versions_of
 from quietarm.studies.document.prose import told
 
 _ALWAYS = ("casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment")
-_STATISTICS = ("scipy", "friedman", "demsar", "mannwhitney", "holm", "varghadelaney")
+_STATISTICS = (
+    "scipy",
+    "kruskalwallis",
+    "friedman",
+    "demsar",
+    "mannwhitney",
+    "holm",
+    "varghadelaney",
+)
 
 
 def bibtex(methods: Iterable[str], *, statistics: bool) -> str:
@@ -44,16 +52,26 @@ _EXACT = "the exact front's"
 
 def findings(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> list[str]:
     """What is to be read first."""
-    lines = [
-        f"{arena.problem}: {arena.best.label} ends nearest to the exact front, with "
-        f"{_missing_words(arena.best, 'its')}."
-        for arena in arenas
-    ]
+    lines = [f"{arena.problem}: {_headline(arena)}." for arena in arenas]
     none = why_none(arenas)
     lines += [f"{none}."] if none else []
     for arena in arenas:
         lines += [f"{arena.problem}: {line}." for line in _unequal(arena)]
     return [*lines, *not_alike(arenas), *(f"{note}." for note in notes)]
+
+
+def _headline(arena: Arena) -> str:
+    """Who ends nearest to the exact front: a winner only where the tests name one."""
+    missing = _missing_words(arena.best, "its")
+    if why_none([arena]):
+        return f"{arena.best.label} ends nearest to the exact front, untested, with {missing}"
+    best, *alike = (field.label for field in nearest(arena))
+    if not alike:
+        return f"{best} ends nearest to the exact front, with {missing}"
+    return (
+        f"the tests name no winner among {', '.join([best, *alike])}; {best} ends nearest to the "
+        f"exact front, with {missing}"
+    )
 
 
 def _unequal(arena: Arena) -> list[str]:
@@ -98,10 +116,13 @@ def _missing_words(one: Field, whose: str) -> str:
 
 def verdict(found: Ranking) -> str:
     """What the tests say of a ranking."""
+    pairs = "pairs are told apart by the Mann-Whitney test after Holm"
+    if found.critical is not None:
+        pairs = f"Nemenyi's critical difference is {found.critical:.2f}"
     says = "the methods differ" if found.differ else "no difference is shown"
     return (
-        f"Friedman's test: chi2 = {found.statistic:.3g}, p = {found.p_value:.2g}, {says} at "
-        f"{100 * ALPHA:g} %; Nemenyi's critical difference is {found.critical:.2f}."
+        f"{found.test}: chi2 = {found.statistic:.3g}, p = {found.p_value:.2g}, {says} at "
+        f"{100 * ALPHA:g} %; {pairs}."
     )
 
 

@@ -95,9 +95,18 @@ def _of_runs(count: int, field: Field) -> str:
 
 def ranks_table(rankings: Sequence[Ranking]) -> Table:
     """Mean ranks of every method, by what was ranked on: one row a method and ranking."""
-    names = "on blocks method mean_rank friedman_statistic friedman_p critical_difference"
+    names = "on over method mean_rank test statistic p critical_difference"
     rows: list[list[Cell]] = [
-        [found.on, found.blocks, method, rank, found.statistic, found.p_value, found.critical]
+        [
+            found.on,
+            found.over,
+            method,
+            rank,
+            found.test,
+            found.statistic,
+            found.p_value,
+            found.critical,
+        ]
         for found in rankings
         for method, rank in zip(found.methods, found.ranks, strict=True)
     ]

@@ -221,9 +221,11 @@ def test_a_candidate_that_is_not_finite_spoils_only_its_own_row(tasks, name, bad
         assert np.array_equal(getattr(values, attribute)[kept], getattr(expected, attribute)[kept])
 
 
-def test_who_asks_for_single_candidates_gets_the_same_figures(tasks):
+def test_who_asks_for_single_candidates_gets_the_same_figures():
     # from some number of calls on by a function of one row; 200 are padded before it is built
-    objective = PopulationObjective(tasks["arm"], CycloidPolynomial(3))
+    objective = PopulationObjective(
+        PointToPoint(SingleLinkManipulator(), 1.5, 0.8), CycloidPolynomial(3)
+    )
     rows = np.random.default_rng(3).uniform(-0.3, 0.3, (210, 3))
     together = objective(rows)
     alone = [objective(row[None]) for row in rows]

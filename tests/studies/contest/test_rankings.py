@@ -22,6 +22,8 @@ ORDER = ["nsga2", "gde3", "vepso"]
 STATISTIC = 10.0
 """Friedman's largest: five blocks times three methods less one; of two degrees of freedom."""
 P_VALUE = math.exp(-STATISTIC / 2)
+WITHIN = 12 / (15 * 16) * 5 * (5**2 + 6**2 + 13**2) - 3 * 16
+"""Kruskal and Wallis's of mean ranks 5, 6 and 13 among 15 runs, again of two degrees of freedom."""
 CRITICAL = 2.343 * math.sqrt(3 * 4 / (6 * 5))
 """Nemenyi's, with Demsar's quantile for three (Journal of Machine Learning Research 7 (2006))."""
 APART = 3 * 2 / math.comb(10, 5)
@@ -71,11 +73,16 @@ def test_tables_hold_ranks_and_pairs(arenas, folder):
     ranks = rows_of(folder, "ranks")
     assert [row["method"] for row in ranks] == 6 * ORDER
     assert [row["on"] for row in ranks[::3]] == [*(one.problem for one in arenas), "all problems"]
-    assert [row["blocks"] for row in ranks[::3]] == 5 * ["5 seeds"] + ["5 problems"]
-    assert [float(row["mean_rank"]) for row in ranks] == 6 * [1, 2, 3]
-    for row in ranks:
-        assert float(row["friedman_statistic"]) == pytest.approx(STATISTIC, rel=1e-6)
-        assert float(row["friedman_p"]) == pytest.approx(P_VALUE, rel=1e-3)
+    assert [row["over"] for row in ranks[::3]] == 5 * ["15 runs"] + ["5 problems"]
+    assert [float(row["mean_rank"]) for row in ranks] == 5 * [5, 6, 13] + [1, 2, 3]
+    for row in ranks[:15]:
+        assert row["test"] == "The Kruskal-Wallis test"
+        assert float(row["statistic"]) == pytest.approx(WITHIN, rel=1e-6)
+        assert float(row["p"]) == pytest.approx(math.exp(-WITHIN / 2), rel=1e-3)
+    for row in ranks[15:]:
+        assert row["test"] == "Friedman's test"
+        assert float(row["statistic"]) == pytest.approx(STATISTIC, rel=1e-6)
+        assert float(row["p"]) == pytest.approx(P_VALUE, rel=1e-3)
         assert float(row["critical_difference"]) == pytest.approx(CRITICAL, rel=1e-3)
     pairs = rows_of(folder, "pairs")
     known = {
@@ -98,13 +105,13 @@ def test_pictures_are_those_of_every_problem_and_of_all(arenas, folder):
 
 def test_the_page_says_it_for_a_problem(arena, quick_pictures):
     text = unescape(page_of(contest_document([arena])))
-    assert "Over 5 seeds. Friedman's test" in text
-    assert f"chi2 = 10, p = {P_VALUE:.2g}, the methods differ at 5 %" in text
-    assert f"critical difference is {CRITICAL:.2f}" in text
+    assert "the tests name no winner among NSGA-II, GDE3; NSGA-II ends nearest" in text
+    assert "Over 15 runs. The Kruskal-Wallis test" in text
+    assert f"chi2 = 9.5, p = {math.exp(-WITHIN / 2):.2g}, the methods differ at 5 %" in text
     # a square: how likely a run of the line's method misses less than one of the column's
     square = text[text.index("How likely a run misses less") :]
     assert cells(square, "NSGA-II") == ["1.00*", "-", "0.60"]
     assert cells(square, "VEPSO") == ["-", "0.00*", "0.00*"]
-    assert "Differences are tested at 5 %: by Friedman" in text
+    assert "Differences are tested at 5 %: on each problem by the Kruskal-Wallis" in text
     for author in ("Friedman, Milton", "Mann, Henry B.", "Holm, Sture", "Vargha"):
         assert author in text

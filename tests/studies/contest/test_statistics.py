@@ -46,6 +46,21 @@ def test_methods_that_are_always_in_one_order_are_told_apart():
     assert found.alike == []
 
 
+def test_bars_join_what_the_tests_of_pairs_do_not_tell_apart():
+    # five runs each: a and b mixed, c beyond both, so that Mann and Whitney tell it from either
+    mixed = Arena(a=[1, 3, 5, 7, 9], b=[2, 4, 6, 8, 10], c=[11, 12, 13, 14, 15])
+    found = ranking_on(mixed)
+    assert (found.methods, found.ranks) == (("a", "b", "c"), (5, 6, 13))
+    assert found.statistic == pytest.approx(9.5)  # 12 / (15 16) 5 (5^2 + 6^2 + 13^2) - 3 16
+    assert found.alike == [(0, 1)]
+    alike = ranking_on(Arena(a=[1, 2, 3, 4, 5], b=[1, 2, 3, 4, 5], c=[1, 2, 3, 4, 5]))
+    assert not alike.differ
+    assert alike.alike == [(0, 2)]
+    # whichever runs stand beside each other: no seed makes a pair of two methods
+    other = Arena(a=[9, 7, 5, 3, 1], b=[4, 2, 6, 8, 10], c=[15, 12, 13, 14, 11])
+    assert ranking_on(other) == found
+
+
 def test_equal_methods_are_not_told_apart():
     found = ranking(np.ones((10, 3)), "abc", "seeds")
     assert found.ranks == (2, 2, 2)
