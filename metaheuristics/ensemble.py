@@ -69,7 +69,7 @@ class Spread:
     Attributes
     ----------
     lower, median, upper : float
-        Quartiles over the seeds that have the figure; NaN where none has it.
+        Quartiles over all seeds; infinite where they fall on a seed without the figure.
     count, seeds : int
         How many seeds have the figure, of how many.
     """
@@ -82,10 +82,20 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
-        """Quartiles of the finite values, interpolated as by `numpy.quantile`."""
-        finite = [value for value in values if np.isfinite(value)]
-        quartiles = np.quantile(finite, [0.25, 0.5, 0.75]) if finite else np.full(3, np.nan)
-        return cls(*(float(q) for q in quartiles), count=len(finite), seeds=len(values))
+        """Quartiles, interpolated as by `numpy.quantile`; what is not finite counts as infinite.
+
+        So that a median over the seeds is no better for those that never got there.
+        """
+        finite = np.isfinite(values)
+        if not len(values):
+            return cls(np.inf, np.inf, np.inf, count=0, seeds=0)
+        ordered = np.sort(np.where(finite, values, np.inf))
+        quartiles = list[float]()
+        for place in (len(ordered) - 1) * np.array([0.25, 0.5, 0.75]):  # numpy's finds no infinity
+            part, below = float(place % 1), float(ordered[int(place)])
+            above = float(ordered[int(np.ceil(place))])
+            quartiles.append(below + part * (above - below) if below < above else below)
+        return cls(*quartiles, count=int(finite.sum()), seeds=len(values))
 
 
 def hypervolumes(fronts: Sequence[Front]) -> Spread:

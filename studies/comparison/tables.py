@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 from operator import attrgetter
 
 from quietarm.metaheuristics.ensemble import Spread
@@ -63,7 +64,7 @@ def _energies(comparison: Comparison) -> Table:
         where = f"at {millimetres(level)}"
         energies = [group.spread("energies", i) for group in groups]
         (heading, form, medians), *quartiles = _quartiles(f"energy {where} [J]", _ENERGY, energies)
-        stated = [m if e.count else "not reached" for m, e in zip(medians, energies, strict=True)]
+        stated = [one if isfinite(one) else "not reached" for one in medians]
         gaps = [100 * group.spread("gaps", i).median for group in groups]
         between = [
             100 * group.spread("gaps_between", i).median
@@ -77,7 +78,7 @@ def _energies(comparison: Comparison) -> Table:
             *quartiles,
             (f"  above the best {where} [%]", _PERCENT, gaps),
             ("  with motions between its points", _PERCENT, between),
-            ("  seeds that reach it", "", seeds),
+            (f"  seeds that have a motion {where}", "", seeds),
         ]
     return table_of("Least energy within a residual", columns)
 

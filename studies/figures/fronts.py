@@ -150,12 +150,15 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     level = millimetres(SEARCH_RESIDUAL)
     marks = [f"x: never within {level}"] * (spread.count < spread.seeds)
     figures = ""
-    if spread.count:
-        ax.axhspan(spread.lower, spread.upper, alpha=0.2, color=BLUE)
+    if np.isfinite(spread.median):
         ax.axhline(spread.median, color=BLUE, linewidth=1.0)
-        marks += ["line: median", "band: quartiles"]
-        figures = f": {spread.median:.4g} J ({spread.lower:.4g} to {spread.upper:.4g})"
-    else:
+        marks += ["line: median"]
+        figures = f": {spread.median:.4g} J"
+        if np.isfinite(spread.upper):
+            ax.axhspan(spread.lower, spread.upper, alpha=0.2, color=BLUE)
+            marks += ["band: quartiles"]
+            figures += f" ({spread.lower:.4g} to {spread.upper:.4g})"
+    if not spread.count:
         ax.set_yticks([])
     reached = f"{spread.count} of {spread.seeds} seeds reach {level}"
     ax.set_title(f"energy at {level}{figures}\n{reached}", fontsize=10)
@@ -166,8 +169,8 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ax.margins(x=0.1, y=0.2)
     ax.ticklabel_format(axis="y", useOffset=False)
     low, high = ax.get_ylim()
-    more = _LEAST_SPAN * spread.median - (high - low)
-    if more > 0:  # false where no seed has an energy
+    more = _LEAST_SPAN * (low + high) / 2 - (high - low)
+    if more > 0 and spread.count:
         ax.set_ylim(low - more / 2, high + more / 2)
     return ax
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 
 from quietarm.metaheuristics.ensemble import (
     SEARCH_RESIDUAL,
@@ -143,7 +144,8 @@ def _asked(failure: FailedPoint) -> str:
 def _quartiles(spread: Spread, form: str, unit: str = "") -> str:
     if not spread.count:
         return "none"
-    return (
-        f"median {spread.median:{form}}{unit}, quartiles {spread.lower:{form}} to "
-        f"{spread.upper:{form}}{unit}"
+    lower, median, upper = (
+        f"{one:{form}}{unit}" if isfinite(one) else "not reached"
+        for one in (spread.lower, spread.median, spread.upper)
     )
+    return f"median {median}, quartiles {lower} to {upper}"

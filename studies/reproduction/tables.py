@@ -72,7 +72,7 @@ def _row(found: RowResult, mended: bool) -> list[Cell]:
     ]
     here = [
         *(*_figures(found.in_box), *_figures(found.free)),
-        spread.median if spread.count else "none",
+        spread.median if isfinite(spread.median) else "none",
         f"{spread.lower:.4f}-{spread.upper:.4f}" if len(fronts) > 1 else None,
         found.residual_level * 1e3,
         Spread.of([front.seconds for front in fronts]).median,

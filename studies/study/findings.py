@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from math import isfinite, nan
+from math import inf, isfinite
 
 import numpy as np
 from quietarm.studies.comparison.measures import Comparison, Group
@@ -30,9 +30,9 @@ def group_of(comparison: Comparison, method: Method) -> Group | None:
 
 
 def gap(comparison: Comparison, method: Method, figure: str = "gaps_between") -> float:
-    """Median share by which a method is above the best when still; NaN without a point there."""
+    """Median share by which a method is above the best when still; infinite without a point."""
     group = group_of(comparison, method)
-    return nan if group is None else group.spread(figure, STILL_LEVEL).median
+    return inf if group is None else group.spread(figure, STILL_LEVEL).median
 
 
 def at_rest(found: CaseStudy) -> float:
@@ -85,9 +85,8 @@ def _reached(group: Group, levels: Sequence[float]) -> tuple[float | None, list[
     for i, level in enumerate(map(millimetres, levels)):
         reached, share = group.reached(i), group.spread("gaps_between", i).median
         short = "" if reached == runs else f" ({reached} of {runs} seeds get there)"
-        words.append(
-            f"{percents([share])} at {level}{short}" if reached else f"{level} not reached"
-        )
+        stated = f"{percents([share])} at {level}" if isfinite(share) else f"{level} not reached"
+        words.append(stated + short * (reached > 0))
     if any(group.reached(i) for i in range(len(levels))):
         return None, words
     return min(run.front.stillest().residual for run in group.runs), words
