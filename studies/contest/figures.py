@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 from quietarm.studies.contest.measures import TARGETS, Arena, Field, quartiles
 from quietarm.studies.contest.names import label_of
 from quietarm.studies.contest.statistics import Ranking
-from quietarm.studies.figures.axes import TITLE, name_objectives, new_figure
+from quietarm.studies.figures.axes import TITLE, logarithmic, name_objectives, new_figure
 from quietarm.studies.figures.looks import Look, look
 
 Array = NDArray[np.float64]
@@ -40,10 +39,10 @@ def anytime_figure(arena: Arena, looks: dict[str, Look]) -> Figure:
         for target in TARGETS:
             ax.axhline(100 * target, color="0.6", linewidth=0.8, linestyle=":")
         ax.grid(alpha=0.25)
-        ax.set_xscale("log")
-        ax.set_yscale("log")
+        low, high = ax.dataLim.intervalx
+        logarithmic(ax, high / low)
+        logarithmic(ax, 1 / _LEAST, "y")
         ax.set_ylim(top=110)
-        ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         ax.set_xlabel(name)
     left.set_ylabel("hypervolume missing [% of the exact front's]")
     figure.legend(*left.get_legend_handles_labels(), loc="outside right center", frameon=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import astuple
+from math import isfinite
 
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp.front.points import LEVELS
@@ -77,7 +78,9 @@ def summary_table(arena: Arena) -> Table:
         where = f"at {millimetres(level)}"
         above = [Spread.of(field.energies[:, place].tolist()) for field in fields]
         reached = [_of_runs(one.count, field) for one, field in zip(above, fields, strict=True)]
-        medians = [100 * one.median for one in above]
+        medians: list[Cell] = [
+            100 * one.median if isfinite(one.median) else "not reached" for one in above
+        ]
         columns += [
             (f"energy above the exact {where}, median", _PERCENT, medians),
             (f"  runs that have a motion {where}", "", reached),

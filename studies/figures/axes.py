@@ -86,13 +86,17 @@ def scale_residuals(ax: Axes, residuals: Sequence[float]) -> None:
     if span < _LOGARITHMIC_FROM or len(positive) < len(residuals):
         ax.xaxis.set_major_locator(MaxNLocator(6))
         return
-    logarithmic_residuals(ax, span)
+    logarithmic(ax, span)
 
 
-def logarithmic_residuals(ax: Axes, span: float) -> None:
-    """Make the axis of residuals logarithmic; the largest is `span` times the least."""
-    ax.set_xscale("log")
+def logarithmic(ax: Axes, span: float, which: str = "x") -> None:
+    """Make an axis logarithmic; its largest value is `span` times the least.
+
+    Its ticks are plain numbers: saved pictures hold no formulas, so that a name with $ is a name.
+    """
+    getattr(ax, f"set_{which}scale")("log")
+    axis = ax.xaxis if which == "x" else ax.yaxis
     subs = (1.0, 2.0, 5.0) if span < 100 else (1.0,)
-    ax.xaxis.set_major_locator(LogLocator(subs=subs, numticks=7))
-    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    ax.xaxis.set_minor_formatter(NullFormatter())
+    axis.set_major_locator(LogLocator(subs=subs, numticks=7))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())

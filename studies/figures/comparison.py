@@ -20,7 +20,7 @@ from quietarm.studies.figures.axes import (
     legend_below,
     legend_of,
     letter,
-    logarithmic_residuals,
+    logarithmic,
     new_figure,
 )
 from quietarm.studies.figures.looks import Look, look
@@ -259,7 +259,7 @@ def _right(comparison: Comparison) -> float:
 
 def _logarithmic(ax: Axes, comparison: Comparison, right: float) -> None:
     left = _left(comparison)
-    logarithmic_residuals(ax, right / left)
+    logarithmic(ax, right / left)
     ax.set_xlim(left * 1e3, right * 1e3)
     ax.set_xlabel("residual F1 [mm], logarithmic")
     for level in comparison.levels:

@@ -32,7 +32,8 @@ def test_findings_are_those_of_the_fronts(small):
 def test_the_summary_speaks_of_every_method(small):
     words = " ".join(findings(small))
     for part in ("The front that dominates most: epsilon constraint in ",
-                 "NSGA-II comes within 1 mm in fewer than half of its seeds.", "VEPSO", "Polished by the gradient",
+                 "NSGA-II comes within 1 mm in fewer than half of its seeds.", "VEPSO",
+                 "Polished by the gradient",
                  "times the floor", "Median time of a front: epsilon constraint"):  # fmt: skip
         assert part in words
 
