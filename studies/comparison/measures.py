@@ -11,6 +11,7 @@ from operator import attrgetter
 import moocore
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.metaheuristics.budget.record import CORNER
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp import Front, PointToPoint
 from quietarm.ocp.checks import not_negative, positive, whole
@@ -23,7 +24,6 @@ from quietarm.studies.registry.methods import Method, method_of
 
 FILL, MOST_FILL = 1000, 100_000
 """About how many points a filled front has, and at most."""
-_MARGIN = 1.1
 
 Array = NDArray[np.float64]
 
@@ -87,8 +87,9 @@ class Comparison:
     reference : str
         What IGD+ and epsilon are measured against.
     corner : tuple of float
-        Residual [m] and energy [J] that hypervolumes are measured from: the largest reference of
-        the fronts, or a tenth beyond the ends of the best front if that is larger.
+        Residual [m] and energy [J] up to which hypervolumes are measured, as in a contest: a tenth
+        of its extent beyond the ends of the reference front. They are shares of the box from there
+        to the least residual and energy of that front.
     extent : tuple of float
         Residual [m] and energy [J] between the ends of the reference front: the units of IGD+ and
         epsilon, so that both objectives have the same weight.
@@ -166,10 +167,14 @@ def compare_fronts(
     found, between = [objectives(front) for front in fronts], [filled(f, fill) for f in fronts]
     best_front = best_of(between)
     known = best_front if reference is None else filled(reference, fill)
-    corner = np.max([*(front.reference for front in fronts), _MARGIN * best_front.max(0)], axis=0)
-    extent = np.where(np.ptp(known, axis=0) > 0, np.ptp(known, axis=0), corner)
+    ideal, extent = known.min(axis=0), np.ptp(known, axis=0)
+    extent = np.where(extent > 0, extent, np.max([front.reference for front in fronts], axis=0))
+    corner = ideal + CORNER * extent
     stations = evenly_spaced(known / extent)
     best = within(best_front, levels)
+
+    def share_of_box(points: Array) -> float:
+        return float(moocore.hypervolume((points - ideal) / (corner - ideal), ref=[1.0, 1.0]))
 
     def measured(i: int) -> Measured:
         scaled, energies = between[i] / extent, within(found[i], levels)
@@ -177,8 +182,8 @@ def compare_fronts(
             name=names[i],
             front=fronts[i],
             between=between[i],
-            hypervolume=float(moocore.hypervolume(between[i] / corner, ref=[1.0, 1.0])),
-            hypervolume_found=float(moocore.hypervolume(found[i] / corner, ref=[1.0, 1.0])),
+            hypervolume=share_of_box(between[i]),
+            hypervolume_found=share_of_box(found[i]),
             igd_plus=float(moocore.igd_plus(scaled, ref=stations)),
             epsilon=float(moocore.epsilon_additive(scaled, ref=stations)),
             energies=tuple(energies.tolist()),

@@ -11,6 +11,7 @@ from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.display.words import millimetres
 from quietarm.studies.document.prose import told
 from quietarm.studies.document.table import Cell, Line, Table, table_of
+from quietarm.studies.registry.methods import Kind
 
 _ENERGY, _SHARE, _PERCENT, _COUNT, _MISS = "{:.5g}", "{:.4f}", "{:.2f}", "{:.0f}", "{:.2g}"
 
@@ -40,6 +41,10 @@ def _fronts(comparison: Comparison) -> Table:
     def spreads(heading: str, form: str, figure: str) -> list[Line]:
         return _quartiles(heading, form, [group.spread(figure) for group in groups])
 
+    as_found = [
+        None if group.method.kind is Kind.GRADIENT else volume  # some points of a line
+        for group, volume in zip(groups, medians("hypervolume_found"), strict=True)
+    ]
     columns: list[Line] = [
         ("method", "", [group.label for group in groups]),
         ("bound on coefficients", "{:g}", ["none" if b is None else b for b in bounds]),
@@ -47,7 +52,7 @@ def _fronts(comparison: Comparison) -> Table:
         ("seeds", "", [len(group.runs) if len(group.runs) > 1 else None for group in groups]),
         ("points", _COUNT, [spread.median for spread in points]),
         *spreads("hypervolume (more is better)", _SHARE, "hypervolume"),
-        *([("  as found", _SHARE, medians("hypervolume_found"))] if comparison.fill else []),
+        *([("  as found", _SHARE, as_found)] if comparison.fill else []),
         *spreads("IGD+ (less is better)", _MISS, "igd_plus"),
         *spreads("epsilon (less is better)", _MISS, "epsilon"),
         ("candidates", _COUNT, [median or None for median in medians("front.evaluations")]),

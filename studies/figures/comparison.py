@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import count, cycle
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -25,7 +26,7 @@ from quietarm.studies.figures.axes import (
 )
 from quietarm.studies.figures.looks import Look, look
 from quietarm.studies.paper import PaperPoint
-from quietarm.studies.registry.methods import EPSILON, NSGA2, VEPSO, WEIGHTED
+from quietarm.studies.registry.methods import EPSILON, NSGA2, VEPSO, WEIGHTED, Kind
 
 _NUMBERS = {
     method: number
@@ -204,8 +205,19 @@ def _drawn(comparison: Comparison) -> Iterator[tuple[Group, Look, float]]:
 def _draw_fronts(
     ax: Axes, comparison: Comparison, paper: Sequence[PaperPoint], right: float
 ) -> None:
-    """Draw staircases up to a residual [m], the paper's points and the floor."""
+    """Draw fronts up to a residual [m], the paper's points and the floor.
+
+    A search's front is the staircase of what it found; that of the gradient is a line, of which it
+    computed some points: motions between these lie on it.
+    """
     for group, own, wider in _drawn(comparison):
+        style: dict[str, Any] = {"color": own.colour, "linestyle": own.dash, "label": group.label}
+        style["linewidth"] = 1.2 + wider
+        if group.method.kind is Kind.GRADIENT and len(group.runs) == 1 and comparison.fill:
+            line = group.runs[0].between
+            line = line[line[:, 0] <= right]
+            ax.plot([*(line[:, 0] * 1e3), right * 1e3], [*line[:, 1], line[-1, 1]], **style)
+            continue
         stairs = np.concatenate([group.best[:, 0], group.median[:, 0], group.worst[:, 0], [right]])
         stairs = np.unique(stairs[stairs <= right])
         best, median, worst = (within(s, stairs) for s in (group.best, group.median, group.worst))
@@ -213,11 +225,7 @@ def _draw_fronts(
             ax.fill_between(
                 stairs * 1e3, best, worst, step="post", color=own.colour, alpha=0.2, linewidth=0
             )
-        ax.plot(
-            stairs * 1e3, median, color=own.colour, linestyle=own.dash,
-            linewidth=1.2 + wider, drawstyle="steps-post",
-            label=group.label,
-        )  # fmt: skip
+        ax.plot(stairs * 1e3, median, drawstyle="steps-post", **style)
     marks = cycle("*Pv")
     for point in paper:
         if point.residual is None:

@@ -31,16 +31,18 @@ def measured(good, poor):
 
 def test_hypervolume_is_the_share_of_the_common_box(measured):
     comparison, better, worse = measured
-    assert comparison.corner == (10e-3, 1.0)
-    # widths times heights of the steps, of a box of 10 by 1
-    assert better.hypervolume == pytest.approx((4 * 0.2 + 4 * 0.5 + 2 * 0.6) / 10)
-    assert worse.hypervolume == pytest.approx((4 * 0.1 + 4 * 0.4) / 10)
+    # the best front goes from 0 to 8 mm and from 0.8 to 0.4 J: a tenth of that beyond its ends
+    assert comparison.corner == pytest.approx((8.8e-3, 0.84))
+    # widths times heights of the steps, of a box of 8.8 by 0.44
+    box = 8.8 * 0.44
+    assert better.hypervolume == pytest.approx((4 * 0.04 + 4 * 0.34 + 0.8 * 0.44) / box)
+    assert worse.hypervolume == pytest.approx(2.8 * 0.24 / box)
 
 
-def test_the_box_grows_to_hold_the_best_front(front_of):
+def test_the_box_is_that_of_the_best_front(front_of):
     far = front_of([(0, 2.0), (20, 0.4)], "epsilon", reference=(1e-9, 1e-9))
     comparison = compare([far, front_of([(1, 3.0)], "vepso", reference=(1e-9, 1e-9))])
-    assert comparison.corner == pytest.approx((22e-3, 2.2))  # a tenth beyond
+    assert comparison.corner == pytest.approx((22e-3, 2.16))  # a tenth of 20 mm and of 1.6 J on
 
 
 def test_igd_plus_and_epsilon_in_units_of_the_best_fronts_extent(measured, good):
