@@ -144,8 +144,7 @@ def _asked(failure: FailedPoint) -> str:
 def _quartiles(spread: Spread, form: str, unit: str = "") -> str:
     if not spread.count:
         return "none"
-    lower, median, upper = (
-        f"{one:{form}}{unit}" if isfinite(one) else "not reached"
-        for one in (spread.lower, spread.median, spread.upper)
-    )
-    return f"median {median}, quartiles {lower} to {upper}"
+    if not isfinite(spread.median):
+        return "median not reached"
+    upper = f"{spread.upper:{form}}{unit}" if isfinite(spread.upper) else "not reached"
+    return f"median {spread.median:{form}}{unit}, quartiles {spread.lower:{form}} to {upper}"
