@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 
 import casadi as ca
 import numpy as np
@@ -29,9 +28,6 @@ _BLOCK = 50
 _DOUBLINGS = 4
 _STRIDE = 2**_DOUBLINGS
 """The residual is sampled at a multiple of so many times."""
-
-_LEAST_STEPS = 6
-"""Least steps between two times at which the motion is not smooth: no step crosses one."""
 
 _STEPS_OF_CSE = 2 * ROLLOUT_STEPS
 """Common terms are looked for up to these steps: that takes a third off a call, but a time that
@@ -85,10 +81,13 @@ class ErrorPopulation:
         resolved = default_steps(task, least=1)
         steps = max(ROLLOUT_STEPS, int(np.ceil(faster * resolved)))
         self._samples = _STRIDE * int(np.ceil(faster * residual_samples(task) / _STRIDE))
-        times, length = _mesh(profile.breaks(task.duration), steps)
+        breaks = profile.breaks(task.duration)
+        times, length = node_times(steps, breaks=breaks)
         joint = _joint_at(times, task, profile, coefficients)
         between = task.residual_window / (self._samples - 1)
-        self._function = BufferedFunction(_compiled(task.plant, length.shape[1], self.names))
+        self._function = BufferedFunction(
+            _compiled(task.plant, length.shape[1], self.names, not breaks)
+        )
         self._along = joint.T.full(), length.T.full(), *task.move[1:], between
 
     @keep_interrupts()
@@ -142,18 +141,6 @@ def _at_samples(
     return tips @ state[:, :, :strides]
 
 
-def _mesh(breaks: Sequence[float], steps: int) -> tuple[list[ca.DM], ca.DM]:
-    """As `node_times`, with an end of a step at every break: there the motion is not smooth."""
-    times: list[list[ca.DM]] = []
-    lengths: list[ca.DM] = []
-    for begin, end in pairwise((0.0, *breaks, 1.0)):
-        share = end - begin
-        of_part, length = node_times(max(_LEAST_STEPS, int(np.ceil(share * steps))))
-        times.append([begin + share * at for at in of_part])
-        lengths.append(share * length)
-    return [ca.horzcat(*of_node) for of_node in zip(*times, strict=True)], ca.horzcat(*lengths)
-
-
 def _joint_at(
     times: Sequence[ca.DM], task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
 ) -> ca.DM:
@@ -163,7 +150,7 @@ def _joint_at(
 
 
 @lru_cache(maxsize=16)
-def _compiled(plant: Plant, steps: int, names: tuple[str, ...]) -> ca.Function:
+def _compiled(plant: Plant, steps: int, names: tuple[str, ...], unbroken: bool) -> ca.Function:
     """(errors, joint at nodes, length of steps, target, duration, time between samples) -> figures.
 
     A row a plant: state on arrival; the transition of the state between two samples at rest and the
@@ -177,7 +164,9 @@ def _compiled(plant: Plant, steps: int, names: tuple[str, ...]) -> ca.Function:
     resting, modes = with_errors(plant, columns), range(plant.modes)
     rows = [ca.repmat(row, _BLOCK, 1) for row in ca.vertsplit(joint)]
     joints = [JointMotion(*rows[3 * node : 3 * node + 3]) for node in range(NODES)]
-    rollout = rollout_along(moving, joints, duration * ca.repmat(length, _BLOCK, 1))
+    rollout = rollout_along(
+        moving, joints, duration * ca.repmat(length, _BLOCK, 1), unbroken=unbroken
+    )
     by_column = step(resting, [JointMotion(target, 0.0, 0.0)] * NODES, between).transition()[1]
     transition = [column[row] for row in range(2 * plant.modes) for column in by_column]
     of_mode = [resting.tip_displacements([float(i == j) for i in modes]) for j in modes]

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import casadi as ca
 import numpy as np
@@ -29,6 +30,8 @@ from quietarm.ocp.task import PointToPoint
 
 MOST_STEPS = 20_000
 """Of any simulation by fixed steps: finer ones differ by rounding alone."""
+_LEAST_STEPS = 6
+"""Least steps between two breaks: no step crosses one."""
 ROLLOUT_STEPS = 140
 """Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
 
@@ -49,6 +52,8 @@ class SymbolicRollout:
         W (m) and then W' (m/s) at arrival, one row a candidate.
     h : Expression
         Length of every step [s].
+    unbroken : bool
+        Whether the steps are those of `mesh` from start to end, without breaks between them.
     """
 
     joints: list[JointMotion]
@@ -56,6 +61,7 @@ class SymbolicRollout:
     torque: list[Expression]
     arrival: Expression
     h: Expression
+    unbroken: bool = True
 
     @property
     def power(self) -> list[Expression]:
@@ -67,6 +73,8 @@ class SymbolicRollout:
     def energy(self) -> Expression:
         """F2 of eq (11) [J], one row a candidate."""
         power = self.power
+        if not self.unbroken:  # across a break neighbours say nothing
+            return resolved_energy(power, self.h)
         at_nodes = ca.horzcat(*power)
         cubic, quartic = (at_nodes @ weights for weights in beyond_quadratic(power[0].shape[1]))
         return resolved_energy(power, self.h, cubic, quartic)
@@ -81,6 +89,7 @@ def symbolic_rollout(
     steps: int,
     candidates: int = 1,
     jerk: bool = False,
+    breaks: tuple[float, ...] = (),
 ) -> SymbolicRollout:
     """Simulate the modes from rest along the profile, with a fixed number of steps.
 
@@ -100,30 +109,46 @@ def symbolic_rollout(
         Number of rows.
     jerk : bool
         Whether the joint's jerk is computed as well, at the times of `end_to_end`.
+    breaks : tuple of float
+        Fractions of the duration at which the motion is not smooth: there a step ends.
 
     Returns
     -------
     SymbolicRollout
         Every joint, mode and torque at the Gauss nodes, and the state at arrival.
     """
-    times, length = node_times(steps, candidates)
+    times, length = node_times(steps, candidates, breaks)
     joints = [profile.motion(coefficients, at, *move) for at in times]
     if jerk:
-        ends = [end_to_end(at, steps) for at in times]
+        ends = times if breaks else [end_to_end(at, steps) for at in times]
         of_jerk = [profile.motion(coefficients, at, *move, jerk=True) for at in ends]
         joints = [
             joint._replace(jerk=there.jerk) for joint, there in zip(joints, of_jerk, strict=True)
         ]
-    return rollout_along(plant, joints, move[2] * length)
+    return rollout_along(plant, joints, move[2] * length, unbroken=not breaks)
 
 
-def node_times(steps: int, candidates: int = 1) -> tuple[list[ca.DM], ca.DM]:
-    """Times of each Gauss node and lengths of the steps, as fractions of the duration."""
-    begin, length = mesh(ca.repmat(ca.DM(np.arange(steps)).T, candidates, 1), steps)
-    return [begin + node * length for node in GAUSS_NODES], length
+def node_times(
+    steps: int, candidates: int = 1, breaks: tuple[float, ...] = ()
+) -> tuple[list[ca.DM], ca.DM]:
+    """Times of each Gauss node and lengths of the steps, as fractions of the duration.
+
+    Between breaks there are as many steps as are due to that share of the move, or some more.
+    """
+    times: list[list[ca.DM]] = []
+    lengths: list[ca.DM] = []
+    for start, end in pairwise((0.0, *breaks, 1.0)):
+        share = end - start
+        own = max(_LEAST_STEPS, math.ceil(share * steps)) if breaks else steps
+        begin, length = mesh(ca.repmat(ca.DM(np.arange(own)).T, candidates, 1), own)
+        times.append([start + share * (begin + node * length) for node in GAUSS_NODES])
+        lengths.append(share * length)
+    return [ca.horzcat(*of_node) for of_node in zip(*times, strict=True)], ca.horzcat(*lengths)
 
 
-def rollout_along(plant: Plant, joints: list[JointMotion], h: Expression) -> SymbolicRollout:
+def rollout_along(
+    plant: Plant, joints: list[JointMotion], h: Expression, *, unbroken: bool
+) -> SymbolicRollout:
     """Simulate the modes from rest along joint motions that are known at the nodes."""
     every_step = step(plant, joints, h)
     W, dW, arrival = march(*every_step.transition(), h.shape)
@@ -133,7 +158,7 @@ def rollout_along(plant: Plant, joints: list[JointMotion], h: Expression) -> Sym
         plant.torque(joint, node.W, node.dW, node.ddW)
         for joint, node in zip(joints, states, strict=True)
     ]
-    return SymbolicRollout(joints, states, torque, arrival, h)
+    return SymbolicRollout(joints, states, torque, arrival, h, unbroken)
 
 
 def march(
@@ -184,10 +209,14 @@ def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
 
 
 @lru_cache(maxsize=32)
-def _compiled(plant: Plant, profile: JointProfile, steps: int) -> ca.Function:
+def _compiled(
+    plant: Plant, profile: JointProfile, steps: int, breaks: tuple[float, ...]
+) -> ca.Function:
     """(coefficients, move) -> samples at the nodes in order of time, arrival, energy, net work."""
     a, move = ca.MX.sym("a", profile.size), ca.MX.sym("move", 3)
-    found = symbolic_rollout(plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps, jerk=True)
+    found = symbolic_rollout(
+        plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps, jerk=True, breaks=breaks
+    )
 
     def in_time(*rows: Sequence[Expression]) -> Expression:
         """A column for each quantity, from its values at the nodes of every step."""
@@ -254,7 +283,7 @@ def rollout(
         When the coefficients or the duration do not fit the profile.
     """
     steps = default_steps(task) if steps is None else whole("steps", steps, 1)
-    function = _compiled(task.plant, profile, steps)
+    function = _compiled(task.plant, profile, steps, profile.breaks(task.duration))
     values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.move))
     joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
     motion = Motion.from_samples(

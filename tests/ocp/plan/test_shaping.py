@@ -15,6 +15,16 @@ LINEAR = qa.SingleLinkManipulator(beta2=0.0, zeta=0.0)
 names = pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])
 
 
+@pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])
+@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+def test_shaped_moves_are_verified_piece_by_piece(tasks, name, shaper):
+    # no step crosses the beginning or the end of one of its cycloids
+    task = replace(tasks[name], target=0.7, duration=1.9)
+    plan = qa.evaluate_coefficients(task, [], profile=qa.shaped_cycloid(task, shaper))
+    assert plan.verification.agrees
+    assert plan.verification.energy_share < 1e-5
+
+
 def test_the_shaper_is_for_the_target_or_the_average():
     task = qa.PointToPoint(qa.ArmOnFlexibleLink(), pi / 2, 1.2)
     at_target = qa.shaped_cycloid(task, "zv")

@@ -120,6 +120,16 @@ def test_given_coefficients_are_evaluated(call):
     assert "not optimised" in out
 
 
+def test_a_joint_that_turns_back_is_told_of(call, folder):
+    code, out, _ = call(f"evaluate {MOVE} --coefficients=-1,0.5 --output a.json")
+    assert code == 0
+    plan = Plan.load("a.json")
+    angle = plan.path(np.linspace(0, plan.task.duration, 20_001))
+    back = max(np.maximum.accumulate(angle) - angle)
+    assert f"turns back         by {back:.3g} rad on the way" in out
+    assert "turns back" not in call(f"evaluate {MOVE} --coefficients=0.1,-0.1")[1]
+
+
 def test_evaluated_coefficients_are_written_like_a_plan(call, folder):
     code, out, _ = call(
         f"evaluate {MOVE} {TWO_TERMS} --output e.json --figure e.PNG --csv e.csv --sample-rate 100"

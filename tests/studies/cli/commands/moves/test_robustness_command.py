@@ -136,7 +136,7 @@ class Crane(Plant):
         return [-(30 * W[0]) / self.tip_mass - joint.acceleration]
 
     def torque(self, joint, W, dW, ddW):
-        return joint.acceleration + self.tip_mass * ddW[0]
+        return 3 * joint.acceleration + self.tip_mass * ddW[0]
 
     def tip_displacements(self, W):
         return [W[0]]
