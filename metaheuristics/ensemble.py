@@ -19,8 +19,8 @@ from quietarm.metaheuristics.sharing.pieces import (
     LostPieceError,
     Piece,
     Say,
-    run_pieces,
 )
+from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.checks import whole

@@ -77,7 +77,7 @@ def _check_equations(plant: Plant) -> None:
         table.reshape(_ANGLES, _KINDS, -1) for table in (points, beside, *tables)
     )
     # an angle at which no motion has a value is none to move to
-    defined = np.isfinite(values).all(axis=2).any(axis=1)
+    defined = np.any(np.isfinite(values).all(axis=2), axis=1)
     kept = defined if defined.any() else np.full(_ANGLES, True)
     points, values, slopes = points[kept], values[kept], slopes[kept]
     _check_finite(plant, points, values, slopes)

@@ -27,7 +27,8 @@ class RandomSearch(Algorithm):
     opt: Any
 
     def __init__(self, population: int = 100, sampling: Sampling | None = None) -> None:
-        super().__init__(output=MultiObjectiveOutput())
+        output: Any = MultiObjectiveOutput()  # for the type checker: pymoo declares a str
+        super().__init__(output=output)
         self.population = population
         self.sampling = FloatRandomSampling() if sampling is None else sampling
 

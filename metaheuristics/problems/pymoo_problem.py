@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 from quietarm.metaheuristics.problems.function import MoveFunction
+from quietarm.ocp.checks import whole
 
 
 class ExactProblem(Problem):
@@ -46,8 +47,16 @@ class ExactProblem(Problem):
         if violations.shape[1]:
             out["G"] = violations
 
-    def _calc_pareto_front(self, *args: Any, **kwargs: Any) -> Any:
-        return self._front
+    def _calc_pareto_front(self, n_points: int | None = None) -> Any:
+        return _evenly(self._front, n_points)
 
-    def _calc_pareto_set(self, *args: Any, **kwargs: Any) -> Any:
-        return self._set
+    def _calc_pareto_set(self, n_points: int | None = None) -> Any:
+        return _evenly(self._set, n_points)
+
+
+def _evenly(rows: NDArray[np.float64] | None, count: int | None) -> NDArray[np.float64] | None:
+    """So many rows at even distances in their order; all where no number is given."""
+    if rows is None or count is None:
+        return rows
+    count = whole("n_points", count, 2, len(rows), "the exact front has no more")
+    return rows[np.linspace(0, len(rows) - 1, count).round().astype(int)]

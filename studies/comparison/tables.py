@@ -68,8 +68,9 @@ def _energies(comparison: Comparison) -> Table:
     for i, level in enumerate(comparison.levels):
         where = f"at {millimetres(level)}"
         energies = [group.spread("energies", i) for group in groups]
-        (heading, form, medians), *quartiles = _quartiles(f"energy {where} [J]", _ENERGY, energies)
-        stated = [one if isfinite(one) else "not reached" for one in medians]
+        (heading, form, _), *quartiles = _quartiles(f"energy {where} [J]", _ENERGY, energies)
+        medians = [spread.median for spread in energies]
+        stated: list[Cell] = [one if isfinite(one) else "not reached" for one in medians]
         gaps = [100 * group.spread("gaps", i).median for group in groups]
         between = [
             100 * group.spread("gaps_between", i).median

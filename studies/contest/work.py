@@ -10,7 +10,8 @@ from pathlib import Path
 from quietarm.metaheuristics import NamedProblem
 from quietarm.metaheuristics.budget.record import Scale
 from quietarm.metaheuristics.budget.run import number_of_evaluations, search_within
-from quietarm.metaheuristics.sharing.pieces import Done, Listener, Piece, Say, run_pieces
+from quietarm.metaheuristics.sharing.pieces import Done, Listener, Piece, Say
+from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import QuietarmError, SolverFailedError
 from quietarm.ocp.files import read_bytes

@@ -15,9 +15,9 @@ from quietarm.metaheuristics.sharing.pieces import (
     Listener,
     Piece,
     Say,
-    run_pieces,
     to_the_end,
 )
+from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import HERE, Workers
 from quietarm.ocp import (
     CrossCheck,

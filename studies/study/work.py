@@ -19,9 +19,9 @@ from quietarm.metaheuristics.sharing.pieces import (
     NotTriedError,
     Piece,
     Say,
-    run_pieces,
     to_the_end,
 )
+from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import (
     CycloidPolynomial,

@@ -49,7 +49,7 @@ def test_a_problem_has_its_exact_fronts_in_files_of_its_own(name):
         assert front.profile == problem.profile
         assert front.settings["bound"] == problem.bound
         assert (front.method, front.complete, front.failures) == ("epsilon", True, ())
-        assert len(front.points) >= 25
+        assert len(front.points) >= 290
         check_figures(front, name)
 
 
@@ -57,7 +57,7 @@ def test_the_files_are_of_the_problems_and_small():
     wanted = {f"{name}.json" for problem in PROBLEMS.values() for name in problem.tasks()}
     files = {path.name: path.stat().st_size for path in FRONTS.rglob("*.json")}
     assert set(files) == wanted
-    assert sum(files.values()) < 300_000
+    assert sum(files.values()) < 2_500_000
 
 
 @pytest.mark.parametrize("name", COLD)
@@ -121,6 +121,11 @@ def test_pymoo_has_the_exact_front_and_set():
     F, G = made.evaluate(made.pareto_set(), return_values_of=["F", "G"])
     assert pytest.approx(F, rel=1e-4, abs=1e-6) == made.pareto_front()
     assert (G <= 1e-4).all()
+    few = made.pareto_front(n_points=50)
+    assert few.shape == (50, 2)
+    assert few[[0, -1]].tolist() == made.pareto_front()[[0, -1]].tolist()
+    with pytest.raises(ValueError, match="n_points is 5000; give at most 3"):
+        made.pareto_front(n_points=5000)
     assert G.shape[1] == 2
 
 
@@ -129,7 +134,8 @@ def test_an_algorithm_of_pymoo_comes_near_the_exact_front_and_not_beyond():
     result = minimize(problem, NSGA2(pop_size=40), ("n_gen", 25), seed=1)
     corner = problem.pareto_front().max(axis=0) * 1.1
     exact = moocore.hypervolume(problem.pareto_front(), ref=corner)
-    assert 0.9 < moocore.hypervolume(result.F, ref=corner) / exact < 1.02
+    # a staircase of 300 steps misses 0.2 % of the line that a search's points may lie on
+    assert 0.9 < moocore.hypervolume(result.F, ref=corner) / exact < 1.003
     stillest, cheapest = problem.pareto_front()[[0, -1]]
     assert result.F[:, 1].min() >= cheapest[1] * (1 - BETTER)
     assert stillest[0] < 1e-6

@@ -17,7 +17,8 @@ import pytest
 import small_pieces
 from quietarm.metaheuristics import search, search_many
 from quietarm.metaheuristics.ensemble import LostSeedsError, one_seed
-from quietarm.metaheuristics.sharing.pieces import Listener, LostPieceError, Piece, run_pieces
+from quietarm.metaheuristics.sharing.pieces import Listener, LostPieceError, Piece
+from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError

@@ -3,7 +3,8 @@
 import signal
 
 import pytest
-from quietarm.metaheuristics.sharing.pieces import InterruptedPiece, Listener, Piece, run_pieces
+from quietarm.metaheuristics.sharing.pieces import InterruptedPiece, Listener, Piece
+from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.ocp import QuietarmError, SolverFailedError
 from quietarm.ocp.interrupts import note_interrupts
 

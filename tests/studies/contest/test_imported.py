@@ -82,7 +82,7 @@ def test_motions_all_along_the_exact_front_miss_nothing_of_it(call, copy, folder
     assert call(f"{LINE} --import mine.csv --output held")[0] == 0
     (arena,) = arenas_of(Store(copy))
     (found,) = arena.imports
-    # a staircase misses half of each step; the exact front's 28 points alone miss 2.6 %
+    # a staircase misses half of each of its steps
     assert np.abs(found.final) == pytest.approx(0, abs=4e-3)
     assert found.missing_by_thirds == pytest.approx(np.zeros((1, 3)), abs=8e-3)
     assert (found.missing_by_thirds > -1e-4).all()
