@@ -16,6 +16,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.plan.solver import plan_at_samples
+from quietarm.ocp.program.solving import Solver
 from quietarm.ocp.record import SolveSettings
 
 POINTS = 300
@@ -23,9 +24,9 @@ POINTS = 300
 that of twice as many within 1e-5."""
 STARTS = 12
 """Starts of the ends of a front."""
-COLD_STARTS, AUDITED = 3, 4
-"""Random starts of every fourth point between: with ten terms and more, a sweep may follow a branch
-of minima that another one passes below."""
+COLD_STARTS = 3
+"""Random starts of every point between: with ten terms and more, a sweep may follow a branch of
+minima that another one passes below."""
 SEED = 1000
 """Seed of these starts: they are others than the sweep's."""
 _BETTER = 1e-6
@@ -41,16 +42,17 @@ def exact_front(task: PointToPoint, profile: JointProfile, bound: float) -> Fron
     if not front.complete:
         return front
     points = list(front.points)
-    for i in range(AUDITED // 2, len(points) - 1, AUDITED):
+    inner = range(1, len(points) - 1)
+    for i in inner:
         points[i] = _better(front, points[i], bound, starts=COLD_STARTS)
-    # a better branch is followed to both sides
-    for order in (range(1, len(points) - 1), range(len(points) - 2, 0, -1)):
-        step = order.step
-        for i in order:
-            if points[i - step] is not front.points[i - step]:
-                points[i] = _better(front, points[i], bound, guess=points[i - step])
+    # every branch of minima is followed to both sides; by IPOPT, whose barrier leads past corners
+    # where the residual passes from one sample to the next, 1e-4 above the front at worst
+    for i in inner:
+        points[i] = _better(front, points[i], bound, "ipopt", guess=points[i - 1])
+    for i in reversed(inner):
+        points[i] = _better(front, points[i], bound, "ipopt", guess=points[i + 1])
     points = [point for point in points if _keeps_limits(front, point)]
-    settings = {**front.settings, "cold_starts": COLD_STARTS, "audited": AUDITED}
+    settings = {**front.settings, "cold_starts": COLD_STARTS}
     return replace(front, points=non_dominated(points), settings=settings)
 
 
@@ -66,6 +68,7 @@ def _better(
     front: Front,
     point: FrontPoint,
     bound: float,
+    solver: Solver = "sqp",
     starts: int = 1,
     guess: FrontPoint | None = None,
 ) -> FrontPoint:
@@ -73,7 +76,7 @@ def _better(
     try:
         settings = SolveSettings(
             point.residual, bound, starts, SEED,
-            guess=None if guess is None else guess.coefficients,
+            guess=None if guess is None else guess.coefficients, solver=solver,
         )  # fmt: skip
         # not `plan_move`: a front's residual is that at the samples of an uncertain plant
         plan = plan_at_samples(front.task, front.profile, settings)

@@ -30,6 +30,8 @@ from quietarm.ocp.task import PointToPoint
 
 _LEAST_TICKS, _MOST_SAMPLES = 1e-4, 10_000_000
 _SAMPLES = 1500
+_LOOKS = 2001
+"""Times of the move at which the joint may be found to turn back."""
 """Of the trajectory of a plan."""
 
 
@@ -88,6 +90,13 @@ class Plan(MotionAnswer):
     def path(self) -> JointPath:
         """The joint's motion as a callable of time and derivative order."""
         return self.profile.path(self.coefficients, *self.task.move)
+
+    @property
+    def turns_back(self) -> float:
+        """How far the joint goes back on its way [rad], on either side of the target."""
+        times = np.linspace(0.0, self.task.duration, _LOOKS)
+        gone = np.sign(self.task.span) * self.path(times)
+        return float((np.maximum.accumulate(gone) - gone).max())
 
     @cached_property
     def trajectory(self) -> Trajectory:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
 
+import numpy as np
 from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
+from quietarm.studies.comparison.staircase import objectives
 from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, Field, methods_in
 from quietarm.studies.contest.names import is_own, label_of, method_in
@@ -143,8 +145,11 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
         for arena in arenas
         for one in arena.imports
     ]
+    exact = [arena.yardstick.scale.scaled(objectives(arena.yardstick.front)) for arena in arenas]
     (paragraph,) = told(
         "contest/methods.txt",
+        points=min(map(len, exact)),
+        step=100 * max(float(-np.diff(front[:, 1]).min()) for front in exact),
         methods="; ".join(map(label_of, methods)),  # some have a comma
         problems=counted(len(arenas), "problem"),
         first=min(run.front.seed or 0 for run in runs),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
 from quietarm.ocp.plan.robust import EXCESS
 from quietarm.ocp.record import AGREEMENT
@@ -18,35 +17,27 @@ REST = 1e-6
 """Residuals below this [m] count as rest in words."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
-_SEEN, _LOOKS = 1e-6, 2001
-"""A joint turns back where it does so by more than this [rad], at so many times of the move."""
+_SEEN = 1e-6
+"""A joint turns back where it does so by more than this [rad]."""
 _ROUNDING = 1e-12
 """Angles below this [rad] are rounding errors."""
 
 
 def plan_document(plan: Plan, notes: Sequence[str] = ()) -> Document:
     """A plan's coefficients, figures and verification."""
-    motion = plan.motion
+    motion, back = plan.motion, plan.turns_back
     rows = [
         *move_rows(plan.task, motion),
         _choice(plan),
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
-        *_turning_back(plan),
+        *([("turns back", f"by {back:.3g} rad on the way")] if back > _SEEN else []),
         *_worst_rows(plan),
         ("status", plan.status.text + stopped_words(plan.provenance.stopped)),
         _verified_row(plan),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
     return Document("", [Facts(rows), Lines(notes)])
-
-
-def _turning_back(plan: Plan) -> list[Row]:
-    """How far the joint goes back on its way, before or after it has passed the target."""
-    times = np.linspace(0.0, plan.task.duration, _LOOKS)
-    gone = np.sign(plan.task.span) * plan.path(times)
-    back = float((np.maximum.accumulate(gone) - gone).max())
-    return [("turns back", f"by {back:.3g} rad on the way")] if back > _SEEN else []
 
 
 def worst_in_words(worst: Worst) -> str:

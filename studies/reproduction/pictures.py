@@ -16,6 +16,12 @@ from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
 from quietarm.studies.figures.looks import COLOURS, ORANGE, PINK
 from quietarm.studies.paper import CONDITIONS, EARLIER, Case
 from quietarm.studies.reproduction.recompute import Reproduction, RowResult
+from quietarm.studies.reproduction.searches import (
+    COMPARED_TERMS,
+    Input,
+    input_name,
+    own_search,
+)
 from quietarm.studies.reproduction.systems import (
     CYCLOID,
     FLOOR,
@@ -51,11 +57,12 @@ def _legend(figure: Figure, handles: Sequence[Line2D], columns: int) -> None:
 
 
 def redrawn(result: Reproduction, condition: Case, title: str) -> Figure:
-    """Fig. 2 or Fig. 5 from the printed coefficients, with the gradient's N = 6 over it."""
+    """Fig. 2 or 5 from the printed coefficients, with what search and gradient find for N = 6."""
     lines = [Line(result.cycloids[condition], "cycloid", "black")]
     for terms, (colour, style) in _STYLES.items():
         lines += _of_paper(result.result(condition, terms), colour, style)
-    gradient = result.more_terms[condition, 6, True]
+    lines += _by_search(result, condition, COMPARED_TERMS, PINK)
+    gradient = result.more_terms[condition, COMPARED_TERMS, True]
     lines.append(Line(gradient, "gradient, N = 6, same box", ORANGE, (0, (7, 2))))
     return motion_figure(lines, title, PAPER_PANELS)
 
@@ -67,13 +74,22 @@ def against_earlier(result: Reproduction, condition: Case, title: str) -> Figure
     assert isinstance(row.earlier, Plan)
     return motion_figure(
         [
-            Line(row.earlier, f"{name}, ref. [{reference}] as read here, by gradient", ORANGE),
+            *_by_search(result, condition, name, ORANGE),
+            Line(row.earlier, f"{name} of ref. [{reference}] as read here, by gradient", RED, ":"),
             *_of_paper(row, BLUE, "-"),
+            *_by_search(result, condition, COMPARED_TERMS, PINK),
             Line(row.in_box, "gradient, N = 6, the paper's box", GREEN, (0, (7, 2))),
         ],
         title,
         PAPER_PANELS,
     )
+
+
+def _by_search(result: Reproduction, case: Case, which: Input, colour: str) -> list[Line]:
+    """The middle seed of the paper's search; none where that did not come near enough."""
+    found = result.experiment[case, which].middle
+    label = f"{input_name(which)}, {own_search(case).label}"
+    return [] if found is None else [Line(found, label, colour, "--")]
 
 
 def _of_paper(row: RowResult, colour: str, style: str) -> list[Line]:

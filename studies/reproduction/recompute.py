@@ -8,7 +8,7 @@ from functools import partial
 from itertools import product
 from typing import Any
 
-from quietarm.metaheuristics.ensemble import Spread, energies_at, number_of_runs, one_seed
+from quietarm.metaheuristics.ensemble import number_of_runs, one_seed
 from quietarm.metaheuristics.sharing.pieces import (
     Done,
     InterruptedPiece,
@@ -23,7 +23,6 @@ from quietarm.ocp import (
     CrossCheck,
     CycloidPolynomial,
     Floor,
-    Front,
     JointProfile,
     Plan,
     SolverFailedError,
@@ -38,38 +37,35 @@ from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.robustness.measures import tolerated_residual
 from quietarm.ocp.simulation.errors import FREQUENCY
 from quietarm.studies.paper import (
-    ARM_HALF,
     COEFFICIENTS,
     CONDITIONS,
     DUAL_LINK_HALF,
-    EARLIER,
     MENDED,
-    PAPER_SEARCH,
     ROWS,
-    SINGLE_LINK_SIXTH,
     Case,
     Row,
-    residual_level,
 )
 from quietarm.studies.registry.methods import Method
 from quietarm.studies.registry.profiles import OTHERS
-from quietarm.studies.reproduction.systems import (
+from quietarm.studies.reproduction.searches import (
+    BEYOND_SIX,
     COMPARED_TERMS,
-    FREQUENCY_ERROR,
-    ROBUST,
+    LIKE_FOR_LIKE,
     SEARCHES,
-    System,
-    systems_of,
+    STUDIED,
+    Experiment,
+    Input,
+    Searched,
+    earlier_input,
+    input_name,
+    profile_with,
 )
+from quietarm.studies.reproduction.systems import FREQUENCY_ERROR, ROBUST, System, systems_of
 
 CASES = (*CONDITIONS, DUAL_LINK_HALF)
 """The moves on which all systems stand side by side."""
-BEYOND_SIX = (8, 10)
-"""Numbers of terms that check the paper's 'no gain above six'."""
 TERMS = (2, 4, 6, *BEYOND_SIX)
 """Numbers of terms that the gradient solves every condition of the paper for."""
-STUDIED = (SINGLE_LINK_SIXTH, ARM_HALF)
-"""The conditions whose number of terms the paper varies: its Figs 2 and 5."""
 PAPER_SOLVES = tuple(product(CONDITIONS, TERMS, (True, False)))
 """What the gradient solves for the paper: condition, terms, whether in the paper's box."""
 STARTS = {"network": 4, "Gaussians": 4, "spline": 2}
@@ -78,9 +74,15 @@ the cycloid', says how many of them end at the best."""
 SYSTEMS, CHECKED = "side by side", "by both solvers"
 
 _SOLVES = (*PAPER_SOLVES, *product([DUAL_LINK_HALF], [COMPARED_TERMS], (True, False)))
-_SEARCHED = tuple(
-    dict.fromkeys([*((r.condition, r.terms) for r in ROWS), (DUAL_LINK_HALF, COMPARED_TERMS)])
+_MOVES = [*((row.condition, row.terms) for row in ROWS), (DUAL_LINK_HALF, COMPARED_TERMS)]
+_SEARCHED = dict.fromkeys(
+    # long ones first, so that in the end no worker waits long for another
+    sorted(
+        [*((m, case, n) for m, (case, n) in product(SEARCHES, _MOVES)), *LIKE_FOR_LIKE],
+        key=lambda of: -SEARCHES.index(of[0]),
+    )
 )
+"""What is searched: by which method, which move, with which input."""
 
 
 def pieces_of_paper(seeds: int) -> list[Piece]:
@@ -92,12 +94,12 @@ def pieces_of_paper(seeds: int) -> list[Piece]:
         name = f"gradient: {case.name}, N = {terms}{', in the box' * boxed}"
         work = partial(_solved, case, CycloidPolynomial(terms), settings)
         pieces.append(Piece((case, terms, boxed), name, work))
-    # long ones first, so that in the end no worker waits long for another
-    for method, (case, terms), seed in product(reversed(SEARCHES), _SEARCHED, range(seeds)):
-        settings = {"profile": CycloidPolynomial(terms), "bound": case.bound}
-        name = f"{method.name}: {case.name}, N = {terms}, seed {seed}"
+    for (method, case, which), seed in product(_SEARCHED, range(seeds)):
+        bound = None if isinstance(which, str) else case.bound  # other inputs have their own
+        settings = {"profile": profile_with(which), "bound": bound}
+        name = f"{method.name}: {case.name}, {input_name(which)}, seed {seed}"
         work = partial(one_seed, case.task, method.name, settings, seed)
-        pieces.append(Piece((method, case, terms, seed), name, work))
+        pieces.append(Piece((method, case, which, seed), name, work))
     pieces += [Piece(c, f"floor: {c.name}", partial(_floor, c)) for c in reversed(CASES)]
     pieces += [
         Piece((c, ROBUST), f"gradient: {c.name}, robust", partial(_solved_robustly, c))
@@ -160,22 +162,12 @@ class RowResult:
     in_box: Plan
     free: Plan
     earlier: Plan | None
-    fronts: Mapping[Method, tuple[Front, ...]]
-    residual_level: float
+    searched: Mapping[Method, Searched]
 
     @property
     def mended_or_printed(self) -> Plan | None:
         """The paper's coefficients, with a misprint mended; None where it prints none."""
         return self.mended or self.printed
-
-    @property
-    def own_search(self) -> Method:
-        """The paper's own search for this plant."""
-        return PAPER_SEARCH[self.row.condition.task.plant.name]
-
-    def searched_by(self, method: Method) -> Spread:
-        """Quartiles over the seeds of the least energy [J] at the residual level."""
-        return energies_at(self.fronts[method], self.residual_level)
 
 
 @dataclass(frozen=True)
@@ -188,6 +180,7 @@ class Reproduction:
     floors: dict[Case, Floor]
     systems: dict[Case, tuple[System, ...]]
     checks: dict[Case, CrossCheck]
+    experiment: Experiment
 
     def result(self, condition: Case, terms: int) -> RowResult:
         """The first row of a condition and number of terms."""
@@ -209,12 +202,15 @@ def recompute_paper(
             floors={c: done.answers[c] for c in CONDITIONS},
             systems={c: done.answers[c, SYSTEMS] for c in CASES},
             checks={c: done.answers[c, CHECKED] for c in CONDITIONS},
+            experiment={
+                (case, which): _searched(method, case, which, done, seeds)
+                for method, case, which in LIKE_FOR_LIKE
+            },
         )
 
 
 def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
     key = case, terms = row.condition, row.terms
-    _, earlier = EARLIER[case.task.plant.name]
     printed, mended = (
         evaluate_coefficients(case.task, table[key]) if key in table else None
         for table in (COEFFICIENTS, MENDED)
@@ -225,10 +221,11 @@ def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
         mended,
         in_box=done.answers[case, terms, True],
         free=done.answers[case, terms, False],
-        earlier=None if row.earlier_energy is None else done.answers[case, earlier],
-        fronts={
-            method: tuple(done.answers[method, case, terms, seed] for seed in range(seeds))
-            for method in SEARCHES
-        },
-        residual_level=residual_level(case, terms),
+        earlier=None if row.earlier_energy is None else done.answers[case, earlier_input(case)],
+        searched={method: _searched(method, case, terms, done, seeds) for method in SEARCHES},
     )
+
+
+def _searched(method: Method, case: Case, which: Input, done: Done, seeds: int) -> Searched:
+    fronts = tuple(done.answers[method, case, which, seed] for seed in range(seeds))
+    return Searched.of(case, which, fronts)

@@ -5,15 +5,13 @@ A new system is one entry of `systems_of`; what it has to solve is a piece of `p
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from quietarm.metaheuristics.ensemble import energy_at
+from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp import (
     Floor,
-    Front,
     Motion,
     Plan,
     evaluate_coefficients,
@@ -25,14 +23,11 @@ from quietarm.ocp.simulation.errors import FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.studies.display.words import millimetres
-from quietarm.studies.paper import PAPER_SEARCH, ROWS, Case, paper_plan, residual_level
+from quietarm.studies.paper import ROWS, Case, paper_plan
 from quietarm.studies.registry.methods import Method
 from quietarm.studies.registry.profiles import OTHERS
+from quietarm.studies.reproduction.searches import COMPARED_TERMS, SEARCHES, Searched
 
-SEARCHES = tuple(PAPER_SEARCH.values())
-"""The paper's two searches, in its order."""
-COMPARED_TERMS = 6
-"""Terms of the polynomial: the paper's choice."""
 FREQUENCY_ERROR = 0.1
 """Relative error of the plant's natural frequencies."""
 CYCLOID, PAPER, IN_BOX, FREE, ROBUST, FLOOR = (
@@ -48,8 +43,10 @@ class System:
     parameters: int | None = None
     motion: Motion | None = None
     wrong_residual: float | None = None
+    turns_back: float | None = None
     seconds: float | None = None
     printed_energy: float | None = None
+    energies: Spread | None = None
     why: str = ""
 
     @property
@@ -78,8 +75,12 @@ Systems = Mapping[Case, Sequence[System]]
 
 def systems_of(case: Case, answers: Mapping[Hashable, Any], seeds: int) -> tuple[System, ...]:
     """Every system on a move, always in the same order."""
-    fronts = {
-        method: [answers[method, case, COMPARED_TERMS, seed] for seed in range(seeds)]
+    searches = {
+        method: Searched.of(
+            case,
+            COMPARED_TERMS,
+            tuple(answers[method, case, COMPARED_TERMS, seed] for seed in range(seeds)),
+        )
         for method in SEARCHES
     }
     return (
@@ -87,7 +88,7 @@ def systems_of(case: Case, answers: Mapping[Hashable, Any], seeds: int) -> tuple
         *(_shaped(case, shaper) for shaper in SHAPERS),
         _paper(case),
         *(_of(name, answers[case, name]) for name in OTHERS),
-        *(searched(case, method, its_fronts) for method, its_fronts in fronts.items()),
+        *(searched(method, found) for method, found in searches.items()),
         _of(IN_BOX, answers[case, COMPARED_TERMS, True]),
         _of(FREE, answers[case, COMPARED_TERMS, False]),
         _robust(case, answers[case, ROBUST]),
@@ -106,7 +107,8 @@ def _of(name: str, answer: Plan | Floor) -> System:
         with_errors(task.plant, {FREQUENCY: error}) for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
     )
     wrong = max(resimulated(replace(task, plant=plant), joint).residual for plant in plants)
-    return System(name, size, answer.motion, wrong, answer.provenance.seconds)
+    back = answer.turns_back if isinstance(answer, Plan) else None
+    return System(name, size, answer.motion, wrong, back, answer.provenance.seconds)
 
 
 def _robust(case: Case, plan: Plan | str) -> System:
@@ -138,14 +140,10 @@ def _paper(case: Case) -> System:
     return System(PAPER, COMPARED_TERMS, printed_energy=energies[0], why=why)
 
 
-def searched(case: Case, method: Method, fronts: Sequence[Front]) -> System:
-    """What a search found: of several seeds the middle one that came near enough."""
-    level = residual_level(case, COMPARED_TERMS)
-    still = [front for front in fronts if not math.isnan(energy_at(front, level))]
-    if not still:
-        why = f"no point of its front is within {millimetres(level)}"
-        return System(method.label, COMPARED_TERMS, why=why)
-    front = sorted(still, key=lambda front: energy_at(front, level))[(len(still) - 1) // 2]
-    point = front.cheapest(level)
-    plan = evaluate_coefficients(case.task, point.coefficients, profile=front.profile)
-    return replace(_of(method.label, plan), seconds=front.seconds)
+def searched(method: Method, found: Searched) -> System:
+    """The middle one of a search's seeds."""
+    if found.middle is None:
+        seed = "no point" if len(found.fronts) == 1 else "at the middle seed no point"
+        why = f"{seed} of its front is within {millimetres(found.level)}"
+        return System(method.label, COMPARED_TERMS, energies=found.energies, why=why)
+    return replace(_of(method.label, found.middle), energies=found.energies)

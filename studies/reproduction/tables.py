@@ -1,4 +1,4 @@
-"""What is recomputed as tables: the paper's, all systems, multiples of the floor, both solvers."""
+"""What is recomputed as tables: all systems, multiples of the floor, both solvers."""
 
 from __future__ import annotations
 
@@ -10,93 +10,22 @@ from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, Spread
 from quietarm.metaheuristics.sharing.pieces import Done, Piece
 from quietarm.ocp import Floor, Front, Plan
 from quietarm.studies.document.table import Cell, Column, Line, Table, table_of
-from quietarm.studies.paper import CONDITIONS, EARLIER, Case
-from quietarm.studies.reproduction.recompute import TERMS, Reproduction, RowResult
-from quietarm.studies.reproduction.systems import FREQUENCY_ERROR, SEARCHES, System, Systems
+from quietarm.studies.paper import CONDITIONS, Case
+from quietarm.studies.reproduction.paper_tables import figures_of
+from quietarm.studies.reproduction.recompute import TERMS, Reproduction
+from quietarm.studies.reproduction.searches import SEARCHES
+from quietarm.studies.reproduction.systems import FREQUENCY_ERROR, System, Systems
 
-_J, _MM, _S = "{:.4g}".format, "{:.3g}".format, "{:.2f}".format
-_MENDED = ", a_5 mended"
-TITLES = {
-    2: "Table 2: number of terms, single-link manipulator",
-    3: "Table 3: against ref. [23], single-link manipulator",
-    5: "Table 5: number of terms, arm on a flexible link",
-    6: "Table 6: against ref. [24], arm on a flexible link",
-}
+_J, _MM = "{:.4g}".format, "{:.3g}".format
 _ERROR = f"{100 * FREQUENCY_ERROR:g} %"
 _IN_BOX, _FREE, _PAPER = "gradient, in the box", "gradient, no box", "paper"
 SERIES = (_PAPER, *(method.label for method in SEARCHES), _IN_BOX, _FREE)
 
 
-# The paper's tables
-
-
-def paper_table(result: Reproduction, number: int) -> Table:
-    """One of the paper's tables with the recomputed figures beside the printed ones.
-
-    A misprint mended has a row of its own, which holds what it changes.
-    """
-    rows = [found for found in result.rows if found.row.table == number]
-    name = rows[0].own_search.label
-    reference, profile = EARLIER[rows[0].row.condition.task.plant.name]
-    read_here = f"{profile}, ref. [{reference}] as read here, by gradient"
-    columns = [
-        Column("move"),
-        Column("terms N", key="terms"),
-        Column("F2 [J] earlier study", _J, "earlier_study_J"),
-        *_of_plan(read_here, "earlier_study_as_read_here"),
-        Column("F2 [J] printed", _J, "printed_J"),
-        *_of_plan("printed coefficients", "printed_coefficients")[:2],
-        *_of_plan(_IN_BOX, "gradient_in_box"),
-        *_of_plan(_FREE, "gradient_no_box"),
-        Column(f"F2 [J] {name}, in the box", _J, f"{name}_in_box_J"),
-        Column("  quartiles over seeds", key=f"{name}_quartiles_J"),
-        Column("  residual limit [mm]", _MM, f"{name}_residual_limit_mm"),
-        Column("  time of a run [s]", _S, f"{name}_run_s"),
-    ]
-    cells = [
-        _row(found, mended)
-        for found in rows
-        for mended in (False, True)
-        if found.mended or not mended
-    ]
-    return Table(TITLES[number], columns, cells)
-
-
-def _row(found: RowResult, mended: bool) -> list[Cell]:
-    row, method = found.row, found.own_search
-    spread, fronts = found.searched_by(method), found.fronts[method]
-    paper = [
-        *(row.condition.label, f"{row.terms}{_MENDED * mended}", row.earlier_energy),
-        *(*_figures(found.earlier), row.energy),
-        *_figures(found.mended if mended else found.printed)[:2],
-    ]
-    here = [
-        *(*_figures(found.in_box), *_figures(found.free)),
-        spread.median if isfinite(spread.median) else "none",
-        f"{spread.lower:.4f}-{spread.upper:.4f}" if len(fronts) > 1 else None,
-        found.residual_level * 1e3,
-        Spread.of([front.seconds for front in fronts]).median,
-    ]
-    return [*paper, *(None if mended else cell for cell in here)]
-
-
-def _of_plan(words: str, key: str) -> list[Column]:
-    """Columns of a plan's `_figures`."""
-    return [
-        Column(f"F2 [J] {words}", _J, f"{key}_J"),
-        Column("  residual [mm]", _MM, f"{key}_residual_mm"),
-        Column("  time [s]", _S, f"{key}_s"),
-    ]
-
-
-def _figures(answer: Plan | Floor | None) -> list[float | None]:
-    """Energy [J], residual [mm] and time [s]; empty where there is no answer."""
-    if answer is None:
-        return [None] * 3
-    return [answer.energy, answer.residual * 1e3, answer.provenance.seconds]
-
-
 # Side by side
+
+_TURNED = 1e-4
+"""From so many radians on a joint is said to turn back."""
 
 
 def seconds_in_words(seconds: float) -> str:
@@ -129,6 +58,15 @@ _OF_SYSTEM = {
     Column("time [s]", seconds_in_words, "seconds"): attrgetter("seconds"),
 }
 """Columns of a system, each with what reads its cell."""
+_OF_SEEDS = {
+    Column(key): attrgetter(f"energies.{name}")
+    for key, name in {
+        "energy_lower_quartile_J": "lower",
+        "energy_upper_quartile_J": "upper",
+        "seeds_near_enough": "count",
+        "seeds": "seeds",
+    }.items()
+}
 
 
 def systems_table(case: Case, systems: Sequence[System]) -> Table:
@@ -142,17 +80,39 @@ def systems_table(case: Case, systems: Sequence[System]) -> Table:
 
 def all_systems(systems: Systems) -> Table:
     """Every system on every move, for CSV."""
-    columns = [*map(Column, ("plant", "move", "system")), *_OF_SYSTEM, Column("why")]
+    columns = [*map(Column, ("plant", "move", "system")), *_OF_SYSTEM, Column("turns_back_rad")]
+    columns += [*_OF_SEEDS, Column("why")]
     rows = [
         [
             *(case.task.plant.name, case.label, found.name),
             *(read(found) for read in _OF_SYSTEM.values()),
+            found.turns_back,
+            *(read(found) if found.energies else None for read in _OF_SEEDS.values()),
             found.why or None,
         ]
         for case, every in systems.items()
         for found in every
     ]
     return Table("Side by side", columns, rows)
+
+
+def remarks(every: Sequence[System]) -> list[str]:
+    """What the table of a move cannot say: what is missing, several seeds, a joint turning back."""
+    lines = list[str]()
+    for found in every:
+        if found.why:
+            lines.append(f"{found.name}: {found.why}")
+        if (spread := found.energies) and spread.seeds > 1:
+            quartiles = " and ".join(
+                f"{each:.4f} J" if isfinite(each) else "none"
+                for each in (spread.lower, spread.upper)
+            )
+            lines.append(
+                f"{found.name}: the middle one of {spread.seeds} seeds, {spread.count} of which "
+                f"come near enough; quartiles {quartiles}"
+            )
+    back = [f"{s.name} by {s.turns_back:.2g} rad" for s in every if (s.turns_back or 0) > _TURNED]
+    return [*lines, *([f"On its way the joint turns back: {', '.join(back)}"] if back else [])]
 
 
 # The floor
@@ -167,7 +127,9 @@ def multiples(result: Reproduction, condition: Case) -> Multiples:
     rows = {r.row.terms: r for r in result.rows if r.row.condition == condition}
     spreads = {(_PAPER, n): Spread.of([row.row.energy]) for n, row in sorted(rows.items())}
     for method in SEARCHES:
-        spreads |= {(method.label, n): row.searched_by(method) for n, row in sorted(rows.items())}
+        spreads |= {
+            (method.label, n): row.searched[method].energies for n, row in sorted(rows.items())
+        }
     for series, boxed in ((_IN_BOX, True), (_FREE, False)):
         for terms in TERMS:
             energy = result.more_terms[condition, terms, boxed].energy
@@ -263,4 +225,4 @@ def _ended(answer: object) -> list[float | None]:
     if isinstance(answer, Front):
         still = [point for point in answer.points if point.residual <= SEARCH_RESIDUAL]
         return [still[-1].energy, 1e3 * still[-1].residual] if still else [None, None]
-    return _figures(answer if isinstance(answer, Plan | Floor) else None)[:2]
+    return figures_of(answer if isinstance(answer, Plan | Floor) else None)[:2]

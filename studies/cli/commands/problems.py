@@ -23,7 +23,7 @@ from rich.console import Console
     "names", nargs=-1, type=Parsed("problem", lambda text: problem_of(text).name),
     metavar="[PROBLEM]...",
 )  # fmt: skip
-@click.option("--again", is_flag=True, help="Find the exact fronts anew; some seconds each.")
+@click.option("--again", is_flag=True, help="Find the exact fronts anew; some minutes each.")
 @click.option("--output", type=FOLDER, help="Write the exact fronts to this folder.")
 @quiet_option
 def problems(names: tuple[str, ...], again: bool, output: Path | None, quiet: bool) -> None:

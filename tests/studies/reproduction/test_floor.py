@@ -60,7 +60,11 @@ def _with_energy(floor, energy):
 
 
 def test_a_search_that_met_no_residual_is_left_out(reproduction):
-    rows = tuple(dataclasses.replace(row, residual_level=1e-12) for row in reproduction.rows)
+    def never_so_still(row):
+        stiller = {m: dataclasses.replace(of, level=1e-12) for m, of in row.searched.items()}
+        return dataclasses.replace(row, searched=stiller)
+
+    rows = tuple(map(never_so_still, reproduction.rows))
     without = dataclasses.replace(reproduction, rows=rows)
     series = {series for series, _ in multiples(without, ARM_HALF)}
     assert series == {PAPER, IN_BOX, FREE}

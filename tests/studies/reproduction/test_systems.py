@@ -20,8 +20,9 @@ from quietarm.studies.paper import (
 )
 from quietarm.studies.registry.methods import NSGA2, VEPSO
 from quietarm.studies.reproduction.pictures import systems_figure
+from quietarm.studies.reproduction.searches import Searched
 from quietarm.studies.reproduction.systems import searched
-from quietarm.studies.reproduction.tables import systems_table
+from quietarm.studies.reproduction.tables import remarks, systems_table
 
 SYSTEMS = [
     "plain cycloid", "ZV", "ZVD", "EI", "paper", "network", "Gaussians", "spline", "VEPSO",
@@ -145,12 +146,27 @@ def test_of_several_seeds_the_middle_one_counts(front_of):
         for seed, energy in enumerate((0.5, 0.1, 0.3))
     ]
     far = front_of([(2 * level, 0.01)], seed=3, terms=6)
-    found = searched(SINGLE_LINK_SIXTH, VEPSO, [*fronts, far])
+    found = searched(VEPSO, Searched.of(SINGLE_LINK_SIXTH, 6, (*fronts, far)))
     assert (found.name, found.seconds) == ("VEPSO", 2.0)
     assert found.motion == evaluate_coefficients(SINGLE_LINK_SIXTH.task, [0.1] * 6).motion
-    nothing = searched(SINGLE_LINK_SIXTH, NSGA2, [far])
+    assert (found.energies.count, found.energies.seeds) == (3, 4)
+    assert remarks([found])[:1] == [
+        "VEPSO: the middle one of 4 seeds, 3 of which come near enough; quartiles 0.2500 J and none"
+    ]
+    nothing = searched(NSGA2, Searched.of(SINGLE_LINK_SIXTH, 6, (far,)))
     assert (nothing.motion, nothing.energy) == (None, None)
     assert nothing.why == f"no point of its front is within {level:.3g} mm"
+
+
+def test_a_joint_that_turns_back_is_named(reproduction):
+    # the network's plan of least energy swings back on its way: docs/systems.md
+    every = reproduction.systems[SINGLE_LINK_SIXTH]
+    line = remarks(every)[-1]
+    assert line.startswith("On its way the joint turns back: ")
+    assert "network by " in line
+    assert "gradient" not in line
+    plain = on(reproduction, SINGLE_LINK_SIXTH)["plain cycloid"]
+    assert plain.turns_back == 0
 
 
 # The picture
