@@ -61,7 +61,8 @@ class Animation:
         content = base64.b64encode(self.content).decode()
         if self.format == "mp4":
             return f'<video controls loop src="data:video/mp4;base64,{content}"></video>'
-        return f'<img src="data:image/gif;base64,{content}">'
+        words = "Structures in motion; below, joint angle, tip displacement and power over time"
+        return f'<img alt="{words}" src="data:image/gif;base64,{content}">'
 
 
 def animate(
@@ -78,7 +79,8 @@ def animate(
 
     Every link is bent as its mode bends it, and its plant says how (`Plant.structure`); dashed is
     where it would be without bending. After arrival the path of the tips is drawn. Below are the
-    joint angle and the power, with a cursor. The clock goes on until the last residual window ends.
+    joint angle, the tips' displacements and the power, with a cursor. The clock goes on until the
+    last residual window ends.
 
     Parameters
     ----------

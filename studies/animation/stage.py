@@ -1,4 +1,4 @@
-"""The picture that moves: structures above, joint angle and power with a cursor below."""
+"""The picture that moves: structures above, curves over time with a cursor below."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.lines import Line2D
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from quietarm.models import Body
+from quietarm.ocp import Trajectory
 from quietarm.studies.animation.cast import Actor, Array
 from quietarm.studies.animation.formats import Picture
 from quietarm.studies.display.pictures import as_written
@@ -27,6 +28,13 @@ _UNSEEN = 1e-6
 _LABEL = 44
 """Letters of a label that fit above a panel."""
 _THIN, _THICK, _DISC, _PATH = 4.0, 7.0, 13.0, 2.0
+
+_CURVES: dict[str, Callable[[Trajectory], Array]] = {
+    "joint angle [rad]": lambda sampled: sampled.joint[:, :1],
+    "tip displacement [mm]": lambda sampled: 1e3 * sampled.tips,
+    "power [W]": lambda sampled: sampled.power[:, None],
+}
+"""What is drawn over time, a column for each curve."""
 
 Moving = list[tuple[Line2D, Sequence[Any]]]
 """Artists that change, each with its data (x, y) at every frame."""
@@ -61,7 +69,7 @@ def frames_of(
     moving: Moving = []
     for actor, its_corners, ax in zip(cast, corners, panels, strict=False):
         moving += _structure(ax, actor, its_corners, same)
-    for ax, name in zip(below.subplots(1, 2), ("joint angle [rad]", "power [W]"), strict=True):
+    for ax, name in zip(below.subplots(1, len(_CURVES)), _CURVES, strict=True):
         moving += _profile(ax, name, cast, end)
     for artist, _ in moving:
         artist.set_animated(True)
@@ -135,18 +143,18 @@ def _profile(ax: Axes, name: str, cast: Sequence[Actor], end: float) -> Moving:
     """Draw a curve of all motions; the cursor, and a dot on every curve."""
     axes_or_new(ax)
     ax.set_title(name, **TITLE)
-    ax.set_xlabel("time [s]  (dashed: arrival)")
+    ax.set_xlabel("time [s]  (dashed: arrival)", fontsize=9)
     ax.set_xlim(0.0, end)
     times = cast[0].times
     cursor = ax.axvline(0.0, color="0.2", linewidth=1.2)
     moving: Moving = [(cursor, [([time, time], [0, 1]) for time in times])]
     for actor in cast:
         line, sampled = actor.line, actor.trajectory
-        values = sampled.power if name.startswith("power") else sampled.joint[:, 0]
-        ax.plot(sampled.time, values, color=line.colour, linestyle=line.style, linewidth=1.6)
-        dot = ax.plot([], [], "o", color=line.colour, markersize=5)[0]
-        at_frames = np.interp(times, sampled.time, values)
-        moving.append((dot, [([t], [v]) for t, v in zip(times, at_frames, strict=True)]))
+        for values in _CURVES[name](sampled).T:
+            ax.plot(sampled.time, values, color=line.colour, linestyle=line.style, linewidth=1.6)
+            dot = ax.plot([], [], "o", color=line.colour, markersize=5)[0]
+            at_frames = np.interp(times, sampled.time, values)
+            moving.append((dot, [([t], [v]) for t, v in zip(times, at_frames, strict=True)]))
     for arrival in {actor.line.plan.task.duration for actor in cast}:
         ax.axvline(arrival, color="0.6", linewidth=0.8, linestyle="--")
     return moving

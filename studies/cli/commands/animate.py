@@ -37,7 +37,8 @@ def animate(
 
     PLANs are files written by `quietarm plan` or `evaluate`, of any plants and durations; one alone
     is drawn beside the plain cycloid of its move. Every link bends as its mode does; the picture
-    says how far that is exaggerated. Below are the joint angle and the power, with a cursor.
+    says how far that is exaggerated. Below are the joint angle, the tips' displacements and the
+    power, with a cursor.
 
     \b
     Examples:

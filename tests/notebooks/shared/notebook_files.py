@@ -10,6 +10,7 @@ import nbformat
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
+HERE = str(Path(__file__).parent)
 NOTEBOOKS = Path(__file__).parent.parent.parent.parent / "notebooks"
 PATHS = sorted(NOTEBOOKS.glob("*.ipynb"))
 
@@ -25,9 +26,14 @@ WIDGET = "application/vnd.jupyter.widget-view+json"
 STRICT = """
 %reset -f
 import os
+import sys
 import warnings
 
 os.chdir({folder!r})
+sys.path.insert(0, {here!r})
+import described  # gives pictures their alternative texts
+
+sys.path.remove({here!r})
 warnings.simplefilter("error")
 warnings.filterwarnings("ignore", module="ipykernel")  # of its own ways, when it shuts down
 """
@@ -84,7 +90,7 @@ def execute(path, folder, client):
     Raises nbclient's CellExecutionError, with the cell and its traceback, where one fails.
     """
     notebook = read(path)
-    extra = [new_code_cell(STRICT.format(folder=str(folder)))]
+    extra = [new_code_cell(STRICT.format(folder=str(folder), here=HERE))]
     cells = list(extra)
     for cell in notebook.cells:
         cells.append(cell)

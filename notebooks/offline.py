@@ -1,0 +1,124 @@
+"""Write notebooks as pages or slides that need no network: one file each, with all that is in it.
+
+    python notebooks/offline.py [--slides [--code]] [--output FOLDER] NOTEBOOK...
+
+Equations become MathML, which browsers set themselves; slides carry reveal.js along.
+"""
+
+import argparse
+import re
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+
+from jinja2 import pass_context
+from latex2mathml.converter import convert
+from nbconvert import HTMLExporter, SlidesExporter
+from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
+
+WALL = {"reveal_width": "1280", "reveal_height": "800"}
+"""Slides as wide and as high [pixels]."""
+_TAG = re.compile(r"\\tag\{(.*?)\}")
+_FROM_THE_NETWORK = re.compile(
+    r"<script[^>]*\ssrc=\"https?://[^\"]*\"[^>]*>\s*</script>"
+    r"|<link[^>]*\shref=\"https?://[^\"]*\"[^>]*>"
+    r"|<script type=\"module\">[^<]*mermaid.*?</script>",
+    re.DOTALL,
+)
+_UNDESCRIBED = re.compile(r'alt="No description[^"]*"')
+_STYLE = """<style>
+.equation { display: flex; align-items: center; margin: 1em 0; }
+.equation div { flex: 1; }
+.reveal .slides section section { max-height: 100%; overflow-y: auto; }
+</style>"""
+_SCRIPTS = """<script>{reveal}</script>
+<script>{notes}</script>
+<script>
+// what the slides' own script asks for is in this file already
+const require = (options, addresses, begin) => begin(Reveal, RevealNotes);
+const MathJax = {{ Hub: {{ getAllJax: () => false }} }};
+</script>"""
+
+
+def alternatives(notebook):
+    """The texts of a notebook's pictures, in their order, which nbconvert's templates leave out."""
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    pictures = [output for output in outputs if "image/png" in output.get("data", {})]
+    return [one.metadata.get("image/png", {}).get("alt", "a picture") for one in pictures]
+
+
+class Typeset(IPythonRenderer):
+    """Markdown with its equations as MathML."""
+
+    def inline_math(self, body):
+        return convert(body)
+
+    def block_math(self, body):
+        tag = _TAG.search(body)
+        number = f"<span>({tag[1]})</span>" if tag else ""
+        equation = convert(_TAG.sub("", body), display="block")
+        return f'<div class="equation"><div>{equation}</div>{number}</div>'
+
+
+class _Offline:
+    """What pages and slides have in common."""
+
+    @pass_context
+    def markdown2html(self, context, source):
+        return MarkdownWithMath(renderer=Typeset(escape=False)).render(source)
+
+    def default_filters(self):
+        yield from super().default_filters()
+        yield "markdown2html", self.markdown2html
+
+    def from_notebook_node(self, nb, *given, **settings):
+        page, resources = super().from_notebook_node(nb, *given, **settings)
+        page = _FROM_THE_NETWORK.sub("", page)
+        texts = map(escape, alternatives(nb))
+        page = _UNDESCRIBED.sub(lambda _: f'alt="{next(texts)}"', page)
+        return page.replace("</head>", f"{self.head()}</head>", 1), resources
+
+    def head(self):
+        return _STYLE
+
+
+class Page(_Offline, HTMLExporter):
+    """A page."""
+
+
+class Slides(_Offline, SlidesExporter):
+    """Slides, which the arrow keys turn; what is higher than the wall scrolls."""
+
+    def head(self):
+        package = files("sphinx_revealjs") / "_static" / "revealjs"
+        looks = [
+            (package / "dist" / name).read_text() for name in ("reveal.css", "theme/simple.css")
+        ]
+        fonts = re.compile(r"@import[^;]*;")
+        scripts = _SCRIPTS.format(
+            reveal=(package / "dist" / "reveal.js").read_text(),
+            notes=(package / "plugin" / "notes" / "notes.js").read_text(),
+        )
+        return f"<style>{fonts.sub('', ''.join(looks))}</style>{_STYLE}{scripts}"
+
+
+def main():
+    words = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    words.add_argument("notebooks", nargs="+", type=Path, metavar="NOTEBOOK")
+    words.add_argument("--slides", action="store_true", help="slides, without the code")
+    words.add_argument("--code", action="store_true", help="slides with the code")
+    words.add_argument("--output", type=Path, default=Path(), help="a folder; else the one here")
+    asked = words.parse_args()
+    exporter = Slides(exclude_input=not asked.code, **WALL) if asked.slides else Page()
+    asked.output.mkdir(parents=True, exist_ok=True)
+    for notebook in asked.notebooks:
+        page, _ = exporter.from_filename(str(notebook))
+        path = asked.output / f"{notebook.stem}{'.slides' * asked.slides}.html"
+        path.write_text(page)
+        print("wrote", path)
+
+
+if __name__ == "__main__":
+    main()
