@@ -15,7 +15,7 @@ from quietarm.ocp import Trajectory
 from quietarm.studies.animation.cast import Actor, Array
 from quietarm.studies.animation.formats import Picture
 from quietarm.studies.display.pictures import as_written
-from quietarm.studies.display.words import millimetres, move_of, plant_words, title_of
+from quietarm.studies.display.words import REST, millimetres, move_of, plant_words, title_of
 from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
 
 _COLUMNS = {1: 1, 2: 2, 4: 2}
@@ -23,8 +23,6 @@ _COLUMNS = {1: 1, 2: 2, 4: 2}
 _PANEL = 4.0  # inches wide; all other sizes follow
 _LEAST_HEIGHT, _MOST_HEIGHT, _PROFILES, _HEAD = 1.7, 3.2, 2.0, 0.45
 _MARGIN = 0.08
-_UNSEEN = 1e-6
-"""Residuals below a thousandth of a millimetre [m] are said to be below that."""
 _LABEL = 44
 """Letters of a label that fit above a panel."""
 _THIN, _THICK, _DISC, _PATH = 4.0, 7.0, 13.0, 2.0
@@ -96,7 +94,7 @@ def _structure(ax: Axes, actor: Actor, corners: Array, same: bool) -> Moving:
     """Set up a structure's panel; its artists."""
     line, task = actor.line, actor.line.plan.task
     left = line.plan.residual
-    residual = millimetres(left) if left >= _UNSEEN else f"below {millimetres(_UNSEEN)}"
+    residual = millimetres(left) if left >= REST else f"below {millimetres(REST)}"
     lines = [
         line.label,
         *([] if same else [f"{plant_words(task.plant)}, {move_of(task)}"]),

@@ -38,12 +38,18 @@ def _fronts(comparison: Comparison) -> Table:
     def medians(figure: str) -> list[float]:
         return [group.spread(figure).median for group in groups]
 
+    # the points of an exact front are some of a line, and would lose by steps that it has not
+    are_points = [group.method.kind is not Kind.GRADIENT for group in groups]
+    whole = [comparison.fill > 0 or are for are in are_points]
+
     def spreads(heading: str, form: str, figure: str) -> list[Line]:
-        return _quartiles(heading, form, [group.spread(figure) for group in groups])
+        found = [group.spread(figure) for group in groups]
+        known = [of if shown else Spread.of([]) for of, shown in zip(found, whole, strict=True)]
+        return _quartiles(heading, form, known)
 
     as_found = [
-        None if group.method.kind is Kind.GRADIENT else volume  # some points of a line
-        for group, volume in zip(groups, medians("hypervolume_found"), strict=True)
+        volume if are else None
+        for are, volume in zip(are_points, medians("hypervolume_found"), strict=True)
     ]
     columns: list[Line] = [
         ("method", "", [group.label for group in groups]),

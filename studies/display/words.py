@@ -23,9 +23,18 @@ def counted(number: int, what: str) -> str:
     return f"{number} {what}{'s' * (number != 1)}"
 
 
+REST = 1e-6
+"""Residuals below this [m] count as rest in words."""
+
+
 def millimetres(length: float) -> str:
     """A length [m] in millimetres."""
     return f"{length * 1e3:.3g} mm"
+
+
+def residual_words(residual: float) -> str:
+    """A residual [m] in millimetres; `rest` where it counts as that."""
+    return "rest" if residual < REST else millimetres(residual)
 
 
 def plant_words(plant: Plant) -> str:

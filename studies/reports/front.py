@@ -16,7 +16,7 @@ from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness.worst import worst_of
-from quietarm.studies.display.words import counted, millimetres
+from quietarm.studies.display.words import counted, millimetres, residual_words
 from quietarm.studies.document.blocks import Document, Lines
 from quietarm.studies.reports.plan import worst_in_words
 
@@ -35,7 +35,7 @@ def sweep_document(front: Front, asked_for: int, check: CrossCheck | None = None
         *([] if check is None else [_check_line(check)]),
         *failure_lines(front, asked_for),
         *(
-            f"no weight reaches residuals from {millimetres(begin)} to {millimetres(end)}: the "
+            f"no weight reaches residuals from {residual_words(begin)} to {millimetres(end)}: the "
             "front is not convex there"
             for begin, end in front.gaps
         ),
@@ -103,7 +103,7 @@ def _level_lines(front: Front) -> list[str]:
 
 def _point_in_words(front: Front, point: FrontPoint) -> str:
     """Energy and residual; of an uncertain plant also what is left between its samples."""
-    words = f"{point.energy:.4g} J at {millimetres(point.residual)}"
+    words = f"{point.energy:.4g} J at {residual_words(point.residual)}"
     worst = worst_of(front.task, front.profile, point.coefficients)
     return words if worst is None else f"{words}; at worst {worst_in_words(worst)}"
 

@@ -9,12 +9,10 @@ from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCy
 from quietarm.ocp.plan.robust import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.display.words import millimetres, move_of, plant_words
+from quietarm.studies.display.words import REST, millimetres, move_of, plant_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
 
 Row = tuple[str, str]
-REST = 1e-6
-"""Residuals below this [m] count as rest in words."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
 _SEEN = 1e-6

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import Plan, Robustness, Sweep
 from quietarm.ocp.robustness.measures import TOLERATED
-from quietarm.studies.display.words import move_of, plant_words
+from quietarm.studies.display.words import REST, move_of, plant_words
 from quietarm.studies.document.blocks import Bullets, Document, Picture, Section
 from quietarm.studies.document.table import Cell, Column, Table
-from quietarm.studies.reports.plan import REST
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

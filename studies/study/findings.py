@@ -9,7 +9,7 @@ from math import inf, isfinite
 import numpy as np
 from quietarm.studies.comparison.measures import Comparison, Group
 from quietarm.studies.comparison.staircase import within
-from quietarm.studies.display.words import millimetres, title_of
+from quietarm.studies.display.words import REST, millimetres, residual_words, title_of
 from quietarm.studies.document.prose import percents, told
 from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, Method
 from quietarm.studies.study.work import CaseStudy, Study
@@ -20,8 +20,6 @@ _ALIKE = 1e-4
 """Energies within this share of each other count as equal: filled fronts are no finer."""
 _SAME_HYPERVOLUME = 1e-3
 """Hypervolumes nearer to each other count as equal: the number of points decides about them."""
-_REST = 1e-6
-"""A residual within this [m] counts as rest."""
 
 
 def group_of(comparison: Comparison, method: Method) -> Group | None:
@@ -37,7 +35,7 @@ def gap(comparison: Comparison, method: Method, figure: str = "gaps_between") ->
 
 def at_rest(found: CaseStudy) -> float:
     """Least energy [J] of all fronts at rest on arrival; NaN where none arrives so."""
-    return float(within(found.comparison.best_front, [_REST])[0])
+    return float(within(found.comparison.best_front, [REST])[0])
 
 
 def case_findings(found: CaseStudy) -> list[str]:
@@ -50,7 +48,7 @@ def case_findings(found: CaseStudy) -> list[str]:
     paper = [
         (point, point.energy / float(within(comparison.best_front, [at])[0]) - 1)
         for point in found.paper
-        for at in (_REST if point.residual is None else point.residual,)
+        for at in (REST if point.residual is None else point.residual,)
     ]
     lines = told(
         "study/case.txt",
@@ -94,7 +92,7 @@ def _reached(group: Group, levels: Sequence[float]) -> tuple[float | None, list[
 
 def _holes(group: Group) -> list[str]:
     return [
-        f"between {'rest' if low <= _REST else millimetres(low)} and {millimetres(high)}"
+        f"between {residual_words(low)} and {millimetres(high)}"
         for low, high in group.runs[0].front.gaps
     ]
 

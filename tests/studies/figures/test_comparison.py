@@ -51,8 +51,9 @@ def test_tables_show_the_figures_of_the_comparison(comparison):
     fronts, energies = cells(shown["fronts"]), cells(shown["energies"])
     assert fronts["method"] == ["epsilon constraint", "NSGA-II"]
     assert fronts["seeds"] == ["-", "3"]
-    volume = [group.spread("hypervolume").median for group in comparison.groups]
-    assert fronts["hypervolume (more is better)"] == [f"{value:.4f}" for value in volume]
+    # as found, points of an exact front would lose by steps that the front has not
+    volume = comparison.groups[1].spread("hypervolume").median
+    assert fronts["hypervolume (more is better)"] == ["-", f"{volume:.4f}"]
     assert energies["energy at 0.1 mm [J]"] == ["0.8", "not reached"]
     assert energies["energy at 1 mm [J]"] == ["0.8", "0.96"]
     assert energies["above the best at 1 mm [%]"] == ["0.00", "20.00"]
