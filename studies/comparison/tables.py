@@ -10,7 +10,7 @@ from quietarm.metaheuristics.ensemble import Spread
 from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.display.words import millimetres
 from quietarm.studies.document.prose import told
-from quietarm.studies.document.table import Cell, Line, Table, table_of
+from quietarm.studies.document.table import Cell, Column, Line, Table, table_of
 from quietarm.studies.registry.methods import Kind
 
 _ENERGY, _SHARE, _PERCENT, _COUNT, _MISS = "{:.5g}", "{:.4f}", "{:.2f}", "{:.0f}", "{:.2g}"
@@ -27,6 +27,23 @@ def tables(comparison: Comparison) -> dict[str, Table]:
         "energies": _energies(comparison),
         "coverage": _coverage(comparison),
     }
+
+
+def summary(comparison: Comparison) -> Table:
+    """A row for each method, medians alone: what is looked for first."""
+    columns = [
+        *map(Column, ("method", "seeds")),
+        *(Column(millimetres(level), _ENERGY.format) for level in comparison.levels),
+        Column("time [s]", "{:.1f}".format),
+    ]
+    rows: list[list[Cell]] = []
+    for group in comparison.groups:
+        energies = [group.spread("energies", i).median for i in range(len(comparison.levels))]
+        stated = [one if isfinite(one) else "not reached" for one in energies]
+        seconds = group.spread("front.seconds").median
+        cells: list[Cell] = [group.label, len(group.runs), *stated, seconds]
+        rows.append([column.text(cell) for column, cell in zip(columns, cells, strict=True)])
+    return Table("Least energy F2 [J] within a residual, medians", columns, rows).turned()
 
 
 def _fronts(comparison: Comparison) -> Table:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.floor.search import energy_floor
 from quietarm.studies.comparison.measures import Comparison
-from quietarm.studies.comparison.tables import how_to_read, runs_table, tables, units
+from quietarm.studies.comparison.tables import how_to_read, runs_table, summary, tables, units
 from quietarm.studies.display.words import title_of
 from quietarm.studies.document.blocks import Bullets, Document, Picture, Section
 from quietarm.studies.paper import paper_points
@@ -34,7 +34,7 @@ def with_floor(comparison: Comparison, console: Console) -> Comparison:
 
 
 def comparison_document(comparison: Comparison) -> Document:
-    """Tables, how to read them, the picture; and every run with all of its figures."""
+    """A row a method, tables, how to read them, the picture; every run with all of its figures."""
     shown = tables(comparison)
     lines = [*how_to_read(comparison), *units(comparison)]
 
@@ -47,6 +47,7 @@ def comparison_document(comparison: Comparison) -> Document:
     return Document(
         f"Fronts compared: {title_of(comparison.task)}",
         [
+            summary(comparison),
             *shown.values(),
             Section("How to read it", [Bullets(lines, soft=True)]),
             Picture("fronts.png", picture, "Fronts"),
