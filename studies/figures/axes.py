@@ -36,17 +36,23 @@ def axes_or_new(ax: Axes | None) -> Axes:
     return ax
 
 
-def side_by_side(panels: int, title: str, width: float = 4.8) -> tuple[Figure, list[Axes]]:
+def side_by_side(panels: int, title: str, width: float = 4.2) -> tuple[Figure, list[Axes]]:
     """A figure with a title and this many panels side by side."""
-    figure = new_figure(width * panels, 4.4)
+    figure = new_figure(width * panels, 4.0)
     if title:
         figure.suptitle(title, fontsize=11)
     return figure, list(figure.subplots(1, panels, squeeze=False).flat)
 
 
-def draw_stairs(ax: Axes, residuals: Array, energies: Array, **style: Any) -> None:
-    """Draw a front [m, J]: between two points the stiller one is the best known motion."""
-    ax.plot(residuals * 1e3, energies, linewidth=0.8, drawstyle="steps-post", **style)
+def draw_front(
+    ax: Axes, residuals: Array, energies: Array, exact: bool = False, **style: Any
+) -> None:
+    """Draw a front [m, J]: a line where its points are exact, else a staircase.
+
+    Between two points of a search the stiller one is the best known motion.
+    """
+    steps = "default" if exact else "steps-post"
+    ax.plot(residuals * 1e3, energies, linewidth=0.8, drawstyle=steps, **style)
 
 
 def letter(axes: Sequence[Axes]) -> None:

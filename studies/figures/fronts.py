@@ -13,13 +13,13 @@ from quietarm.ocp import Front
 from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.axes import (
     axes_or_new,
-    draw_stairs,
+    draw_front,
     name_objectives,
     scale_residuals,
     side_by_side,
 )
 from quietarm.studies.figures.looks import BLUE, look
-from quietarm.studies.registry.methods import method_of
+from quietarm.studies.registry.methods import Kind, method_of
 
 _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""
@@ -28,7 +28,7 @@ _LEAST_SPAN = 0.01
 
 
 def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
-    """Draw energy against residual, a line for each front.
+    """Draw energy against residual: a search's front as a staircase, an exact one as a line.
 
     Parameters
     ----------
@@ -52,9 +52,11 @@ def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     for i, front in enumerate(fronts):
         if front.points:
             style, words = ("-", "") if front.complete else ("--", ", interrupted")
-            draw_stairs(
-                ax, front.residuals, front.energies, color=look(i).colour, marker=look(i).mark,
-                linestyle=style, markersize=3, alpha=0.8, label=f"{names[i]}{words}",
+            draw_front(
+                ax, front.residuals, front.energies,
+                exact=method_of(front.method).kind is Kind.GRADIENT,
+                color=look(i).colour, marker=look(i).mark, linestyle=style,
+                markersize=3, alpha=0.8, label=f"{names[i]}{words}",
             )  # fmt: skip
     scale_residuals(ax, [point.residual * 1e3 for front in fronts for point in front.points])
     ax.set_title("fronts" if len(fronts) > 1 else "front", fontsize=10)
@@ -100,7 +102,7 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     histories = [front.history for front in fronts if front.history]
     residual, energy = fronts[0].reference
     ax.set_xlabel("candidates evaluated")
-    ax.set_ylabel(f"share of the box up to {millimetres(residual)} and {energy:.4g} J")
+    ax.set_ylabel(f"share of the box\nup to {millimetres(residual)} and {energy:.4g} J")
     ax.xaxis.set_major_locator(MaxNLocator(5, integer=True))
     ax.set_title("hypervolume", fontsize=10)
     if not histories:

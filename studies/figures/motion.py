@@ -144,7 +144,7 @@ def motion_figure(
     count = len(quantities)
     columns = min(count, 2) if count <= 4 else 3
     rows = -(-count // columns)
-    figure = new_figure(1.0 + 4.4 * columns, 0.8 + 2.9 * rows)
+    figure = new_figure(0.8 + 3.8 * columns, 0.8 + 2.6 * rows)
     axes: list[Axes] = list(figure.subplots(rows, columns, sharex=True, squeeze=False).flat)
     for quantity, ax in zip(quantities, axes, strict=False):
         draw_quantity(lines, quantity, ax).tick_params(labelbottom=True)

@@ -10,7 +10,7 @@ from quietarm.ocp.front.checking import RESIDUAL_LIMIT
 from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.axes import (
     axes_or_new,
-    draw_stairs,
+    draw_front,
     name_objectives,
     scale_residuals,
     side_by_side,
@@ -41,9 +41,9 @@ def draw_sweep(front: Front, ax: Axes | None = None) -> Axes:
         ax.axvspan(begin * 1e3, end * 1e3, color="0.5", alpha=0.15, linewidth=0, label=words)
     middles = [(begin + end) / 2 for begin, end in front.gaps]
     places = np.searchsorted(front.residuals, middles)  # no line crosses a gap
-    draw_stairs(
+    draw_front(
         ax, np.insert(front.residuals, places, np.nan), np.insert(front.energies, places, np.nan),
-        color=BLUE, marker=".", markersize=5, linestyle="-" if front.complete else "--",
+        exact=True, color=BLUE, marker=".", markersize=5, linestyle="-" if front.complete else "--",
         label=label if front.complete else f"{label}, interrupted",
     )  # fmt: skip
     knee = front.knee()
@@ -79,7 +79,7 @@ def draw_polish(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     for label, front, colour, mark in (
         ("before", before, ORANGE, "^"), ("after", polish.front, BLUE, "o"),
     ):  # fmt: skip
-        draw_stairs(
+        draw_front(
             ax, front.residuals, front.energies,
             color=colour, marker=mark, markersize=3, label=label,
         )  # fmt: skip

@@ -137,7 +137,7 @@ _PANELS: tuple[tuple[str, Sequence[float], Callable[[System, _Move], float | Non
 
 def systems_figure(systems: Systems) -> Figure:
     """A row for each system and a dot for each move; a panel for each figure of merit."""
-    figure = new_figure(16, 7.4)
+    figure = new_figure(13, 7.4)
     panels = list(figure.subplots(1, len(_PANELS), sharey=True))
     moves = [{found.name: found for found in every} for every in systems.values()]
     plants = list(dict.fromkeys(case.task.plant.name for case in systems))
