@@ -48,6 +48,14 @@ class Scale:
             return 0.0
         return float(moocore.hypervolume(self.scaled(objectives), ref=[CORNER, CORNER]))
 
+    def hypervolume_of_line(self, objectives: Array) -> float:
+        """The same for an exact front, which is the line through points of rising residual."""
+        residuals, energies = self.scaled(objectives).T
+        # the last point is the cheapest there is
+        residuals, energies = np.append(residuals, CORNER), np.append(energies, energies[-1])
+        above = CORNER - (energies[1:] + energies[:-1]) / 2
+        return float(np.sum(above * np.diff(residuals)))
+
 
 @dataclass(frozen=True)
 class Mark:

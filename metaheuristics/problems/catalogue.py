@@ -79,9 +79,12 @@ class NamedProblem:
 
     def fronts(self) -> tuple[Front, ...]:
         """The exact fronts from their files: one, or for a third objective one for each limit."""
+        return tuple(_loaded(self._folder / f"{name}.json") for name in self.tasks())
+
+    @property
+    def _folder(self) -> Path:
         plant = FRONTS / self.task.plant.name
-        folder = plant / self.name if self.peak else plant
-        return tuple(_loaded(folder / f"{name}.json") for name in self.tasks())
+        return plant / self.name if self.peak else plant
 
     def exact(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Coefficients and objectives of the exact front.
@@ -105,7 +108,7 @@ class NamedProblem:
         return X[kept], F[kept]
 
     def find_again(self, report: Callable[[str], None] = lambda name: None) -> dict[str, Front]:
-        """Find the exact fronts anew, by the gradient.
+        """Find the exact fronts anew, by the gradient; the motions of the old ones are starts.
 
         Parameters
         ----------
@@ -120,7 +123,9 @@ class NamedProblem:
         found: dict[str, Front] = {}
         for name, task in self.tasks().items():
             report(name)
-            found[name] = exact_front(task, self.profile, self.bound)
+            path = self._folder / f"{name}.json"
+            known = _loaded(path).points if path.exists() else ()
+            found[name] = exact_front(task, self.profile, self.bound, known)
         return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from quietarm.ocp import (
@@ -34,8 +35,13 @@ _BETTER = 1e-6
 this share."""
 
 
-def exact_front(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
-    """The least energy at one residual after another."""
+def exact_front(
+    task: PointToPoint,
+    profile: JointProfile,
+    bound: float,
+    known: Sequence[FrontPoint] = (),
+) -> Front:
+    """The least energy at one residual after another; known motions are further starts."""
     front = epsilon_front(
         task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS, between=False
     )
@@ -45,6 +51,9 @@ def exact_front(task: PointToPoint, profile: JointProfile, bound: float) -> Fron
     inner = range(1, len(points) - 1)
     for i in inner:
         points[i] = _better(front, points[i], bound, starts=COLD_STARTS)
+        if known:
+            near = min(known, key=lambda one: abs(one.residual - points[i].residual))
+            points[i] = _better(front, points[i], bound, "ipopt", guess=near)
     # every branch of minima is followed to both sides; by IPOPT, whose barrier leads past corners
     # where the residual passes from one sample to the next, 1e-4 above the front at worst
     for i in inner:

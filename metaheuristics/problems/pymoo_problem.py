@@ -47,10 +47,14 @@ class ExactProblem(Problem):
         if violations.shape[1]:
             out["G"] = violations
 
-    def _calc_pareto_front(self, n_points: int | None = None) -> Any:
+    # pymoo's own keep what they gave first, whatever number is asked for next
+
+    def pareto_front(self, n_points: int | None = None) -> Any:
+        """The exact front, all of its points or so many."""
         return _evenly(self._front, n_points)
 
-    def _calc_pareto_set(self, n_points: int | None = None) -> Any:
+    def pareto_set(self, n_points: int | None = None) -> Any:
+        """Their coefficients."""
         return _evenly(self._set, n_points)
 
 

@@ -20,8 +20,9 @@ from quietarm.studies.contest.landscape import Landscape
 from quietarm.studies.contest.names import folder_of
 from quietarm.studies.paper import CONDITIONS
 
-_FILL = 10_000
-"""Points of an exact front with the motions between them: its hypervolume is right to 1e-4."""
+_FILL = 2_000
+"""Points of an exact front with the motions between them: with twenty times as many its hypervolume
+differs by 4e-6 at most, on three problems."""
 
 
 def problems_of(names: Sequence[str]) -> tuple[NamedProblem, ...]:
@@ -58,7 +59,7 @@ class Yardstick(Saved):
         """The yardstick of a problem; ValueError where its exact front is a single motion."""
         (front,) = problem.fronts()
         scale = Scale.of(front)
-        volume = scale.hypervolume(filled(front, _FILL))
+        volume = scale.hypervolume_of_line(filled(front, _FILL))
         return cls(problem.name, problem.bound, front, scale, volume)
 
     @property

@@ -75,6 +75,9 @@ def systems_table(case: Case, systems: Sequence[System]) -> Table:
         [found.name, *(column.text(read(found)) for column, read in _OF_SYSTEM.items())]
         for found in systems
     ]
+    for row, found in zip(rows, systems, strict=True):
+        if found.printed_energy is not None:
+            row[2] += " printed"
     return Table(f"Side by side: {case.name}", [Column("system"), *_OF_SYSTEM], rows).turned()
 
 
