@@ -26,8 +26,10 @@ that of twice as many within 1e-5."""
 STARTS = 12
 """Starts of the ends of a front."""
 COLD_STARTS = 3
-"""Random starts of every point between: with ten terms and more, a sweep may follow a branch of
-minima that another one passes below."""
+"""Random starts of every point between, where no motions are known: with ten terms and more, a
+sweep may follow a branch of minima that another one passes below."""
+LIMITED_STEPS = 192
+"""Steps of the solver where the task has limits: a peak between coarser ones costs up to 1e-4."""
 SEED = 1000
 """Seed of these starts: they are others than the sweep's."""
 _BETTER = 1e-6
@@ -41,19 +43,20 @@ def exact_front(
     bound: float,
     known: Sequence[FrontPoint] = (),
 ) -> Front:
-    """The least energy at one residual after another; known motions are further starts."""
+    """The least energy at one residual after another; known motions replace random starts."""
+    steps = LIMITED_STEPS if task.limits else None
     front = epsilon_front(
-        task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS, between=False
-    )
+        task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS, steps=steps,
+        between=False,
+    )  # fmt: skip
     if not front.complete:
         return front
     points = list(front.points)
     inner = range(1, len(points) - 1)
     for i in inner:
-        points[i] = _better(front, points[i], bound, starts=COLD_STARTS)
-        if known:
-            near = min(known, key=lambda one: abs(one.residual - points[i].residual))
-            points[i] = _better(front, points[i], bound, "ipopt", guess=near)
+        near = min(known, key=lambda one: abs(one.residual - points[i].residual), default=None)
+        starts = COLD_STARTS if near is None else 1
+        points[i] = _better(front, points[i], bound, starts=starts, guess=near)
     # every branch of minima is followed to both sides; by IPOPT, whose barrier leads past corners
     # where the residual passes from one sample to the next, 1e-4 above the front at worst
     for i in inner:
@@ -61,8 +64,7 @@ def exact_front(
     for i in reversed(inner):
         points[i] = _better(front, points[i], bound, "ipopt", guess=points[i + 1])
     points = [point for point in points if _keeps_limits(front, point)]
-    settings = {**front.settings, "cold_starts": COLD_STARTS}
-    return replace(front, points=non_dominated(points), settings=settings)
+    return replace(front, points=non_dominated(points))
 
 
 def _keeps_limits(front: Front, point: FrontPoint) -> bool:
@@ -84,7 +86,7 @@ def _better(
     """The best motion of a point's residual from some starts, or the point itself."""
     try:
         settings = SolveSettings(
-            point.residual, bound, starts, SEED,
+            point.residual, bound, starts, SEED, front.settings["steps"],
             guess=None if guess is None else guess.coefficients, solver=solver,
         )  # fmt: skip
         # not `plan_move`: a front's residual is that at the samples of an uncertain plant

@@ -24,7 +24,7 @@ TITLES = {
     5: "Table 5: number of terms, arm on a flexible link",
     6: "Table 6: against ref. [24], arm on a flexible link",
 }
-COEFFICIENT_TABLES = dict(zip((1, 4), STUDIED, strict=True))
+COEFFICIENT_TABLES: dict[int, Case] = dict(zip((1, 4), STUDIED, strict=True))
 """The moves whose coefficients the paper prints, by the table's number."""
 
 

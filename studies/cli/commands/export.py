@@ -1,0 +1,44 @@
+"""`quietarm export`: a plan in the form that a controller reads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from quietarm.studies.cli.ending import finish
+from quietarm.studies.cli.task import plant_file_option
+from quietarm.studies.cli.types import INPUT, OUTPUT, Named
+from quietarm.studies.document.blocks import Document, Lines
+from quietarm.studies.export.formats import FORMATS, Wishes, export_plan
+from quietarm.studies.reading.saved import load_plans
+
+
+@click.command()
+@click.argument("plan", type=INPUT)
+@click.option("--output", type=OUTPUT, required=True, help="The file; move.c has move.h beside it.")
+@click.option("--format", "form", type=Named("format", FORMATS),
+              help="The form. [default: by the file's ending]")  # fmt: skip
+@click.option("--columns", default=Wishes.columns, show_default=True,
+              help="Of csv and mat, with units: time:ms,angle:deg,speed,acceleration,jerk,tip:mm,"
+              "torque,power.")  # fmt: skip
+@click.option("--rate", type=float, default=Wishes.rate, show_default=True,
+              help="Rows or points in a second [Hz].")  # fmt: skip
+@click.option("--joint", default=Wishes.joint, show_default=True, help="The joint's name, for ROS.")
+@plant_file_option(expose_value=False)
+def export(
+    plan: Path, output: Path, form: str | None, columns: str, rate: float, joint: str
+) -> None:
+    """Write a saved PLAN for a controller: csv, C, a ROS 2 JointTrajectory, or MATLAB.
+
+    The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
+    but math.h.
+
+    \b
+    Examples:
+      quietarm export plan.json --output move.c
+      quietarm export plan.json --output move.csv --columns time:ms,angle:deg,torque --rate 500
+      quietarm export plan.json --output move.yaml --joint shoulder_pan_joint --rate 100
+    """  # noqa: D301  # \b is click's: do not rewrap
+    (saved,) = load_plans([plan]).values()
+    written = export_plan(saved, output, form, columns=columns, rate=rate, joint=joint)
+    finish([], Document("", [Lines([f"wrote {path}" for path in written])]))

@@ -1,0 +1,119 @@
+"""A move as C: angle, speed and acceleration of the joint at any time, without dependencies."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import casadi as ca
+from quietarm.ocp import Plan
+from quietarm.studies.display.words import move_of, plant_words
+
+_HEADER = """/* {name}: {move}. By quietarm {version}; {figures}. */
+#ifndef {guard}
+#define {guard}
+
+/* How long the move takes [s], and where the joint rests before and after it [rad]. */
+#define {guard}_DURATION {duration}
+#define {guard}_START {start}
+#define {guard}_TARGET {target}
+
+/* The joint's angle [rad], speed [rad/s] and acceleration [rad/s^2], a time [s] after the start. */
+void {name}_at(double time, double *angle, double *speed, double *acceleration);
+
+#endif
+"""
+_SOURCE = """/* {name}: {move}. By quietarm {version}. */
+#include "{name}.h"
+
+#include <math.h>
+
+void {name}_at(double time, double *angle, double *speed, double *acceleration)
+{{
+    double t, {variables};
+
+    if (time <= 0.0 || time >= {guard}_DURATION) {{
+        *angle = time <= 0.0 ? {guard}_START : {guard}_TARGET;
+        *speed = 0.0;
+        *acceleration = 0.0;
+        return;
+    }}
+    t = time / {guard}_DURATION;
+{lines}
+}}
+"""
+_OPERATIONS = {
+    ca.OP_ADD: "{0} + {1}", ca.OP_SUB: "{0} - {1}", ca.OP_MUL: "{0} * {1}", ca.OP_DIV: "{0} / {1}",
+    ca.OP_NEG: "-{0}", ca.OP_SQ: "{0} * {0}", ca.OP_TWICE: "2.0 * {0}", ca.OP_INV: "1.0 / {0}",
+    ca.OP_SIN: "sin({0})", ca.OP_COS: "cos({0})", ca.OP_TAN: "tan({0})", ca.OP_TANH: "tanh({0})",
+    ca.OP_EXP: "exp({0})", ca.OP_LOG: "log({0})", ca.OP_SQRT: "sqrt({0})", ca.OP_ERF: "erf({0})",
+    ca.OP_POW: "pow({0}, {1})", ca.OP_CONSTPOW: "pow({0}, {1})", ca.OP_FABS: "fabs({0})",
+    ca.OP_FMIN: "fmin({0}, {1})", ca.OP_FMAX: "fmax({0}, {1})", ca.OP_ASSIGN: "{0}",
+    ca.OP_LT: "{0} < {1}", ca.OP_LE: "{0} <= {1}", ca.OP_EQ: "{0} == {1}", ca.OP_NE: "{0} != {1}",
+    ca.OP_NOT: "{0} == 0.0", ca.OP_AND: "{0} != 0.0 && {1} != 0.0",
+    ca.OP_OR: "{0} != 0.0 || {1} != 0.0", ca.OP_IF_ELSE_ZERO: "{0} != 0.0 ? {1} : 0.0",
+    ca.OP_SINH: "sinh({0})", ca.OP_COSH: "cosh({0})", ca.OP_ATAN: "atan({0})",
+}  # fmt: skip
+"""What casadi's operations are in C."""
+_RESULTS = ("*angle", "*speed", "*acceleration")
+
+
+def c_files(plan: Plan, name: str) -> tuple[str, str]:
+    """Header and source whose function is called after a file's name.
+
+    Raises
+    ------
+    ValueError
+        When no function of C can be called so.
+    """
+    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+        raise ValueError(
+            f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
+            "of letters, digits and _ that begins with a letter"
+        )
+    start, target, duration = plan.task.move
+    variables, lines = _statements(plan)
+    words = {
+        "name": name,
+        "guard": name.upper(),
+        "move": f"{plant_words(plan.task.plant)}, {move_of(plan.task)}".replace("*/", ""),
+        "version": plan.provenance.versions.get("quietarm", ""),
+        "figures": f"energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
+        "duration": _number(duration),
+        "start": _number(start),
+        "target": _number(target),
+        "variables": ", ".join(variables),
+        "lines": "\n".join(f"    {line}" for line in lines),
+    }
+    return _HEADER.format(**words), _SOURCE.format(**words)
+
+
+def _statements(plan: Plan) -> tuple[list[str], list[str]]:
+    """The variables, and a statement for each operation of the joint's path."""
+    fraction = ca.SX.sym("t")
+    joint = plan.profile.motion(list(plan.coefficients), fraction, *plan.task.move, jerk=False)
+    results = ca.vertcat(joint.angle, joint.speed, joint.acceleration)
+    path = ca.Function("path", [fraction], [ca.densify(results)], {"cse": True})
+    lines, variables = list[str](), dict[str, None]()
+    for k in range(path.n_instructions()):
+        operation, to = path.instruction_id(k), path.instruction_output(k)
+        given = [f"v{i}" for i in path.instruction_input(k)]
+        if operation == ca.OP_OUTPUT:
+            lines.append(f"{_RESULTS[to[1]]} = {given[0]};")
+            continue
+        variables[f"v{to[0]}"] = None
+        lines.append(f"v{to[0]} = {_value(path, k, operation, given)};")
+    return list(variables), lines
+
+
+def _value(path: ca.Function, k: int, operation: int, given: Sequence[str]) -> str:
+    if operation == ca.OP_INPUT:
+        return "t"
+    if operation == ca.OP_CONST:
+        return _number(path.instruction_constant(k))
+    return _OPERATIONS[operation].format(*given)
+
+
+def _number(value: float) -> str:
+    """A constant of C with every digit."""
+    return repr(float(value))

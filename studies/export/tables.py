@@ -1,0 +1,126 @@
+"""A move as rows of numbers: chosen columns, units and rate; as CSV, for ROS 2, for MATLAB."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from math import degrees
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.ocp import Plan, Trajectory
+from quietarm.ocp.checks import unknown
+from quietarm.ocp.plan.answer import ticks_of_move
+
+Array = NDArray[np.float64]
+_ANGLE = {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi}
+UNITS: Mapping[str, Mapping[str, float]] = {
+    "time": {"s": 1.0, "ms": 1e3, "us": 1e6},
+    "angle": _ANGLE,
+    "speed": {f"{unit}/s": factor for unit, factor in _ANGLE.items()} | {"rpm": 30 / np.pi},
+    "acceleration": {f"{unit}/s^2": factor for unit, factor in _ANGLE.items()},
+    "jerk": {f"{unit}/s^3": factor for unit, factor in _ANGLE.items()},
+    "tip": {"m": 1.0, "mm": 1e3},
+    "torque": {"Nm": 1.0, "mNm": 1e3},
+    "power": {"W": 1.0, "mW": 1e3},
+}
+"""What a column may hold, and its units; the first is that where none is given."""
+USUAL = ("time", "angle", "speed", "acceleration")
+
+
+def columns_of(text: str) -> dict[str, tuple[str, float]]:
+    """Columns as `time:ms,angle:deg,speed`: their units and the factors to these.
+
+    Raises
+    ------
+    ValueError
+        When a column or a unit is unknown, or a column comes twice.
+    """
+    found: dict[str, tuple[str, float]] = {}
+    for one in text.split(","):
+        name, _, unit = one.strip().partition(":")
+        if name not in UNITS:
+            raise ValueError(unknown("column", name, UNITS))
+        if name in found:
+            raise ValueError(f"column {name} is given twice; give it once")
+        units = UNITS[name]
+        unit = unit or next(iter(units))
+        if unit not in units:
+            raise ValueError(unknown(f"unit of {name}", unit, units))
+        found[name] = unit, units[unit]
+    return found
+
+
+def sampled(plan: Plan, rate: float) -> Trajectory:
+    """The move at a rate [Hz]; the last row is the first tick at or after arrival."""
+    return plan.sampled(np.arange(ticks_of_move(plan.task.duration, rate) + 1) / rate)
+
+
+def table(plan: Plan, columns: Mapping[str, tuple[str, float]], rate: float) -> dict[str, Array]:
+    """Columns by their headings, as `angle_deg`; each tip has one of its own."""
+    motion = sampled(plan, rate)
+    values: dict[str, Array] = {
+        "time": motion.time, "angle": motion.joint[:, 0], "speed": motion.joint[:, 1],
+        "acceleration": motion.joint[:, 2], "jerk": motion.jerk, "torque": motion.torque,
+        "power": motion.power,
+    }  # fmt: skip
+    found: dict[str, Array] = {}
+    for name, (unit, factor) in columns.items():
+        heading = unit.replace("/", "_").replace("^", "")
+        if name != "tip":
+            found[f"{name}_{heading}"] = factor * values[name]
+            continue
+        tips = motion.tips.T
+        for i, tip in enumerate(tips, 1):
+            number = "" if len(tips) == 1 else f"_{i}"
+            found[f"tip{number}_{heading}"] = factor * tip
+    return found
+
+
+def csv_text(columns: Mapping[str, Array]) -> str:
+    """Comma-separated values under a heading."""
+    text = io.StringIO()
+    rows, heading = np.column_stack(list(columns.values())), ",".join(columns)
+    np.savetxt(text, rows, delimiter=",", header=heading, comments="", fmt="%.12g")
+    return text.getvalue()
+
+
+def mat_bytes(columns: Mapping[str, Array], facts: Mapping[str, Any]) -> bytes:
+    """A MATLAB v5 file: a column vector for each column, and some facts."""
+    try:
+        from scipy.io import savemat
+    except ImportError:
+        raise ValueError(
+            "MATLAB files need scipy, which is not installed; install quietarm[mat], or give csv"
+        ) from None
+    file = io.BytesIO()
+    savemat(file, {**facts, **columns}, oned_as="column")
+    return file.getvalue()
+
+
+def ros_text(plan: Plan, joint: str, rate: float) -> str:
+    """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, for one joint."""
+    motion = sampled(plan, rate)
+    lines = ["joint_names:", f"- {_quoted(joint)}", "points:"]
+    for time, (angle, speed, acceleration) in zip(motion.time, motion.joint, strict=True):
+        seconds, nanoseconds = divmod(round(time * 1e9), 1_000_000_000)
+        lines += [
+            f"- positions: [{_decimal(angle)}]",
+            f"  velocities: [{_decimal(speed)}]",
+            f"  accelerations: [{_decimal(acceleration)}]",
+            "  time_from_start:",
+            f"    sec: {seconds}",
+            f"    nanosec: {nanoseconds}",
+        ]
+    return "\n".join([*lines, ""])
+
+
+def _decimal(value: float) -> str:
+    """Twelve digits with a point: ROS takes no whole number for a real one."""
+    return repr(float(f"{value:.12g}"))
+
+
+def _quoted(name: str) -> str:
+    """A name as YAML reads it back."""
+    return "'" + name.replace("'", "''") + "'"

@@ -1,0 +1,159 @@
+"""Plans in the forms that controllers read."""
+
+import csv
+import ctypes
+import shutil
+import subprocess
+from math import degrees, pi
+
+import numpy as np
+import pytest
+import yaml
+from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+from quietarm.ocp import (
+    CycloidGaussians,
+    CycloidNetwork,
+    CycloidPolynomial,
+    CycloidSpline,
+    PointToPoint,
+    evaluate_coefficients,
+    shaped_cycloid,
+)
+from quietarm.studies.export import export_plan
+from scipy.io import loadmat
+
+COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"]
+LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8)
+PROFILES = {
+    "polynomial": CycloidPolynomial(6),
+    "spline": CycloidSpline(6),
+    "network": CycloidNetwork(5),
+    "gaussians": CycloidGaussians(5),
+    "zvd": shaped_cycloid(LINK, "zvd"),
+}
+
+
+def plan_along(profile, task=LINK):
+    rng = np.random.default_rng(5)
+    coefficients = profile.plain + 0.1 * rng.uniform(-1, 1, profile.size)
+    return evaluate_coefficients(task, coefficients, profile=profile)
+
+
+@pytest.fixture
+def plan():
+    return plan_along(CycloidPolynomial(6))
+
+
+def joint_in_c(folder, plan):
+    """The function of the exported C, compiled with all warnings as errors."""
+    export_plan(plan, folder / "move.c")
+    library = folder / "move.so"
+    line = [COMPILER, *STRICT, "-o", library, folder / "move.c", "-lm"]
+    subprocess.run(line, check=True, capture_output=True)
+    function = ctypes.CDLL(str(library)).move_at
+    function.argtypes = [ctypes.c_double, *[ctypes.POINTER(ctypes.c_double)] * 3]
+
+    def joint(time):
+        values = [ctypes.c_double() for _ in range(3)]
+        function(time, *map(ctypes.byref, values))
+        return [value.value for value in values]
+
+    return joint
+
+
+@pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+@pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)
+def test_c_gives_the_joints_motion_at_any_time(profile, tmp_path):
+    plan = plan_along(profile)
+    joint = joint_in_c(tmp_path, plan)
+    times = np.sort(np.random.default_rng(1).uniform(0, 0.8, 200))
+    expected = plan.sampled(times).joint
+    found = np.array([joint(time) for time in times])
+    assert found == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max())
+    assert joint(-1.0) == [0.0, 0.0, 0.0]
+    assert joint(5.0) == [pi / 6, 0.0, 0.0]
+
+
+@pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+def test_c_moves_from_a_start_that_is_not_zero(tmp_path):
+    task = PointToPoint(ArmOnFlexibleLink(), pi / 4, 1.0, start=-pi / 2)
+    joint = joint_in_c(tmp_path, plan_along(CycloidPolynomial(2), task))
+    assert joint(0.0) == [-pi / 2, 0.0, 0.0]
+    assert joint(1.0) == [pi / 4, 0.0, 0.0]
+
+
+def test_csv_has_the_columns_units_and_rate_that_are_asked_for(plan, tmp_path):
+    path = tmp_path / "move.csv"
+    export_plan(plan, path, columns="time:ms,speed:rpm,angle:deg,tip:mm,torque", rate=100)
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    assert list(rows[0]) == ["time_ms", "speed_rpm", "angle_deg", "tip_mm", "torque_Nm"]
+    assert [float(row["time_ms"]) for row in rows] == pytest.approx(10.0 * np.arange(81))
+    motion = plan.sampled(np.arange(81) / 100)
+    assert [float(row["angle_deg"]) for row in rows] == pytest.approx(
+        [degrees(angle) for angle in motion.joint[:, 0]]
+    )
+    # a turn a minute is 2 pi in 60 s
+    speeds = motion.joint[:, 1] * 60 / (2 * pi)
+    assert [float(row["speed_rpm"]) for row in rows] == pytest.approx(speeds, abs=1e-9)
+    assert [float(row["torque_Nm"]) for row in rows] == pytest.approx(motion.torque, abs=1e-10)
+
+
+def test_each_tip_has_a_column(tmp_path):
+    task = PointToPoint(DualLinkManipulator(), pi / 2, 0.9)
+    export_plan(plan_along(CycloidPolynomial(2), task), tmp_path / "m.csv", columns="tip")
+    assert (tmp_path / "m.csv").read_text().splitlines()[0] == "tip_1_m,tip_2_m"
+
+
+def test_ros_reads_a_trajectory_of_the_joint(plan, tmp_path):
+    export_plan(plan, tmp_path / "move.yaml", rate=30, joint="arm's shoulder")
+    message = yaml.safe_load((tmp_path / "move.yaml").read_text())
+    # trajectory_msgs/msg/JointTrajectory: joint_names, points; of a point: positions, velocities,
+    # accelerations, time_from_start with sec and nanosec
+    assert message["joint_names"] == ["arm's shoulder"]
+    times = [p["time_from_start"] for p in message["points"]]
+    seconds = np.array([t["sec"] + 1e-9 * t["nanosec"] for t in times])
+    assert seconds == pytest.approx(np.arange(25) / 30, abs=1e-9)
+    joint = plan.sampled(np.arange(25) / 30).joint
+    names = ("positions", "velocities", "accelerations")
+    found = [[point[name][0] for name in names] for point in message["points"]]
+    assert np.array(found) == pytest.approx(joint, abs=1e-10)
+    assert all(isinstance(p["positions"][0], float) for p in message["points"])
+
+
+def test_matlab_reads_columns_and_coefficients(plan, tmp_path):
+    export_plan(plan, tmp_path / "move.mat", columns="time,angle:deg", rate=50)
+    read = loadmat(tmp_path / "move.mat")
+    assert read["angle_deg"].shape == (41, 1)
+    assert read["coefficients"].ravel().tolist() == list(plan.coefficients)
+    assert read["duration_s"].item() == 0.8
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "words"),
+    [
+        ("move.txt", {}, r"does not say in which form it is; give --format, or one of \.csv"),
+        ("2nd-move.c", {}, "which is no name in C"),
+        ("m.csv", {"columns": "time,tork"}, "unknown column 'tork'; did you mean 'torque'"),
+        ("m.csv", {"columns": "angle:degree"}, "unknown unit of angle 'degree'; did you mean"),
+        ("m.csv", {"columns": "time,time"}, "column time is given twice"),
+        ("m.csv", {"rate": 0}, "sample rate is 0"),
+        ("m.csv", {"format": "xml"}, "unknown format 'xml'"),
+    ],
+)
+def test_what_cannot_be_exported_is_refused(plan, tmp_path, name, settings, words):
+    with pytest.raises(ValueError, match=words):
+        export_plan(plan, tmp_path / name, **settings)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_writes_source_and_header(call, plan, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    plan.save("plan.json")
+    code, out, err = call("export plan.json --output move.c")
+    assert (code, out.split(), err) == (0, ["wrote", "move.h", "wrote", "move.c"], "")
+    assert "void move_at(double time" in (tmp_path / "move.h").read_text()
+    code, _, err = call("export plan.json --output move.c --columns tme")
+    assert code == 0  # C has no columns
+    code, _, err = call("export plan.json --output move.csv --columns tme")
+    assert (code, "did you mean 'time'" in err) == (2, True)
