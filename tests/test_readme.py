@@ -140,15 +140,29 @@ def _rows(table):
 def test_the_table_is_that_of_a_reproduction():
     columns = {"ZV shaper": "ZV", "paper's box": "boxed gradient", "no box": "gradient"}
     measured = {}  # by move and system
-    for part in (ROOT / "docs/systems.md").read_text().split("\n## ")[1:]:
+    *parts, like = (ROOT / "docs/systems.md").read_text().split("\n## ")[1:]
+    for part in parts:
         names, _, *rows = _rows(part.splitlines())
         move = part.split("\n", 1)[0].split(", ", 1)[1]
         measured[move] = {row[0]: row[names.index("energy [J]")] for row in rows}
     (table,) = [block for block in README.split("\n\n") if block.startswith("| energy [J] |")]
     names, _, *rows = _rows(table.splitlines())
     assert [row[0].split(", ", 1)[1] for row in rows] == list(measured)
+    own = ("paper, printed", "its search, here")
     for row, systems in zip(rows, measured.values(), strict=True):
-        assert row[1:] == [systems.get(columns.get(name, name), "-") for name in names[1:]]
+        shown = {name: cell for name, cell in zip(names, row, strict=True) if name not in own}
+        assert list(shown.values())[1:] == [
+            systems.get(columns.get(name, name), "-") for name in list(shown)[1:]
+        ]
+    heads, _, *searched = _rows(like.splitlines())
+    printed, median = (
+        next(i for i, head in enumerate(heads) if head.startswith(words))
+        for words in ("paper, printed", "six terms, searched")
+    )
+    assert [row[0] for row in rows[:-1]] == [row[0] for row in searched]
+    for row, found in zip(rows, searched, strict=False):
+        here = [float(row[names.index(name)]) for name in own]
+        assert here == [float(found[printed]), float(found[median].split()[0])]
 
 
 def test_the_picture_says_what_is_computed():

@@ -229,4 +229,5 @@ def run_block(block, folder, monkeypatch, run):
         assert [line for line in err.splitlines() if not line.startswith(progress)] == []
         options = ("--output", "--csv", "--figure")
         asked |= {words[i + 1] for i, word in enumerate(words) if word in options}
+        asked |= {name.replace(".c", ".h") for name in asked if name.endswith(".c")}
         assert {path.name for path in folder.iterdir()} == asked
