@@ -84,9 +84,11 @@ def _better(
     guess: FrontPoint | None = None,
 ) -> FrontPoint:
     """The best motion of a point's residual from some starts, or the point itself."""
+    steps = front.settings["steps"]
+    assert isinstance(steps, int)
     try:
         settings = SolveSettings(
-            point.residual, bound, starts, SEED, front.settings["steps"],
+            point.residual, bound, starts, SEED, steps,
             guess=None if guess is None else guess.coefficients, solver=solver,
         )  # fmt: skip
         # not `plan_move`: a front's residual is that at the samples of an uncertain plant
