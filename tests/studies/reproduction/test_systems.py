@@ -216,7 +216,8 @@ PAGES = Path(__file__).parents[3]
 def test_the_page_of_systems_shows_what_is_computed(reproduction):
     page = (PAGES / "docs" / "systems.md").read_text()
     parts = {part.split("\n", 1)[0]: part for part in page.split("\n## ")[1:]}
-    assert list(parts) == [case.name for case in reproduction.systems]
+    # after them the paper's own experiment: docs/systems.md is of eight seeds
+    assert list(parts)[:-1] == [case.name for case in reproduction.systems]
     for case, systems in reproduction.systems.items():
         table = systems_table(case, systems)
         heading, _, *lines = table_in_markdown(table).split("\n\n")[1].splitlines()
