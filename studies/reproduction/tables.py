@@ -105,7 +105,7 @@ def remarks(every: Sequence[System]) -> list[str]:
     for found in every:
         if found.why:
             lines.append(f"{found.name}: {found.why}")
-        if (spread := found.energies) and spread.seeds > 1:
+        if (spread := found.energies) and spread.seeds > 1 and spread.count:
             quartiles = " and ".join(
                 f"{each:.4f} J" if isfinite(each) else "none"
                 for each in (spread.lower, spread.upper)
