@@ -21,6 +21,8 @@ from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
 from .plan.answer import Plan as Plan
 from .plan.answer import evaluate_coefficients as evaluate_coefficients
+from .plan.fastest import Fastest as Fastest
+from .plan.fastest import fastest_move as fastest_move
 from .plan.many import Moves as Moves
 from .plan.many import plan_moves as plan_moves
 from .plan.shaping import shaped_cycloid as shaped_cycloid

@@ -11,7 +11,7 @@ from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, typed
 from quietarm.studies.cli.plants import chosen_plant, uncertain
-from quietarm.studies.cli.quantities import parse_rate
+from quietarm.studies.cli.quantities import parse_rate, parse_time
 from quietarm.studies.cli.types import (
     ANGLE,
     ERROR,
@@ -53,7 +53,17 @@ robust_option = click.option(
 )  # fmt: skip
 
 
-def _task_options(required: bool) -> Callable[[F], F]:
+FASTEST = "fastest"
+"""In the place of a duration: the shortest within the limits."""
+_BEGIN = 1.0
+"""Duration [s] at which the shortest is begun to be looked for."""
+_TIME_OR_FASTEST = Parsed("time", lambda text: text if text == FASTEST else parse_time(text))
+
+
+def _task_options(required: bool, fastest: bool = False) -> Callable[[F], F]:
+    time, words = TIME, "Travelling time."
+    if fastest:
+        time, words = _TIME_OR_FASTEST, "Travelling time, or `fastest`: the least in the limits."
     return options(
         click.argument("plant", type=PLANT, required=False, metavar="PLANT"),
         plant_file_option(),
@@ -62,7 +72,7 @@ def _task_options(required: bool) -> Callable[[F], F]:
         click.option("--start", type=ANGLE, default="0", show_default=True,
                      help="Joint angle at the start."),
         click.option("--target", type=ANGLE, required=required, help="Joint angle at the end."),
-        click.option("--duration", type=TIME, required=required, help="Travelling time."),
+        click.option("--duration", type=time, required=required, help=words),
         *map(_limit_option, QUANTITIES.values()),
         click.option("--residual-window", type=TIME, default=1.0, show_default=True,
                      help="Time after arrival in which the residual is measured."),
@@ -77,6 +87,19 @@ def task_options(command: Callable[..., Any]) -> Callable[..., Any]:
         return command(*positional, task=_task_of(named), **named)
 
     return _task_options(required=True)(with_task)
+
+
+def task_or_fastest_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same where the duration may be looked for: the command gets `fastest` as well."""
+
+    @wraps(command)
+    def with_task(*positional: Any, **named: Any) -> Any:
+        fastest = named["duration"] == FASTEST
+        if fastest:
+            named["duration"] = _BEGIN
+        return command(*positional, task=_task_of(named), fastest=fastest, **named)
+
+    return _task_options(required=True, fastest=True)(with_task)
 
 
 def own_task_options(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -27,7 +27,7 @@ BIN = Path(sys.executable).parent
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
-(CRANE,) = blocks("plants", "python")
+COUNTS, CRANE = blocks("plants", "python")
 
 
 def run_python(code, folder):
@@ -127,6 +127,14 @@ def test_the_functions_that_draw_are_public_and_documented():
             assert len(function.__doc__) > 100
 
 
+def test_the_example_counts_the_modes_that_a_move_needs(tmp_path):
+    shown = run_python(COUNTS, tmp_path)
+    left = [float(each) for each in re.findall(r"with \d: ([0-9.]+) mm", shown)]
+    # the page: one mode leaves 1.24 mm, two leave 0.0003 mm
+    assert left[0] == pytest.approx(1.24, abs=0.01)
+    assert max(left[1:]) < 1e-3
+
+
 def test_the_plant_of_your_own_is_one_file_that_everything_works_with(tmp_path):
     crane = CRANE
     use = """
@@ -142,7 +150,7 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 8
+    assert sum(len(blocks(page, "python")) for page in others) == 9
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "text"}
 

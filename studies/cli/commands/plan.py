@@ -17,6 +17,7 @@ from quietarm.ocp import (
     SolverFailedError,
     SolveSettings,
     evaluate_coefficients,
+    fastest_move,
     plan_move,
 )
 from quietarm.ocp.interrupts import note_interrupts
@@ -33,7 +34,7 @@ from quietarm.studies.cli.options import (
     solver_option,
     terms_option,
 )
-from quietarm.studies.cli.task import robust_option, task_options
+from quietarm.studies.cli.task import robust_option, task_or_fastest_options
 from quietarm.studies.cli.types import LENGTH, WHOLE, Named
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import File
@@ -50,7 +51,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 
 
 @click.command()
-@task_options
+@task_or_fastest_options
 @profile_option
 @terms_option
 @click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
@@ -74,6 +75,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @plan_file_options
 def plan(
     task: PointToPoint,
+    fastest: bool,
     profile: str,
     terms: int | None,
     bound: float | None,
@@ -99,14 +101,26 @@ def plan(
           --output plan.json --csv move.csv --figure move.png
       quietarm plan single-link --target 30deg --duration 0.8 --profile network --terms 3
       quietarm plan dual-link --target pi/2 --duration 0.9 --profile zv
+      quietarm plan single-link --target 30deg --duration fastest --torque-limit 0.15
     """  # noqa: D301  # \b is click's: do not rewrap
     refuse_idle(profile, {name: list(FAMILIES) for name in OF_FAMILIES})
     refuse_idle(method, {"starts": [GRADIENT], "solver": [GRADIENT]})
     refuse_idle(method, {"setting": SEARCHES}, "a metaheuristic")
     if method == GRADIENT and polish:
         raise ValueError("--polish is for a metaheuristic's point; give --method nsga2 or another")
-    motions = profile_of(profile, task, terms)
-    if method == GRADIENT:
+    if fastest and (method != GRADIENT or profile not in FAMILIES):
+        raise ValueError(
+            "--duration fastest is for the gradient and profiles with coefficients; give a time"
+        )
+    motions, notes = profile_of(profile, task, terms), list[str]()
+    if fastest:
+        with working("looking for the shortest duration", Console(stderr=True), quiet=quiet):
+            shortest = fastest_move(
+                task, motions, residual_limit=residual_limit, bound=bound, seed=seed, solver=solver
+            )
+        found, (duration, why) = shortest.plan, shortest.failed[0]
+        notes = [f"fastest: in {duration:.5g} s {why}"]
+    elif method == GRADIENT:
         with working("solving", Console(stderr=True), quiet=quiet):
             found = plan_move(
                 task, motions, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed,
@@ -118,7 +132,6 @@ def plan(
             settings_of_one(setting),
         )  # fmt: skip
 
-    notes = []
     if method != GRADIENT and not (polish or residual_limit or found.worst):
         notes = [
             "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; --polish "

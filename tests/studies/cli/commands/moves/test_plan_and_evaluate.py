@@ -221,3 +221,27 @@ def test_a_broken_limit_is_shown_with_what_is_reached(call):
     assert peak > 0.01
     shown = re.search(r"limits +(.*\S)", out).group(1)
     assert shown == f"torque 0.01 N m (broken: {peak:.4g} N m), deflection 1 m"
+
+
+def test_the_shortest_duration_is_found_and_why_no_shorter_one_will_do(call):
+    line = "plan single-link --target 30deg --duration fastest --torque-limit 0.15"
+    code, out, err = call(line)
+    assert (code, err) == (0, "")
+    # docs/moves.md: 0.688 s
+    assert float(re.search(r"0 to 30 deg in\s+([0-9.]+)\s+s", out)[1]) == pytest.approx(
+        0.6877, abs=2e-3
+    )
+    assert re.search(r"fastest: in 0\.68\d* s found no motion of 6 terms", out)
+
+
+@pytest.mark.parametrize(
+    ("words", "remedy"),
+    [
+        ("", "nothing limits how fast the move may be; give one of --torque-limit"),
+        ("--torque-limit 0.2 --profile zv", "--duration fastest is for the gradient and profiles"),
+        ("--torque-limit 0.2 --method nsga2", "--duration fastest is for the gradient and"),
+    ],
+)
+def test_where_nothing_is_shortest_it_is_refused(call, words, remedy):
+    code, out, err = call(f"plan single-link --target 30deg --duration fastest {words}")
+    assert (code, out, remedy in err) == (2, "", True)

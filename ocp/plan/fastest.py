@@ -1,0 +1,160 @@
+"""`fastest_move`: the shortest duration in which a move within its limits still arrives."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+from quietarm.ocp.checks import positive
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
+from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.plan.answer import Plan
+from quietarm.ocp.plan.solver import plan_move
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.profiles.polynomial import CycloidPolynomial
+from quietarm.ocp.simulation.residual import vibrations
+from quietarm.ocp.task import LEAST_DURATION, LIMITS, PointToPoint
+
+TOLERANCE = 1e-3
+_SHORTER = (0.97, 0.9, 0.8)
+"""Shares of the duration that failed which are tried as well: what is feasible may have gaps."""
+_GROWTH, _LONGEST = 1.5, 20
+"""By which a duration that fails grows; so many swings of the slowest mode are tried at most."""
+
+
+@dataclass(frozen=True)
+class Fastest:
+    """The shortest duration found for a move.
+
+    Attributes
+    ----------
+    plan : Plan
+        The move of least energy in that duration.
+    failed : tuple of (float, str)
+        Shorter durations [s] that were tried, the longest first, and why each failed: the first is
+        shorter by no more than the tolerance.
+    """
+
+    plan: Plan
+    failed: tuple[tuple[float, str], ...]
+
+    @property
+    def duration(self) -> float:
+        """Of the plan [s]."""
+        return self.plan.task.duration
+
+
+@one_at_a_time
+def fastest_move(
+    task: PointToPoint,
+    profile: JointProfile | None = None,
+    *,
+    residual_limit: float | None = None,
+    bound: float | None = None,
+    tolerance: float = TOLERANCE,
+    **settings: Any,
+) -> Fastest:
+    """Find the shortest duration in which a move keeps its limits and arrives still.
+
+    Durations are tried by bisection, each from the coefficients of the last one that did.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move with its limits, of which there is one at least; its duration is where the search
+        begins. A plant may be uncertain.
+    profile, residual_limit, bound, **settings
+        As for `plan_move`.
+    tolerance : float
+        Share of the duration to which it is found.
+
+    Returns
+    -------
+    Fastest
+        The plan, and the shorter durations that failed.
+
+    Raises
+    ------
+    ValueError
+        When nothing limits the move, or an argument is out of range.
+    InfeasibleTaskError
+        When no duration will do.
+    """
+    profile = CycloidPolynomial() if profile is None else profile
+    positive("tolerance", tolerance)
+    profile.refuse_no_choice()
+    if not task.limits:
+        options = ", ".join(f"--{name.removesuffix('_limit')}-limit" for name in LIMITS)
+        raise ValueError(f"nothing limits how fast the move may be; give one of {options}")
+    search = _Search(task, profile, {
+        "residual_limit": residual_limit, "bound": bound, **{"starts": 1, **settings},
+    })  # fmt: skip
+    low, high = search.bracket(_least_duration(task))
+    while high / low > 1 + tolerance:
+        middle = math.sqrt(low * high)
+        if search.succeeds(middle):
+            high = middle
+        else:
+            low = middle
+    for share in _SHORTER:
+        if search.succeeds(share * low):  # durations that fail have others below them
+            return fastest_move(
+                replace(task, duration=share * low), profile, residual_limit=residual_limit,
+                bound=bound, tolerance=tolerance, **settings,
+            )  # fmt: skip
+    failed = sorted(search.failed.items(), reverse=True)
+    assert search.best is not None  # the bracket found one
+    return Fastest(search.best, tuple(one for one in failed if one[0] < high))
+
+
+class _Search:
+    """Durations that were tried."""
+
+    def __init__(self, task: PointToPoint, profile: JointProfile, settings: dict[str, Any]) -> None:
+        self.task, self.profile, self.settings = task, profile, settings
+        self.best: Plan | None = None
+        self.failed: dict[float, str] = {}
+
+    def succeeds(self, duration: float) -> bool:
+        """Whether there is a plan for a duration."""
+        guess = None if self.best is None else self.best.coefficients
+        task = replace(self.task, duration=duration)
+        try:
+            self.best = plan_move(task, self.profile, guess=guess, **self.settings)
+        except SolverFailedError as error:
+            self.failed[duration] = str(error)
+            return False
+        if not self.best.complete:
+            raise KeyboardInterrupt
+        return True
+
+    def bracket(self, least: float) -> tuple[float, float]:
+        """Two durations, of which the longer one succeeds and the shorter one does not."""
+        low, high = max(least, LEAST_DURATION), max(self.task.duration, 1.01 * least)
+        longest = max(self.task.duration, _LONGEST * _slowest_swing(self.task))
+        while not self.succeeds(high):
+            low, high = high, _GROWTH * high
+            if high > longest:
+                raise InfeasibleTaskError(
+                    f"no duration up to {low:.3g} s will do: {self.failed[low]}"
+                )
+        while low < high / _GROWTH and self.succeeds(high / _GROWTH):
+            high /= _GROWTH
+        return max(low, high / _GROWTH), high
+
+
+def _slowest_swing(task: PointToPoint) -> float:
+    """Period of the slowest mode at the target [s]; 1 where none swings."""
+    swings = vibrations(task.plant.nominal, task.target)
+    return 2 * math.pi / swings[0][0] if swings else 1.0
+
+
+def _least_duration(task: PointToPoint) -> float:
+    """What the limits of speed and acceleration allow a rigid joint [s]."""
+    span, least = abs(task.span), 0.0
+    if task.speed_limit is not None:
+        least = span / task.speed_limit
+    if task.acceleration_limit is not None:
+        least = max(least, 2 * math.sqrt(span / task.acceleration_limit))
+    return least
