@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 from quietarm.models.drawing import Body, flexible_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.plant import Plant, parameter
+from quietarm.models.plant import COUNT, Plant, parameter
 
 MOST_MODES = 6
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -167,7 +167,7 @@ class FlexibleBeam(Plant):
     )  # fmt: skip
     tip_mass: float = parameter(0.036, "kg", _PAPERS, "at the tip")
     hub_radius: float = parameter(0.0, "m", _NONE, "from the axis to the clamp")
-    mode_count: float = parameter(1.0, "-", _NONE, f"how many modes, up to {MOST_MODES}")
+    mode_count: float = parameter(1.0, COUNT, _NONE, f"how many modes, up to {MOST_MODES}")
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -22,6 +22,9 @@ from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.passive import check_passive
 
+COUNT = "count"
+"""Unit of a parameter that is a whole number."""
+
 
 def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
     """Declare a parameter of a plant, with its unit and the source of its value.
@@ -172,6 +175,12 @@ class Plant(ABC):
     def parameters(self) -> dict[str, float]:
         """The plant's parameters by name, in SI units."""
         return {entry.name: float(getattr(self, entry.name)) for entry in fields(self)}
+
+    @property
+    def measured(self) -> dict[str, float]:
+        """The parameters that may be wrong by a share: all but counts."""
+        counts = {entry.name for entry in fields(self) if entry.metadata.get("unit") == COUNT}
+        return {name: value for name, value in self.parameters.items() if name not in counts}
 
     @property
     def tips(self) -> int:

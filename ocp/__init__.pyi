@@ -41,6 +41,7 @@ from .robustness.measures import Robustness as Robustness
 from .robustness.measures import Sweep as Sweep
 from .robustness.measures import evaluate_robustness as evaluate_robustness
 from .robustness.population import Figures as Figures
+from .robustness.sensitivity import Sensitivity as Sensitivity
 from .robustness.uncertain import UncertainPlant as UncertainPlant
 from .robustness.worst import Worst as Worst
 from .simulation.cvodes import Trajectory as Trajectory

@@ -20,6 +20,7 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
+from quietarm.ocp.robustness.sensitivity import Sensitivity, sensitivities
 from quietarm.ocp.robustness.worst import Worst, worst_of
 from quietarm.ocp.saved import MotionAnswer
 from quietarm.ocp.simulation.cvodes import Trajectory
@@ -90,6 +91,11 @@ class Plan(MotionAnswer):
     def path(self) -> JointPath:
         """The joint's motion as a callable of time and derivative order."""
         return self.profile.path(self.coefficients, *self.task.move)
+
+    @cached_property
+    def sensitivities(self) -> tuple[Sensitivity, ...]:
+        """What energy and arrival change with each parameter of the plant; see `Sensitivity`."""
+        return sensitivities(self.task, self.profile, self.coefficients)
 
     @property
     def turns_back(self) -> float:

@@ -43,6 +43,10 @@ def refuse_idle(method: str, only_for: Mapping[str, Sequence[str]], called: str 
             raise ValueError(f"--{name} is for {known}, not for {method}; leave it out")
 
 
+sensitivities_option = click.option(
+    "--sensitivities", "sensitive", is_flag=True,
+    help="Say what residual and energy change with each parameter of the plant.",
+)  # fmt: skip
 _DEFAULT_TERMS = ", ".join(f"{family().terms} for {name}" for name, family in FAMILIES.items())
 _OF_CYCLOIDS = (
     "How the joint moves: the cycloid of a polynomial, of Gaussians, of a neural network or of a "

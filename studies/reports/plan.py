@@ -11,6 +11,7 @@ from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import REST, millimetres, move_of, plant_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
+from quietarm.studies.document.table import Column, Table
 
 Row = tuple[str, str]
 _HARD = 5
@@ -21,8 +22,8 @@ _ROUNDING = 1e-12
 """Angles below this [rad] are rounding errors."""
 
 
-def plan_document(plan: Plan, notes: Sequence[str] = ()) -> Document:
-    """A plan's coefficients, figures and verification."""
+def plan_document(plan: Plan, notes: Sequence[str] = (), sensitive: bool = False) -> Document:
+    """A plan's coefficients, figures and verification; where asked for, its sensitivities."""
     motion, back = plan.motion, plan.turns_back
     rows = [
         *move_rows(plan.task, motion),
@@ -35,7 +36,18 @@ def plan_document(plan: Plan, notes: Sequence[str] = ()) -> Document:
         _verified_row(plan),
         ("time", f"{plan.provenance.seconds:.2f} s"),
     ]
-    return Document("", [Facts(rows), Lines(notes)])
+    table = [_sensitivities(plan)] if sensitive else []
+    return Document("", [Facts(rows), *table, Lines(notes)])
+
+
+def _sensitivities(plan: Plan) -> Table:
+    """What a parameter that is 1 % larger changes, a row each."""
+    heads = ("parameter 1 % larger", "adds to the residual [mm]", "changes the energy by [%]")
+    rows = [
+        [one.parameter, f"{10 * one.residual:.3g}", f"{one.energy / plan.energy:+.3g}"]
+        for one in plan.sensitivities
+    ]
+    return Table("Sensitivities", [Column(head) for head in heads], rows).turned()
 
 
 def worst_in_words(worst: Worst) -> str:

@@ -8,7 +8,12 @@ import click
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
-from quietarm.studies.cli.options import profile_option, quiet_option, refuse_idle
+from quietarm.studies.cli.options import (
+    profile_option,
+    quiet_option,
+    refuse_idle,
+    sensitivities_option,
+)
 from quietarm.studies.cli.task import robust_option, task_options
 from quietarm.studies.cli.types import COEFFICIENTS
 from quietarm.studies.display.progress import working
@@ -27,6 +32,7 @@ from rich.console import Console
     "documentation, separated by commas, as --coefficients=-0.0019,-0.14.",
 )  # fmt: skip
 @robust_option
+@sensitivities_option
 @quiet_option
 @plan_file_options
 @click.pass_context
@@ -35,6 +41,7 @@ def evaluate(
     task: PointToPoint,
     profile: str,
     coefficients: list[float] | None,
+    sensitive: bool,
     quiet: bool,
     files_of: Callable[[Plan], list[File]],
 ) -> None:
@@ -54,4 +61,4 @@ def evaluate(
     motions = family.of_size(len(numbers)) if family else profile_of(profile, task)
     with working("integrating", Console(stderr=True), quiet=quiet):
         found = evaluate_coefficients(task, numbers, profile=motions)
-    finish(files_of(found), plan_document(found))
+    finish(files_of(found), plan_document(found, sensitive=sensitive))

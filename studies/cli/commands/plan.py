@@ -30,6 +30,7 @@ from quietarm.studies.cli.options import (
     profile_option,
     quiet_option,
     refuse_idle,
+    sensitivities_option,
     settings_of_one,
     solver_option,
     terms_option,
@@ -71,6 +72,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @method_settings_option("as in --setting crossover=0.7")
 @click.option("--polish", is_flag=True, help="Improve a metaheuristic's point by the gradient.")
 @robust_option
+@sensitivities_option
 @quiet_option
 @plan_file_options
 def plan(
@@ -86,6 +88,7 @@ def plan(
     method: str,
     setting: tuple[tuple[str, str], ...],
     polish: bool,
+    sensitive: bool,
     quiet: bool,
     files_of: Callable[[Plan], list[File]],
 ) -> None:
@@ -138,7 +141,7 @@ def plan(
             "does"
         ]
     stopped = None if found.complete else interruption(found.provenance.stopped)
-    finish(files_of(found), plan_document(found, notes), trouble=stopped)
+    finish(files_of(found), plan_document(found, notes, sensitive), trouble=stopped)
 
 
 def _by_search(

@@ -245,3 +245,14 @@ def test_the_shortest_duration_is_found_and_why_no_shorter_one_will_do(call):
 def test_where_nothing_is_shortest_it_is_refused(call, words, remedy):
     code, out, err = call(f"plan single-link --target 30deg --duration fastest {words}")
     assert (code, out, remedy in err) == (2, "", True)
+
+
+@pytest.mark.parametrize(
+    "line", [f"plan {MOVE}", f"evaluate {MOVE} --coefficients=0.003347,-0.1697"]
+)
+def test_sensitivities_are_a_row_a_parameter_where_asked_for(call, line):
+    code, out, err = call(f"{line} --sensitivities")
+    assert (code, err) == (0, "")
+    rows = out.split("Sensitivities")[1]
+    assert re.search(r"omega +[0-9.]+ +[-+][0-9.]+", rows)
+    assert "Sensitivities" not in call(line)[1]
