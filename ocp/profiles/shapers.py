@@ -56,7 +56,38 @@ def ei(frequency: float, damping_ratio: float) -> Impulses:
     return _half_periods_apart([1 + V, 2 * (1 - V), 1 + V], frequency, damping_ratio)
 
 
-SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {"zv": zv, "zvd": zvd, "ei": ei}
+def mzv(frequency: float, damping_ratio: float) -> Impulses:
+    """Modified zero vibration: three impulses, three eighths of a damped period apart."""
+    outer = 1 - math.sqrt(0.5)
+    return _apart(0.75, [outer, 1 - 2 * outer, outer], frequency, damping_ratio)
+
+
+def two_hump_ei(frequency: float, damping_ratio: float) -> Impulses:
+    """Four impulses that leave `TOLERATED` or less over a wider range than EI."""
+    V = TOLERATED
+    X = (V**2 * (math.sqrt(1 - V**2) + 1)) ** (1 / 3)
+    outer = (3 * X**2 + 2 * X + 3 * V**2) / (16 * X)
+    inner = 0.5 - outer
+    return _half_periods_apart([outer, inner, inner, outer], frequency, damping_ratio)
+
+
+def three_hump_ei(frequency: float, damping_ratio: float) -> Impulses:
+    """Five impulses, for a range that is wider still."""
+    V = TOLERATED
+    first, second = (1 + 3 * V + 2 * math.sqrt(2 * V * (V + 1))) / 16, (1 - V) / 4
+    middle = 1 - 2 * (first + second)
+    weights = [first, second, middle, second, first]
+    return _half_periods_apart(weights, frequency, damping_ratio)
+
+
+SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {
+    "zv": zv,
+    "mzv": mzv,
+    "zvd": zvd,
+    "ei": ei,
+    "2hump-ei": two_hump_ei,
+    "3hump-ei": three_hump_ei,
+}
 """Every shaper by its name: from frequency [rad/s] and damping ratio to impulses."""
 
 
@@ -81,11 +112,17 @@ def _decay(damping_ratio: float) -> float:
 def _half_periods_apart(
     undamped: Sequence[float], frequency: float, damping_ratio: float
 ) -> Impulses:
-    """Impulses for an undamped mode, the later ones less as the vibration decays."""
-    decay = _decay(damping_ratio)
-    half_period = math.pi / (frequency * math.sqrt(1 - damping_ratio**2))
+    return _apart(1.0, undamped, frequency, damping_ratio)
+
+
+def _apart(
+    halves: float, undamped: Sequence[float], frequency: float, damping_ratio: float
+) -> Impulses:
+    """Impulses for an undamped mode so many half periods apart, later ones less as it decays."""
+    decay = _decay(damping_ratio) ** halves
+    gap = halves * math.pi / (frequency * math.sqrt(1 - damping_ratio**2))
     weights = [weight * decay**i for i, weight in enumerate(undamped)]
     return Impulses(
         tuple(weight / sum(weights) for weight in weights),
-        tuple(half_period * i for i in range(len(undamped))),
+        tuple(gap * i for i in range(len(undamped))),
     )

@@ -18,7 +18,6 @@ from quietarm.ocp import (
     shaped_cycloid,
     with_errors,
 )
-from quietarm.ocp.profiles.shapers import SHAPERS
 from quietarm.ocp.simulation.errors import FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
@@ -28,6 +27,7 @@ from quietarm.studies.registry.methods import Method
 from quietarm.studies.registry.profiles import OTHERS
 from quietarm.studies.reproduction.searches import COMPARED_TERMS, SEARCHES, Searched
 
+COMPARED_SHAPERS = ("zv", "zvd", "ei")
 FREQUENCY_ERROR = 0.1
 """Relative error of the plant's natural frequencies."""
 CYCLOID, PAPER, IN_BOX, FREE, ROBUST, FLOOR = (
@@ -85,7 +85,7 @@ def systems_of(case: Case, answers: Mapping[Hashable, Any], seeds: int) -> tuple
     }
     return (
         replace(_of(CYCLOID, evaluate_coefficients(case.task, [])), seconds=None),
-        *(_shaped(case, shaper) for shaper in SHAPERS),
+        *(_shaped(case, shaper) for shaper in COMPARED_SHAPERS),
         _paper(case),
         *(_of(name, answers[case, name]) for name in OTHERS),
         *(searched(method, found) for method, found in searches.items()),

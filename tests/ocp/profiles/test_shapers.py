@@ -15,7 +15,7 @@ from quietarm.ocp.profiles.shaped_cycloid import LEAST_SHARE
 from quietarm.ocp.profiles.shapers import SHAPERS, convolved
 
 pi = math.pi
-names = pytest.mark.parametrize("shaper", ["zv", "zvd", "ei"])
+names = pytest.mark.parametrize("shaper", ["zv", "zvd", "ei", "mzv"])
 frequencies = st.floats(2.0, 30.0)
 damping = st.floats(0.0, 0.3)
 modes = st.lists(st.tuples(frequencies, damping), min_size=1, max_size=2)
@@ -25,6 +25,8 @@ CURVES = {
     "zv": lambda r: abs(math.cos(pi * r / 2)),
     "zvd": lambda r: math.cos(pi * r / 2) ** 2,
     "ei": lambda r: abs((1 + 0.05) / 2 * math.cos(pi * r) + (1 - 0.05) / 2),
+    # 1 - 1/sqrt(2), sqrt(2) - 1, 1 - 1/sqrt(2), three eighths of a period apart
+    "mzv": lambda r: abs((2 - math.sqrt(2)) * math.cos(0.75 * pi * r) + math.sqrt(2) - 1),
 }
 
 
@@ -57,6 +59,27 @@ def test_a_damped_mode_is_left_at_its_own_frequency_as_an_undamped_one(shaper, f
     impulses = SHAPERS[shaper](frequency, zeta)
     expected = 0.05 if shaper == "ei" else 0.0
     assert left(impulses, frequency, zeta) == pytest.approx(expected, abs=1e-12)
+
+
+def test_humps_rise_to_what_is_tolerated_over_ever_wider_ranges():
+    # Singhose, Porter, Tuttle and Singer, J. Dyn. Sys. Meas. Control 119 (1997), define them so:
+    # V = 5 % at the top of each hump, and nothing left between humps
+    widths = []
+    for humps, shaper in enumerate(("ei", "2hump-ei", "3hump-ei"), 1):
+        impulses = SHAPERS[shaper](7.0, 0.0)
+        assert min(impulses.amplitudes) > 0
+        assert sum(impulses.amplitudes) == pytest.approx(1)
+        ratios = np.linspace(0.4, 1.6, 4801)
+        curve = np.array([left(impulses, r * 7.0) for r in ratios])
+        inside = np.flatnonzero(curve <= 0.05 * (1 + 1e-6))
+        assert np.diff(inside).max() == 1  # one range
+        assert ratios[inside[0]] + ratios[inside[-1]] == pytest.approx(2)  # about the frequency
+        within = curve[inside[1:-1]]
+        tops = (within[1:-1] > within[:-2]) & (within[1:-1] >= within[2:])
+        assert within[1:-1][tops] == pytest.approx([0.05] * humps, abs=2e-4)
+        widths.append(ratios[inside[-1]] - ratios[inside[0]])
+    assert widths == sorted(widths)
+    assert widths[0] == pytest.approx(0.40, abs=0.01)  # EI: Singhose, Seering and Singer, 1994
 
 
 def test_the_impulses_in_the_textbooks_form():
