@@ -111,7 +111,11 @@ def main():
     words.add_argument("--code", action="store_true", help="slides with the code")
     words.add_argument("--output", type=Path, default=Path(), help="a folder; else the one here")
     asked = words.parse_args()
-    exporter = Slides(exclude_input=not asked.code, **WALL) if asked.slides else Page()
+    exporter = (
+        Slides(exclude_input=not asked.code, exclude_output_prompt=True, **WALL)
+        if asked.slides
+        else Page()
+    )
     asked.output.mkdir(parents=True, exist_ok=True)
     for notebook in asked.notebooks:
         page, _ = exporter.from_filename(str(notebook))

@@ -26,6 +26,7 @@ COMMANDS = {
     "compare": "Compare fronts of one task.",
     "floor": "Find the least energy over all joint motions.",
     "robustness": "Show what plans leave when the plant is not the assumed one.",
+    "versus": "Hold a plan against shapers and ruckig.",
     "export": "Write a plan as C, csv, for ROS 2 or MATLAB.",
     "plants": "List plants, and what their parameters mean.",
     "problems": "List named problems with their exact fronts.",

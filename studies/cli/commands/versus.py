@@ -1,0 +1,50 @@
+"""`quietarm versus`: a plan against what is used today."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from quietarm.ocp import PointToPoint
+from quietarm.studies.cli.ending import finish
+from quietarm.studies.cli.options import quiet_option, terms_option
+from quietarm.studies.cli.task import robust_option, task_options
+from quietarm.studies.cli.types import FOLDER, LENGTH
+from quietarm.studies.display.progress import working
+from quietarm.studies.document.files import document_files
+from quietarm.studies.registry.profiles import POLYNOMIAL, profile_of
+from quietarm.studies.versus.report import versus_document
+from quietarm.studies.versus.rivals import rivals
+from rich.console import Console
+
+
+@click.command()
+@task_options
+@terms_option
+@click.option("--residual-limit", type=LENGTH, help="Of the robust plan; as for quietarm plan.")
+@robust_option
+@click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
+@quiet_option
+def versus(
+    task: PointToPoint,
+    terms: int | None,
+    residual_limit: float | None,
+    output: Path | None,
+    quiet: bool,
+) -> None:
+    """Hold a plan against what is used today: the cycloid, input shapers, ruckig, shaped ruckig.
+
+    A row for each on the same move: what it leaves as planned and at worst within the errors of
+    --robust, energy, peaks, and the limits that it breaks. Ruckig needs quietarm[ruckig] and an
+    acceleration limit.
+
+    \b
+    Examples:
+      quietarm versus flexible-beam --set omega=3.2Hz --target 60deg --duration 0.7 \\
+          --torque-limit 1.5 --acceleration-limit 80 --robust frequency=8% --output versus
+    """  # noqa: D301  # \b is click's: do not rewrap
+    profile = profile_of(POLYNOMIAL, task, terms)
+    with working("planning and shaping", Console(stderr=True), quiet=quiet):
+        found = list(rivals(task, profile, residual_limit))
+    document = versus_document(task, found)
+    finish([] if output is None else document_files(output, document), document)

@@ -1,0 +1,179 @@
+"""What is used today instead of a plan: shaped cycloids, ruckig, shaped ruckig."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from quietarm.ocp import (
+    JointProfile,
+    Motion,
+    Plan,
+    PointToPoint,
+    QuietarmError,
+    evaluate_coefficients,
+    plan_move,
+    shaped_cycloid,
+)
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.profiles.shapers import SHAPERS, Impulses, convolved
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.residual import vibrations
+from quietarm.ocp.simulation.resimulation import resimulated
+
+_ALONG = {1: 41, 2: 9}
+"""Errors along each side of their ranges, by how many there are; else their corners."""
+_SHORTEST = 1e-9
+"""Pieces of a motion that are shorter [s] are none."""
+_LEAST_SHARE = 0.02
+"""Share of the duration that a shaper has to leave for the motion that it shapes."""
+
+
+@dataclass(frozen=True)
+class Rival:
+    """What one way to move makes of a move.
+
+    Attributes
+    ----------
+    name : str
+        What it is called.
+    motion : Motion or None
+        Its figures, by CVODES on the assumed plant; None where it cannot be.
+    worst : float or None
+        The largest residual within the errors [m]; None where there are no errors.
+    why : str
+        Why it cannot be.
+    """
+
+    name: str
+    motion: Motion | None = None
+    worst: float | None = None
+    why: str = ""
+
+
+def rivals(
+    task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
+) -> Iterator[Rival]:
+    """Every way to make a move, one after another.
+
+    Parameters
+    ----------
+    task : PointToPoint
+        The move. Of an uncertain plant there is a robust plan as well, and the worst within its
+        errors; limits are for the plans and for ruckig.
+    profile : JointProfile
+        Of the plans.
+    residual_limit : float, optional
+        Of the robust plan; see `plan_move`.
+    """
+    certain = task.nominal
+    yield _planned("plan", task, lambda: plan_move(certain, profile))
+    if task.errors:
+        yield _planned(
+            "robust plan", task, lambda: plan_move(task, profile, residual_limit=residual_limit)
+        )
+    yield _planned("plain cycloid", task, lambda: evaluate_coefficients(certain, []))
+    for name in SHAPERS:
+        yield _planned(
+            f"{name}, cycloid", task,
+            lambda name=name: evaluate_coefficients(
+                certain, [], profile=shaped_cycloid(certain, name)
+            ),
+        )  # fmt: skip
+    for name in ("", *SHAPERS):
+        yield _by_ruckig(task, name)
+
+
+def _planned(name: str, task: PointToPoint, plan_of: object) -> Rival:
+    assert callable(plan_of)
+    try:
+        plan: Plan = plan_of()
+    except (QuietarmError, ValueError) as error:
+        return Rival(name, why=str(error))
+    joint = PiecewiseMotion.of_profile(task.nominal, plan.profile, plan.coefficients)
+    return _judged(name, task, joint)
+
+
+def _by_ruckig(task: PointToPoint, shaper: str) -> Rival:
+    name = f"{shaper}, ruckig" if shaper else "ruckig"
+    try:
+        impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
+        left = task.duration - impulses.times[-1]
+        if left < _LEAST_SHARE * task.duration:
+            return Rival(name, why=f"the shaper alone takes {impulses.times[-1]:.3g} s")
+        free = shaped(ruckig_motion(replace(task.nominal, duration=left)), impulses)
+    except (QuietarmError, ValueError) as error:
+        return Rival(name, why=str(error))
+    return _judged(name, task, PiecewiseMotion.of_free_motion(task.nominal, free))
+
+
+def _impulses(task: PointToPoint, shaper: str) -> Impulses:
+    modes = vibrations(task.plant.nominal, task.target)
+    return convolved([SHAPERS[shaper](*mode) for mode in modes])
+
+
+def ruckig_motion(task: PointToPoint) -> FreeMotion:
+    """The motion of constant jerk that ruckig finds within a task's limits, in its duration.
+
+    Raises
+    ------
+    ValueError
+        When ruckig is not installed, the task limits no acceleration, or the duration is too short.
+    """
+    try:
+        from ruckig import InputParameter, Ruckig, Trajectory
+    except ImportError:
+        raise ValueError("ruckig is not installed; install quietarm[ruckig]") from None
+    if task.acceleration_limit is None:
+        raise ValueError("ruckig needs an acceleration limit")
+    asked, found, free = InputParameter(1), Trajectory(1), float("inf")
+    asked.current_position, asked.target_position = [task.start], [task.target]
+    asked.max_velocity = [task.speed_limit or free]
+    asked.max_acceleration = [task.acceleration_limit]
+    asked.max_jerk = [task.jerk_limit or free]
+    asked.minimum_duration = task.duration
+    Ruckig(1).calculate(asked, found)
+    if found.duration > task.duration * (1 + 1e-6):
+        raise ValueError(f"within the limits it takes {found.duration:.4g} s")
+    one = found.profiles[0][0]
+    lengths = np.array(one.t)
+    there = lengths > _SHORTEST
+    times = np.concatenate([[0.0], np.cumsum(lengths[there])])
+    return FreeMotion(times, np.array(one.a)[:-1][there], np.array(one.j)[there])
+
+
+def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
+    """A motion convolved with impulses: one of them again, in pieces."""
+    begins = np.add.outer(free.times, impulses.times).ravel()
+    times = np.unique(begins)
+    times = times[np.append(True, np.diff(times) > _SHORTEST)]
+    middle = (times[1:] + times[:-1]) / 2
+    acceleration, jerk = np.zeros(len(middle)), np.zeros(len(middle))
+    for share, begin in zip(*impulses, strict=True):
+        own = np.searchsorted(free.times, middle - begin, side="right") - 1
+        moving = (own >= 0) & (own < free.steps)
+        k = own[moving]
+        since = times[:-1][moving] - begin - free.times[k]
+        acceleration[moving] += share * (free.acceleration[k] + free.jerk[k] * since)
+        jerk[moving] += share * free.jerk[k]
+    return FreeMotion(times, acceleration, jerk)
+
+
+def _judged(name: str, task: PointToPoint, joint: PiecewiseMotion) -> Rival:
+    try:
+        found = resimulated(task.nominal, joint)
+        left = [resimulated(task.nominal, joint, one).residual for one in _errors(task.errors)]
+    except QuietarmError as error:
+        return Rival(name, why=str(error))
+    return Rival(name, found.motion, max(left, default=None))
+
+
+def _errors(ranges: Mapping[str, float]) -> Iterator[Sequence[tuple[str, float]]]:
+    """Errors within their ranges, evenly along each."""
+    if not ranges:
+        return
+    count = _ALONG.get(len(ranges), 2)
+    for errors in product(*(np.linspace(-size, size, count).tolist() for size in ranges.values())):
+        yield tuple(zip(ranges, errors, strict=True))

@@ -1,0 +1,96 @@
+"""Plans against shapers and ruckig on the same move."""
+
+import csv
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+from quietarm.models import FlexibleBeam
+from quietarm.ocp import CycloidPolynomial, PointToPoint, UncertainPlant
+from quietarm.ocp.profiles.free_motion import FreeMotion
+from quietarm.ocp.profiles.shapers import SHAPERS
+from quietarm.studies.versus.rivals import rivals, ruckig_motion, shaped
+
+BEAM = FlexibleBeam(omega=2 * pi * 3.2, zeta=0.01)
+MOVE = PointToPoint(BEAM, pi / 3, 0.7, torque_limit=1.5, acceleration_limit=80.0)
+ROBUST = replace(MOVE, plant=UncertainPlant(BEAM, {"frequency": 0.08}))
+
+
+@pytest.fixture(scope="module")
+def found():
+    return {rival.name: rival for rival in rivals(ROBUST, CycloidPolynomial(6))}
+
+
+def test_everything_that_is_used_is_there_or_says_why(found):
+    expected = {"plan", "robust plan", "plain cycloid", "ruckig"}
+    expected |= {f"{shaper}, {motion}" for shaper in SHAPERS for motion in ("cycloid", "ruckig")}
+    assert set(found) == expected
+    for rival in found.values():
+        assert (rival.motion is None) == bool(rival.why)
+        if rival.motion:
+            assert rival.worst >= rival.motion.residual * (1 - 1e-6)
+    # its impulses take two periods of 0.3125 s, and the rest is too short for 60 degrees
+    assert "within the limits it takes" in found["3hump-ei, ruckig"].why
+
+
+def test_the_robust_plan_is_what_it_promises(found):
+    plan = found["robust plan"]
+    assert plan.worst < 0.2 * found["plan"].worst
+    assert plan.motion.peak_torque <= 1.5
+    assert found["plan"].motion.residual < 1e-8
+    # a shaper that cancels the mode leaves little, one for two frequencies less when it is wrong
+    assert found["zv, ruckig"].motion.residual < 0.01 * found["ruckig"].motion.residual
+    assert found["zvd, ruckig"].worst < found["zv, ruckig"].worst
+
+
+def test_ruckig_is_followed_exactly_and_keeps_its_limits():
+    task = replace(MOVE, speed_limit=2.5, jerk_limit=4000.0)
+    free = ruckig_motion(task)
+    angle, speed = free.boundaries(task.start)
+    assert free.times[-1] == pytest.approx(0.7)
+    assert angle[-1] == pytest.approx(pi / 3, abs=1e-9)
+    assert speed[-1] == pytest.approx(0, abs=1e-9)
+    assert np.abs(speed).max() <= 2.5 * (1 + 1e-9)
+    assert np.abs(free.jerk).max() <= 4000 * (1 + 1e-9)
+    with pytest.raises(ValueError, match="ruckig needs an acceleration limit"):
+        ruckig_motion(replace(task, acceleration_limit=None))
+    with pytest.raises(ValueError, match=r"within the limits it takes 0\.\d+ s"):
+        ruckig_motion(replace(task, duration=0.1))
+
+
+def test_a_shaped_motion_is_the_sum_of_its_delayed_shares():
+    free = FreeMotion(np.array([0, 0.1, 0.25]), np.array([1.0, -2.0]), np.array([3.0, 0.5]))
+    impulses = SHAPERS["zvd"](20.0, 0.05)
+    both = shaped(free, impulses)
+    assert both.times[-1] == pytest.approx(0.25 + impulses.times[-1])
+
+    def angle_at(motion, time):
+        """Angle by integrating twice what is constant or linear in pieces."""
+        if time <= 0:
+            return 0.0
+        starts, speeds = motion.boundaries(0.0)
+        k = min(np.searchsorted(motion.times, time, side="right") - 1, motion.steps)
+        if k == motion.steps:
+            return starts[-1] + speeds[-1] * (time - motion.times[-1])
+        t = time - motion.times[k]
+        jerk = motion.jerk[k]
+        return starts[k] + t * (speeds[k] + t * (motion.acceleration[k] / 2 + t * jerk / 6))
+
+    for time in np.linspace(0, both.times[-1], 37):
+        parts = (
+            share * angle_at(free, time - begin) for share, begin in zip(*impulses, strict=True)
+        )
+        assert angle_at(both, time) == pytest.approx(sum(parts), abs=1e-12)
+
+
+def test_the_command_writes_a_row_each(call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    line = "versus flexible-beam --set omega=3.2Hz --target 60deg --duration 0.7"
+    code, out, err = call(f"{line} --terms 2 --output against")
+    assert (code, err) == (0, "")
+    assert "ruckig: ruckig needs an acceleration limit" in out
+    rows = list(csv.DictReader((tmp_path / "against" / "versus.csv").read_text().splitlines()))
+    assert [row["motion"] for row in rows][:3] == ["plan", "plain cycloid", "zv, cycloid"]
+    assert float(rows[0]["residual_mm"]) < 1e-5
+    assert (tmp_path / "against" / "versus.png").read_bytes().startswith(b"\x89PNG")
