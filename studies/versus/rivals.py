@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -86,10 +86,9 @@ def rivals(
         yield _by_ruckig(task, name)
 
 
-def _planned(name: str, task: PointToPoint, plan_of: object) -> Rival:
-    assert callable(plan_of)
+def _planned(name: str, task: PointToPoint, plan_of: Callable[[], Plan]) -> Rival:
     try:
-        plan: Plan = plan_of()
+        plan = plan_of()
     except (QuietarmError, ValueError) as error:
         return Rival(name, why=str(error))
     joint = PiecewiseMotion.of_profile(task.nominal, plan.profile, plan.coefficients)
@@ -170,7 +169,7 @@ def _judged(name: str, task: PointToPoint, joint: PiecewiseMotion) -> Rival:
     return Rival(name, found.motion, max(left, default=None))
 
 
-def _errors(ranges: Mapping[str, float]) -> Iterator[Sequence[tuple[str, float]]]:
+def _errors(ranges: Mapping[str, float]) -> Iterator[tuple[tuple[str, float], ...]]:
     """Errors within their ranges, evenly along each."""
     if not ranges:
         return
