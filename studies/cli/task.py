@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial, wraps
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -15,6 +16,7 @@ from quietarm.studies.cli.quantities import parse_rate, parse_time
 from quietarm.studies.cli.types import (
     ANGLE,
     ERROR,
+    INPUT,
     LENGTH,
     PLANT,
     PLANT_FILE,
@@ -100,6 +102,33 @@ def task_or_fastest_options(command: Callable[..., Any]) -> Callable[..., Any]:
         return command(*positional, task=_task_of(named), fastest=fastest, **named)
 
     return _task_options(required=True, fastest=True)(with_task)
+
+
+def task_or_path_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same where a file may have the path: the command gets it as `recorded`, or None."""
+
+    @wraps(command)
+    def with_task(*positional: Any, path: Path | None, **named: Any) -> Any:
+        if path is None:
+            for name in ("target", "duration"):
+                if named[name] is None:
+                    raise click.UsageError(f"Missing option '--{name}'.")
+            return command(*positional, task=_task_of(named), recorded=None, **named)
+        for name in ("start", "target", "duration"):
+            if typed(name):
+                raise click.UsageError(f"--{name} is in the file of --path; leave it out")
+        from quietarm.studies.reading.path import read_path
+
+        recorded = read_path(path)
+        named |= {name: getattr(recorded, name) for name in ("start", "target", "duration")}
+        return command(*positional, task=_task_of(named), recorded=recorded, **named)
+
+    path = click.option(
+        "--path", type=INPUT,
+        help="A CSV file with the joint's path in columns such as time_s and angle_deg, in the "
+        "place of start, target and duration.",
+    )  # fmt: skip
+    return _task_options(required=False)(path(with_task))
 
 
 def own_task_options(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -13,18 +13,23 @@ from quietarm.studies.cli.options import (
     quiet_option,
     refuse_idle,
     sensitivities_option,
+    typed,
 )
-from quietarm.studies.cli.task import robust_option, task_options
+from quietarm.studies.cli.task import robust_option, task_or_path_options
 from quietarm.studies.cli.types import COEFFICIENTS
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import File
+from quietarm.studies.reading.path import RecordedPath
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
+from quietarm.studies.reports.path import evaluated_path
 from quietarm.studies.reports.plan import plan_document
 from rich.console import Console
 
+_NOT_OF_A_PATH = ("coefficients", "profile", "sensitive", "output", "csv_file", "figure")
+
 
 @click.command()
-@task_options
+@task_or_path_options
 @profile_option
 @click.option(
     "--coefficients", type=COEFFICIENTS,
@@ -39,19 +44,31 @@ from rich.console import Console
 def evaluate(
     context: click.Context,
     task: PointToPoint,
+    recorded: RecordedPath | None,
     profile: str,
     coefficients: list[float] | None,
     sensitive: bool,
     quiet: bool,
     files_of: Callable[[Plan], list[File]],
 ) -> None:
-    """Compute residual, energy and peaks of given coefficients, or of an input shaper's motion.
+    """Compute residual, energy and peaks of coefficients, of an input shaper, or of a path.
+
+    A --path is followed as a cubic spline through its points, at rest at both ends.
 
     \b
     Examples; the first has the paper's two terms for the single link:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
       quietarm evaluate single-link --target pi/6 --duration 0.8 --profile zvd
+      quietarm evaluate flexible-beam --set omega=3.2Hz --path recorded.csv
     """  # noqa: D301  # \b is click's: do not rewrap
+    if recorded is not None:
+        for name in _NOT_OF_A_PATH:
+            if typed(name):
+                raise click.UsageError(f"--{name.removesuffix('_file')} is not for a --path")
+        with working("integrating", Console(stderr=True), quiet=quiet):
+            path = evaluated_path(task, recorded)
+        finish([], path)
+        return
     refuse_idle(profile, {"coefficients": list(FAMILIES)})
     if profile in FAMILIES and coefficients is None:
         (option,) = (one for one in context.command.params if one.name == "coefficients")

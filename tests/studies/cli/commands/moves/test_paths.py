@@ -1,0 +1,112 @@
+"""`quietarm evaluate --path`: the path that another tool or a recorder wrote."""
+
+import re
+
+import numpy as np
+import pytest
+from lines import MOVE, run
+from quietarm.ocp import Plan
+from quietarm.studies.export import export_plan
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A plan, and its path at 200 points a second."""
+    folder = tmp_path_factory.mktemp("paths")
+    run(f"plan {MOVE} --output {folder}/plan.json --quiet")
+    plan = Plan.load(folder / "plan.json")
+    export_plan(plan, folder / "path.csv", columns="time:ms,angle:deg,torque", rate=200)
+    return folder
+
+
+def test_an_exported_plan_comes_back_as_it_was(call, folder):
+    plan = Plan.load(folder / "plan.json")
+    code, out, err = call(f"evaluate single-link --path {folder}/path.csv")
+    assert (code, err) == (0, "")
+    assert re.search(r"single-link, 0 to 30 deg in 0.8 s", out)
+    energy = float(re.search(r"energy \(F2\) +([0-9.]+) J", out)[1])
+    assert energy == pytest.approx(plan.energy, rel=1e-4)
+    assert "at rest (below 0.001 mm)" in out
+    assert "161 points, 5 ms apart" in out
+
+
+def test_what_errors_of_the_plant_leave_is_said(call, folder):
+    line = f"evaluate single-link --path {folder}/path.csv --robust frequency=5%"
+    out = call(line)[1]
+    for error in ("-5", "+5"):
+        assert re.search(rf"residual +[0-9.]+ mm with frequency \{error} %", out)
+
+
+def changed(folder, change):
+    """The path's columns after a change, in a file."""
+    table = np.genfromtxt(folder / "path.csv", delimiter=",", names=True)
+    time, angle = change(table["time_ms"].copy(), table["angle_deg"].copy())
+    rows = "".join(f"{t},{a}\n" for t, a in zip(time, angle, strict=True))
+    (folder / "changed.csv").write_text(f"time_ms,angle_deg\n{rows}")
+
+
+def spike(time, angle):
+    angle[80] += 10
+    return time, angle
+
+
+def step(time, angle):
+    angle[80:] += 10
+    return time, angle
+
+
+def unsorted(time, angle):
+    time[80] = time[78]
+    return time, angle
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (spike, "the angle jumps by"),
+        (step, "the angle jumps by"),
+        (unsorted, "the time does not increase from row 80 to the next"),
+        (lambda t, a: (t, 1000 * a), r"an angle of 5\d\d(\.\d+)? rad; is it in degrees"),
+        (lambda t, a: (t[:3], a[:3]), "has 3 rows; give 5 to 5000"),
+        (lambda t, a: (t, 0 * a), "the path ends where it begins"),
+        (lambda t, a: (t, np.where(t == 400, np.nan, a)), "a number that is not finite"),
+    ],
+)
+def test_a_path_that_cannot_be_is_refused(call, folder, change, words):
+    changed(folder, change)
+    code, out, err = call(f"evaluate single-link --path {folder}/changed.csv")
+    assert (code, out) == (2, "")
+    assert re.search(words, err)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("hello\nworld", "no table of numbers under a heading"),
+        ("time_s,position\n0,1\n", "no column angle_rad or angle_deg"),
+        ("time_s,angle_rad\n0,1\n1\n", "no table of numbers|rows of other length"),
+    ],
+)
+def test_a_file_that_is_no_path_is_refused(call, folder, text, words):
+    (folder / "other.csv").write_text(text)
+    code, _, err = call(f"evaluate single-link --path {folder}/other.csv")
+    assert code == 2
+    assert re.search(words, err)
+
+
+@pytest.mark.parametrize(
+    ("words", "remedy"),
+    [
+        ("--target 30deg", "--target is in the file of --path; leave it out"),
+        ("--coefficients=1,2", "--coefficients is not for a --path"),
+        ("--output x.json", "--output is not for a --path"),
+    ],
+)
+def test_what_a_path_does_not_take_is_refused(call, folder, words, remedy):
+    code, _, err = call(f"evaluate single-link --path {folder}/path.csv {words}")
+    assert (code, remedy in err) == (2, True)
+
+
+def test_without_a_path_a_move_is_asked_for(call):
+    code, _, err = call("evaluate single-link --duration 1 --coefficients=0")
+    assert (code, "Missing option '--target'" in err) == (2, True)
