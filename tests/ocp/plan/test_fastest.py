@@ -54,7 +54,7 @@ def test_an_acceleration_limit_alone_is_that_of_a_rigid_joint_nearly():
 
 def test_a_robust_move_takes_longer(fastest):
     plant = UncertainPlant(LINK.plant, {"frequency": 0.1})
-    settings = {"residual_limit": 2e-3, "tolerance": 0.1}
+    settings = {"residual_limit": 2e-3, "tolerance": 0.3}
     robust = fastest_move(replace(LINK, plant=plant), **settings)
     assert robust.plan.worst.residual <= 2e-3 * (1 + 1e-6)
     assert robust.duration > fastest_move(LINK, **settings).duration
