@@ -48,7 +48,8 @@ import rockit
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.models import ArmOnFlexibleLink, JointMotion
 from quietarm.ocp import CycloidPolynomial, PointToPoint, energy_floor
-from quietarm.ocp.floor.program import _COLD, FloorProgram, first_grid
+from quietarm.ocp.floor.program import FloorProgram, first_grid
+from quietarm.ocp.floor.transcription import _COLD
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion

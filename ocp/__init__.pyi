@@ -1,3 +1,8 @@
+from .energy import AbsolutePower as AbsolutePower
+from .energy import CopperLoss as CopperLoss
+from .energy import Energy as Energy
+from .energy import Mix as Mix
+from .energy import PositivePower as PositivePower
 from .errors import FileFormatError as FileFormatError
 from .errors import InfeasibleTaskError as InfeasibleTaskError
 from .errors import QuietarmError as QuietarmError
@@ -19,12 +24,16 @@ from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
+from .modal_state import ModalState as ModalState
 from .plan.answer import Plan as Plan
 from .plan.answer import evaluate_coefficients as evaluate_coefficients
 from .plan.fastest import Fastest as Fastest
 from .plan.fastest import fastest_move as fastest_move
 from .plan.many import Moves as Moves
 from .plan.many import plan_moves as plan_moves
+from .plan.sequence import Waited as Waited
+from .plan.sequence import plan_after as plan_after
+from .plan.sequence import plan_sequence as plan_sequence
 from .plan.shaping import shaped_cycloid as shaped_cycloid
 from .plan.solver import plan_move as plan_move
 from .profiles.joint_profile import JointPath as JointPath

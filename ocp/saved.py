@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Self, TypeVar
 import msgspec
 import numpy as np
 from quietarm.models import Plant, file_of_plant, known_plants
+from quietarm.ocp.energy import Energy, Mix, known_energies
 from quietarm.ocp.errors import FileFormatError
 from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
@@ -43,6 +44,8 @@ def plain(value: Any) -> Any:
             return {"name": _name_of(value, known_plants()), **origin, **_entries(value)}
         case JointProfile():
             return {"name": _name_of(value, known_profiles()), **_entries(value)}
+        case Energy():
+            return {"name": _name_of(value, known_energies()), **_entries(value)}
         case Enum():
             return value.value
         case Mapping():
@@ -132,11 +135,14 @@ def _name_of(value: Any, known: Mapping[str, type[Any]]) -> str:
 
 
 def _known_here(kind: Any, entry: Any) -> Any:
-    """What msgspec does not know: plants and profiles by their name, arrays."""
-    if kind in (Plant, JointProfile):
+    """What msgspec does not know: plants, profiles and energies by their name, arrays."""
+    if kind in (Plant, JointProfile, Energy):
         if not isinstance(entry, dict) or "name" not in entry:
             raise ValueError(f"{kind.__name__} is {entry!r}; give a table with its name")
         table = dict(entry)
+        if kind is Energy:
+            mixed = table["name"] == Mix.name
+            return typed(table, Mix) if mixed else _named("energy", table, known_energies())
         return _plant(table) if kind is Plant else _named("profile", table, known_profiles())
     return np.array(msgspec.convert(entry, list[float]))
 

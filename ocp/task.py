@@ -6,11 +6,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from types import MappingProxyType
+from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.contract import check_along
 from quietarm.ocp.checks import finite, positive
+from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.modal_state import ModalState
 
 _JERK = 3
 
@@ -108,6 +113,13 @@ class PointToPoint:
         How long after arrival the residual vibration is watched [s]; eq (11) has 1 s.
     jerk_limit : float, optional
         Largest absolute rate of change of the joint's acceleration on the way [rad/s^3].
+    initial : ModalState, optional
+        What rings already at the start, on every plant where it is uncertain; at rest by default.
+    final : ModalState, optional
+        What is wanted on arrival; at rest by default. The residual is the largest displacement of
+        a tip from the free vibration that begins with it.
+    energy : Energy, optional
+        What counts as F2; the paper's absolute power by default.
 
     Raises
     ------
@@ -125,6 +137,9 @@ class PointToPoint:
     deflection_limit: float | None = None
     residual_window: float = 1.0
     jerk_limit: float | None = None
+    initial: ModalState | None = None
+    final: ModalState | None = None
+    energy: Energy = ABSOLUTE_POWER
 
     @one_at_a_time
     def __post_init__(self) -> None:
@@ -143,6 +158,8 @@ class PointToPoint:
         for name, unit in LIMITS.items():
             if getattr(self, name) is not None:
                 self._keep(name, positive(name.replace("_", " "), getattr(self, name), unit))
+        for name in ("initial", "final"):
+            self._check_modes(name, getattr(self, name))
         if not LEAST_DURATION <= self.duration <= MOST_DURATION:
             raise ValueError(
                 f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
@@ -156,8 +173,16 @@ class PointToPoint:
                 f"target - start is {self.span:g} rad; give a move of at least {LEAST_MOVE:g} rad"
             )
 
-    def _keep(self, name: str, value: float) -> None:
+    def _keep(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
+
+    def _check_modes(self, name: str, state: ModalState | None) -> None:
+        modes = self.plant.nominal.modes
+        if state is not None and len(state.W) != modes:
+            raise ValueError(
+                f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
+                "give W and W' of each"
+            )
 
     @property
     def span(self) -> float:
@@ -166,8 +191,31 @@ class PointToPoint:
 
     @property
     def move(self) -> tuple[float, float, float]:
-        """(start, target, duration): the parameters of every compiled function."""
+        """(start, target, duration)."""
         return (self.start, self.target, self.duration)
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """The move, then W and W' at the start: the parameters of every compiled function."""
+        return (*self.move, *self.initial_state)
+
+    @property
+    def initial_state(self) -> tuple[float, ...]:
+        """W [m], then W' [m/s] at the start, of every part of the plant."""
+        return self._modes_of(self.initial)
+
+    def _modes_of(self, state: ModalState | None) -> tuple[float, ...]:
+        at_rest = (0.0,) * (2 * self.plant.modes)
+        return at_rest if state is None else state.of_every_part(self.plant)
+
+    @property
+    def final_state(self) -> tuple[float, ...]:
+        """The same as wanted on arrival."""
+        return self._modes_of(self.final)
+
+    def missed(self, arrival: ArrayLike) -> NDArray[np.float64]:
+        """What states on arrival miss of the wanted one: what vibrates on where rest is wanted."""
+        return np.asarray(arrival) - self.final_state
 
     @property
     def nominal(self) -> PointToPoint:

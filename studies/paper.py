@@ -135,6 +135,8 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
             same = isclose(value, wanted, rel_tol=_SAME)
         if not same:
             words.append(f"{name} is {_words(value, unit)}, not {_words(wanted, unit)}")
+    if one.energy != other.energy:
+        words.append(f"energy is {one.energy.label}, not {other.energy.label}")
     if not words and one.plant.error_samples != other.plant.error_samples:
         words.append("its samples within the errors are others")
     return ", ".join(words)

@@ -18,12 +18,17 @@ from quietarm.ocp.checks import unknown, whole
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
+    from quietarm.metaheuristics.budget.gradient import Gradient
     from quietarm.metaheuristics.budget.problem import BudgetProblem
 
 MOST_EVALUATIONS = 10_000_000
 _OF_THE_SEARCH = 0.5
 """Share of the evaluations that the search has before its front is polished."""
 _NO_SEEDS = np.empty((0, 0))
+_REHEARSAL = 3
+"""Generations that are searched and forgotten before the first run of its kind in a process: what
+is compiled and loaded then is no part of a method's time."""
+_rehearsed: set[tuple[PointToPoint, JointProfile, str]] = set()
 
 
 class Help(Enum):
@@ -87,18 +92,28 @@ def search_within(
 
     search, helped = parts_of(method)
     budget = number_of_evaluations(evaluations)
-    algorithm, stated = _built(search, population, bound, settings)
-    problem = BudgetProblem(PopulationObjective(task, profile), bound, budget, scale)
-    gradient = Gradient(problem, bound, seed)
-    with suppress(BudgetSpentError):
-        if algorithm is None:
-            gradient.multistart()
-        else:
-            first = gradient.seeds() if helped is Help.SEEDS else _NO_SEEDS
-            until = round(_OF_THE_SEARCH * budget) if helped is Help.POLISH else budget
-            _run(algorithm, problem, seed, until, first)
-        if helped is Help.POLISH:
-            gradient.polish()
+    _, stated = _built(search, population, bound, settings)
+
+    def attempt(budget: int) -> tuple[BudgetProblem, Gradient]:
+        algorithm, _ = _built(search, population, bound, settings)
+        problem = BudgetProblem(PopulationObjective(task, profile), bound, budget, scale)
+        gradient = Gradient(problem, bound, seed)
+        with suppress(BudgetSpentError):
+            if algorithm is None:
+                gradient.multistart()
+            else:
+                first = gradient.seeds() if helped is Help.SEEDS else _NO_SEEDS
+                until = round(_OF_THE_SEARCH * budget) if helped is Help.POLISH else budget
+                _run(algorithm, problem, seed, until, first)
+            if helped is Help.POLISH:
+                gradient.polish()
+        return problem, gradient
+
+    if (task, profile, method) not in _rehearsed:
+        attempt(min(budget, _REHEARSAL * stated.get("population", 100)))
+        _rehearsed.add((task, profile, method))
+    problem, gradient = attempt(budget)
+    seconds = problem.seconds
     front = Front(
         task=task,
         profile=profile,
@@ -112,7 +127,7 @@ def search_within(
         failed=problem.failed,
         infeasible=problem.infeasible,
         versions=search_versions(),
-        seconds=problem.seconds,
+        seconds=seconds,
     )
     return BudgetRun(front, tuple(problem.marks), problem.visits)
 

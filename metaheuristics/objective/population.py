@@ -43,8 +43,9 @@ class PopulationValues:
 class PopulationObjective:
     """F1, F2 and the violations of a task's limits for many candidates at once.
 
-    Start, target, duration, limits and the residual matrix are parameters of the compiled function:
-    an objective for another task of the same plant, profile and limited quantities costs no build.
+    Start, target, duration, what rings at the start, limits and the residual matrix are parameters
+    of the compiled function: an objective for another task of the same plant, profile and limited
+    quantities costs no build.
 
     Parameters
     ----------
@@ -81,7 +82,8 @@ class PopulationObjective:
     @property
     def _batch(self) -> Batch:
         """Kept by whoever asks for it, since casadi's functions can be neither copied nor sent."""
-        return batch(self.task.plant, self.profile, self.steps, tuple(self.task.limits))
+        task = self.task
+        return batch(task.plant, self.profile, self.steps, tuple(task.limits), energy=task.energy)
 
     @keep_interrupts()
     def __call__(self, coefficients: ArrayLike) -> PopulationValues:
@@ -109,9 +111,9 @@ class PopulationObjective:
                 f"{self.profile.size})"
             )
         count = len(population)
-        move = np.repeat([self.task.move], count, axis=0)
+        move = np.repeat([self.task.row], count, axis=0)
         found = self._batch.values(population, move, np.zeros((count, 0)), self.threads)
-        residual = np.abs(found.arrival @ self._tip_of_state).max(axis=1)
+        residual = np.abs(self.task.missed(found.arrival) @ self._tip_of_state).max(axis=1)
         violations = np.empty((count, len(self.task.limits)))
         for i, (name, part) in enumerate(self._batch.parts):
             peak = np.abs(found.limited[:, part]).max(axis=1)

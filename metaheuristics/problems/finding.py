@@ -26,10 +26,10 @@ that of twice as many within 1e-5."""
 STARTS = 12
 """Starts of the ends of a front."""
 COLD_STARTS = 3
-"""Random starts of every point between, where no motions are known: with ten terms and more, a
-sweep may follow a branch of minima that another one passes below."""
+"""Random starts of every point between: with ten terms and more, a sweep may follow a branch of
+minima that another one passes below."""
 LIMITED_STEPS = 192
-"""Steps of the solver where the task has limits: a peak between coarser ones costs up to 1e-4."""
+"""Steps of the solver where the task has limits: a peak between coarser ones costs up to 3e-4."""
 SEED = 1000
 """Seed of these starts: they are others than the sweep's."""
 _BETTER = 1e-6
@@ -43,7 +43,7 @@ def exact_front(
     bound: float,
     known: Sequence[FrontPoint] = (),
 ) -> Front:
-    """The least energy at one residual after another; known motions replace random starts."""
+    """The least energy at one residual after another; known motions are starts as well."""
     steps = LIMITED_STEPS if task.limits else None
     front = epsilon_front(
         task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS, steps=steps,
@@ -55,8 +55,7 @@ def exact_front(
     inner = range(1, len(points) - 1)
     for i in inner:
         near = min(known, key=lambda one: abs(one.residual - points[i].residual), default=None)
-        starts = COLD_STARTS if near is None else 1
-        points[i] = _better(front, points[i], bound, starts=starts, guess=near)
+        points[i] = _better(front, points[i], bound, starts=1 + COLD_STARTS, guess=near)
     # every branch of minima is followed to both sides; by IPOPT, whose barrier leads past corners
     # where the residual passes from one sample to the next, 1e-4 above the front at worst
     for i in inner:

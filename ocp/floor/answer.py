@@ -56,7 +56,7 @@ class FloorSettings:
 
 @dataclass(frozen=True)
 class Floor(MotionAnswer):
-    """The least energy of a move over all joint motions, at rest on arrival.
+    """The least energy of a move over all joint motions, at rest on arrival or as the task asks.
 
     The energy is that of a motion that does the move, so the true floor is no higher; `left`
     estimates how much lower it may be. A better motion far from all starts would be missed by both.

@@ -48,8 +48,9 @@ def energy_floor(
     """Find the least energy with which any joint motion does a move and arrives at rest.
 
     The acceleration of the joint is free on every interval of a grid (piecewise constant), or its
-    jerk for a smooth motion (acceleration continuous, and zero at both ends). Joint and modes are
-    at rest at both ends. The grid is refined until the energy changes by less than the tolerance.
+    jerk for a smooth motion (acceleration continuous, and zero at both ends). The joint is at rest
+    at both ends, and the modes are as the task says. The grid is refined until the energy changes
+    by less than the tolerance.
 
     Where the solver fails on a finer grid, the refinement ends there and the floor says so. Where
     the energy rises on a finer grid, having gone to another minimum, the motion of the grid whose

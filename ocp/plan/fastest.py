@@ -13,7 +13,7 @@ from quietarm.ocp.plan.answer import Plan
 from quietarm.ocp.plan.solver import plan_move
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.simulation.residual import vibrations
+from quietarm.ocp.simulation.residual import slowest_swing
 from quietarm.ocp.task import LEAST_DURATION, LIMITS, PointToPoint
 
 TOLERANCE = 1e-3
@@ -132,7 +132,9 @@ class _Search:
     def bracket(self, least: float) -> tuple[float, float]:
         """Two durations, of which the longer one succeeds and the shorter one does not."""
         low, high = max(least, LEAST_DURATION), max(self.task.duration, 1.01 * least)
-        longest = max(self.task.duration, _LONGEST * _slowest_swing(self.task))
+        longest = max(
+            self.task.duration, _LONGEST * slowest_swing(self.task.plant, self.task.target)
+        )
         while not self.succeeds(high):
             low, high = high, _GROWTH * high
             if high > longest:
@@ -142,12 +144,6 @@ class _Search:
         while low < high / _GROWTH and self.succeeds(high / _GROWTH):
             high /= _GROWTH
         return max(low, high / _GROWTH), high
-
-
-def _slowest_swing(task: PointToPoint) -> float:
-    """Period of the slowest mode at the target [s]; 1 where none swings."""
-    swings = vibrations(task.plant.nominal, task.target)
-    return 2 * math.pi / swings[0][0] if swings else 1.0
 
 
 def _least_duration(task: PointToPoint) -> float:

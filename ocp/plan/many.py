@@ -106,7 +106,7 @@ def plan_moves(
     Raises
     ------
     ValueError
-        When there is no task, the plants or limits differ, or an argument is out of range.
+        When there is no task, plants, energies or limits differ, or an argument is out of range.
     """
     profile = CycloidPolynomial() if profile is None else profile
     settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
@@ -146,7 +146,7 @@ def _from_neighbours(
     solved = [k for k, one in enumerate(found) if one.status.solved]
     starts = np.repeat(start[None], count, axis=0)
     if solved:
-        moves = np.array([program.task.move for program in programs])
+        moves = np.array([program.row for program in programs])
         moves /= np.ptp(moves, axis=0) + _SAME_MOVE
         known = moves[pilots[solved]]
         nearest = [int(np.argmin(np.abs(known - move).sum(axis=1))) for move in moves]
@@ -270,7 +270,8 @@ def _corrected(rows: list[_Found], table: Array, solver: Solver) -> tuple[Array,
     rounds = 0
     while True:
         values = finer_values(programs, table)
-        residual = residuals_at_rest(programs[0].task, targets, values.arrival)
+        missed = values.arrival - [program.wanted for program in programs]
+        residual = residuals_at_rest(programs[0].task, targets, missed)
         again = np.flatnonzero(residual > _AT_REST * STILL)
         if not again.size or rounds == _ROUNDS:
             return table, values, residual
@@ -287,9 +288,11 @@ def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
     for i, task in enumerate(tasks, start=1):
         if task.errors:
             raise ValueError(f"the plant of move {i} is uncertain; plan such moves by plan_move")
-        if task.plant != tasks[0].plant or set(task.limits) != set(tasks[0].limits):
+        mine, first = ((one.plant, one.energy, {*one.limits}) for one in (task, tasks[0]))
+        if mine != first:
             raise ValueError(
-                f"move {i} has another plant or other limits than move 1; plan them apart"
+                f"move {i} has another plant or energy, or other limits, than move 1; plan them "
+                "apart"
             )
     profile.refuse_no_choice()
 

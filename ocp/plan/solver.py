@@ -70,10 +70,10 @@ def plan_move(
         How the joint moves; by default the cycloid of a polynomial of six terms. The only motion
         of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
     residual_limit : float, optional
-        Largest F1 [m]; 0 asks for rest on arrival, where there are coefficients to choose. By
-        default 0; of an `UncertainPlant`, which hardly ever arrives at rest whatever its errors,
-        5 % of how far the plain cycloid of the same duration bends the assumed plant's tip on its
-        way.
+        Largest F1 [m]; 0 asks for rest on arrival, or for the task's `final` state, where there
+        are coefficients to choose. By default 0; of an `UncertainPlant`, which hardly ever arrives
+        at rest whatever its errors, 5 % of how far the plain cycloid of the same duration bends the
+        assumed plant's tip on its way.
     bound : float, optional
         Largest absolute coefficient; none by default.
     starts : int

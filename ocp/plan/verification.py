@@ -185,6 +185,7 @@ def finer_values(programs: Sequence[Program], coefficients: NDArray[np.float64])
     """Figures of one motion of each program, on three times the solver's steps or more."""
     one = programs[0]
     steps = max(default_steps(one.task), _FINER * one.steps)
-    move = np.array([program.task.move for program in programs])
+    move = np.array([program.row for program in programs])
     no_errors = np.zeros((len(programs), 0))
-    return batch(one.plant, one.profile, steps).values(coefficients, move, no_errors)
+    finer = batch(one.plant, one.profile, steps, energy=one.task.energy)
+    return finer.values(coefficients, move, no_errors)

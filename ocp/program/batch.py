@@ -19,6 +19,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
+from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.expressions import Kind, function_of_derivatives, function_of_values
@@ -186,8 +187,8 @@ class Batch:
     ) -> Derivatives:
         """Evaluate candidates with first derivatives, and second ones of a weighted sum.
 
-        A row is a candidate: coefficients, move (start, target [rad], duration [s]), relative
-        errors of the plant, the power [W] over which |power| is rounded off, and the weights of
+        A row is a candidate: coefficients, move (the `row` of its task), relative errors of the
+        plant, the power [W] over which |power| is rounded off, and the weights of
         energy, arrival (2 * modes) and limited values in `curvature`.
         """
         inputs = [coefficients, move, errors, width[:, None], weights[0][:, None], *weights[1:]]
@@ -234,6 +235,7 @@ def batch(
     steps: int,
     quantities: tuple[str, ...] = (),
     errors: tuple[str, ...] = (),
+    energy: Energy = ABSOLUTE_POWER,
 ) -> Batch:
     """The compiled functions of a plant, a profile and a number of steps."""
-    return Batch(Kind(plant, profile, steps, quantities, errors))
+    return Batch(Kind(plant, profile, steps, quantities, errors, energy))

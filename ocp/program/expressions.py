@@ -12,17 +12,15 @@ from typing import Any, NamedTuple
 import casadi as ca
 import numpy as np
 from quietarm.models import Plant
+from quietarm.ocp.energy import Energy
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.program.energy import energy_parts
 from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places, elementwise
-from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, Step, step
+from quietarm.ocp.simulation.collocation import NODES, Step, step
 from quietarm.ocp.simulation.errors import with_errors
-from quietarm.ocp.simulation.objective import energy_derivatives, resolved_energy
 from quietarm.ocp.simulation.rollout import march, node_times, symbolic_rollout
 from quietarm.ocp.task import QUANTITIES, ask_for_jerk
 
-_LEAST_SLOPE = 1e-4
-"""Smaller slopes of the power at its zeros count as this share of its root mean square."""
-_TINY = 1e-300
 _STEPS_OF_CSE = 48
 """Common terms are looked for up to these steps: that takes a fifth off a call, but a time that
 grows with the square of the steps."""
@@ -43,6 +41,8 @@ class Kind(NamedTuple):
         Limited quantities.
     errors : tuple of str
         What may differ from the plant in a row, as by `with_errors`.
+    energy : Energy
+        What counts as the energy.
     """
 
     plant: Plant
@@ -50,18 +50,23 @@ class Kind(NamedTuple):
     steps: int
     quantities: tuple[str, ...]
     errors: tuple[str, ...]
+    energy: Energy
 
 
 def function_of_values(kind: Kind, rows: int) -> ca.Function:
     """Compile the values of so many candidates.
 
-    (coefficients, moves, errors) -> energy, arrival, limited quantities; a row a candidate.
+    (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
-    plant, profile, steps, quantities, names = kind
-    inputs = [ca.MX.sym("x", rows, count) for count in (profile.size, 3, len(names))]
-    a, move, errors = (_wide(one, steps) for one in inputs)
+    plant, profile, steps, quantities, names, energy = kind
+    counts = profile.size, 3 + 2 * plant.modes, len(names)
+    inputs = [ca.MX.sym("x", rows, count) for count in counts]
+    a, row, errors = (_wide(one, steps) for one in inputs)
     moving = with_errors(plant, dict(zip(names, errors, strict=True)))
-    rollout = symbolic_rollout(moving, profile, a, move, steps, rows, ask_for_jerk(quantities))
+    rollout = symbolic_rollout(
+        moving, profile, a, row[:3], steps, rows, ask_for_jerk(quantities),
+        initial=ca.horzsplit(inputs[1], 1)[3:], energy=energy,
+    )  # fmt: skip
     at_nodes = [
         [
             value
@@ -78,10 +83,10 @@ def function_of_values(kind: Kind, rows: int) -> ca.Function:
 def function_of_derivatives(kind: Kind, rows: int) -> ca.Function:
     """Compile the values of candidates with their derivatives.
 
-    (coefficients, moves, errors, width over which |power| is rounded off, weights of energy,
-    arrival and limited quantities) -> energy, arrival, limited quantities, gradient, arrival by the
-    coefficients, limited quantities by them, two factors whose product is the curvature of the
-    weighted sum, and what the path's own curvature adds where it is not linear.
+    (coefficients, rows of tasks, errors, width over which |power| is rounded off, weights of
+    energy, arrival and limited quantities) -> energy, arrival, limited quantities, gradient,
+    arrival by the coefficients, limited quantities by them, two factors whose product is the
+    curvature of the weighted sum, and what the path's own curvature adds where it is not linear.
     """
     return _Differentiated(kind, rows).function()
 
@@ -90,17 +95,18 @@ class _Differentiated:
     """The expressions of `function_of_derivatives`, from the motion to its curvature."""
 
     def __init__(self, kind: Kind, rows: int) -> None:
-        plant, profile, steps, quantities, names = kind
+        plant, profile, steps, quantities, names, self.definition = kind
         self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
         self.path = PathFunctions(profile, steps, ask_for_jerk(quantities))
-        self.node = NodeFunctions(plant, self.path, quantities, names)
-        self.outputs = sum(self.node.rows)
-        values = (self.outputs - 1) * NODES * steps
-        counts = [self.size, 3, len(names), 1, 1, 2 * plant.modes, values]
+        self.node = NodeFunctions(plant, self.path, quantities, names, self.definition)
+        self.outputs, self.own = sum(self.node.rows), self.node.rows[0]
+        values = (self.outputs - self.own) * NODES * steps
+        counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, values]
         self.inputs = [ca.MX.sym("x", rows, count) for count in counts]
-        self.a, self.move, errors, (self.width,), (self.of_energy,) = (
+        self.a, row, errors, (self.width,), (self.of_energy,) = (
             _wide(one, steps) for one in self.inputs[:5]
         )
+        self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
         self.times, self.length = node_times(steps, rows)
         self.h = self.move[2] * self.length
         self._move(with_errors(plant, dict(zip(names, errors, strict=True))), errors)
@@ -112,7 +118,7 @@ class _Differentiated:
         joints = [self.path.profile.outer(values[:3], *self.move) for values in inner]
         self.step = step(plant, joints, self.h, forced=True)
         constant, self.columns = self.step.transition()
-        W, dW, self.arrival = march(constant, self.columns, self.shape)
+        W, dW, self.arrival = march(constant, self.columns, self.shape, self.initial)
         at_nodes = _modes_at(self.step, W, dW)
         self.points = [(inner[j], at_nodes[j], self.move, errors) for j in range(NODES)]
         self.firsts = [elementwise(self.node.first, *point) for point in self.points]
@@ -162,33 +168,6 @@ class _Differentiated:
             return [ca.MX(ca.repmat(ca.horzcat(*of), self.shape[0], 1)) for of in of_all]
         entries = elementwise(path.first, self.a, [at], self.move)[0]
         return [ca.horzcat(*entries[i :: path.count]) for i in range(path.count)]
-
-    def _energy(self) -> tuple[ca.MX, list[ca.MX], list[ca.MX]]:
-        """The energy, and its first and second derivatives by the power at the nodes of a step.
-
-        Rounded off, |p| is the root of p^2 + width^2, taken at the nodes.
-        """
-        power, width = [first[0][0] for first in self.firsts], self.width
-        mean = ca.sqrt(ca.sum2(sum(p * p for p in power)) / (NODES * self.shape[1])) + _TINY
-        least = _LEAST_SLOPE * ca.repmat(mean, 1, self.shape[1]) * self.length
-        sharp, bends = elementwise(energy_derivatives(), power, [least])
-        rounded = [ca.sqrt(p * p + width * width) for p in power]
-        weighted = sum(w * r for w, r in zip(GAUSS_WEIGHTS, rounded, strict=True))
-        is_rounded = self.width > 0
-        energy = ca.if_else(
-            self.inputs[3] > 0, ca.sum2(self.h * weighted), resolved_energy(power, self.h)
-        )
-        first = [
-            self.h * ca.if_else(is_rounded, w * p / (r + _TINY), s)
-            for w, p, r, s in zip(GAUSS_WEIGHTS, power, rounded, sharp, strict=True)
-        ]
-        own = [w * width**2 / (r**3 + _TINY) for w, r in zip(GAUSS_WEIGHTS, rounded, strict=True)]
-        second = [
-            self.h * ca.if_else(is_rounded, own[i] if i == j else 0.0, bends[NODES * i + j])
-            for i in range(NODES)
-            for j in range(NODES)
-        ]
-        return energy, first, second
 
     def _of_forcing(self, weights: Sequence[Sequence[ca.MX]]) -> list[list[ca.MX]]:
         """Multipliers of what forces the modes at the nodes: the steps backwards, by casadi."""
@@ -242,22 +221,27 @@ class _Differentiated:
 
     def function(self) -> ca.Function:
         """All of it, compiled."""
-        (rows, steps), energy_parts = self.shape, self._energy()
-        energy, by_power, bends = energy_parts
+        (rows, steps), own = self.shape, [first[0][: self.own] for first in self.firsts]
+        energy, by_own, bends = energy_parts(self.definition, own, self.h, self.length, self.width)
         blocks = ca.horzsplit(self.inputs[6], steps)  # quantity by quantity, node by node
-        weights = [[self.of_energy * by_power[j], *blocks[j::NODES]] for j in range(NODES)]
+        weights = [
+            [*(self.of_energy * x for x in by_own[j]), *blocks[j::NODES]] for j in range(NODES)
+        ]
         of_forcing = self._of_forcing(weights)
-        moved = [outputs[0] for outputs in self.outputs_along]
-        along = zip(self._along(by_power), moved, strict=True)
-        gradient = [ca.sum2(x) for x in ca.horzsplit(sum(p * x for p, x in along), steps)]
+        along = sum(
+            by * x
+            for j, outputs in enumerate(self.outputs_along)
+            for by, x in zip(self._along(by_own[j]), outputs[: self.own], strict=True)
+        )
+        gradient = [ca.sum2(x) for x in ca.horzsplit(along, steps)]
         left, right = self._curvature(bends, weights, of_forcing)
         found = [
             [energy],
             [self.arrival],
-            _in_order([first[0][1:] for first in self.firsts]),
+            _in_order([first[0][self.own :] for first in self.firsts]),
             gradient,
             [self.by_arrival],
-            _in_order([outputs[1:] for outputs in self.outputs_along]),
+            _in_order([outputs[self.own :] for outputs in self.outputs_along]),
             left,
             right,
             self._of_path(weights, of_forcing),

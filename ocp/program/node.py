@@ -9,10 +9,10 @@ from collections.abc import Sequence
 
 import casadi as ca
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.collocation import end_to_end
+from quietarm.ocp.simulation.collocation import end_to_end, is_zero
 from quietarm.ocp.simulation.errors import with_errors
-from quietarm.ocp.simulation.objective import power_of
 from quietarm.ocp.task import QUANTITIES
 
 Places = list[tuple[int, int]]
@@ -81,7 +81,7 @@ class NodeFunctions:
     Attributes
     ----------
     rows : list of int
-        How many outputs the power has, and each limited quantity.
+        How many outputs the energy has, the first of them the power, and each limited quantity.
     first : Function
         (inner, modes, move, errors) -> outputs; derivatives of what forces the modes by inner; of
         the outputs by inner and modes. The modes are W, W' and W''.
@@ -93,7 +93,12 @@ class NodeFunctions:
     """
 
     def __init__(
-        self, plant: Plant, path: PathFunctions, quantities: Sequence[str], names: Sequence[str]
+        self,
+        plant: Plant,
+        path: PathFunctions,
+        quantities: Sequence[str],
+        names: Sequence[str],
+        energy: Energy,
     ) -> None:
         inner, move, errors = (ca.SX.sym("x", n) for n in (path.count, 3, len(names)))
         modes = ca.SX.sym("modes", 3 * plant.modes)
@@ -102,7 +107,8 @@ class NodeFunctions:
         wrong = with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
         forcing = ca.vertcat(*wrong.modal_accelerations(joint, W, dW))
         torque, tips = wrong.torque(joint, W, dW, ddW), wrong.tip_displacements(W)
-        values = [[power_of(torque, joint.speed)]]
+        smooth = energy.smooth(torque, joint.speed)
+        values = [[power_of(torque, joint.speed), *([] if is_zero(smooth) else [smooth])]]
         values += [list(QUANTITIES[name].of(joint, tips, torque)) for name in quantities]
         self.rows = [len(of) for of in values]
         outputs = ca.vertcat(*(one for of in values for one in of))

@@ -37,16 +37,22 @@ class Program:
         Evaluates candidates, on the assumed plant and on those with errors.
     errors : ndarray, shape (plants, ranges)
         Errors of the plants whose residual counts; the first is the assumed one.
+    row : tuple of float
+        The task's, for the assumed plant.
+    wanted : ndarray, shape (2 * modes,)
+        The state that is wanted on arrival.
     parts : list of (str, slice)
         Where the values of each limited quantity stand among all.
     """
 
     def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
         self.task, self.profile, self.steps = task, profile, steps
-        self.plant, names = task.plant.nominal, tuple(task.errors)
+        nominal, names = task.nominal, tuple(task.errors)
+        self.plant, self.row = nominal.plant, nominal.row
+        self.wanted = np.array(nominal.final_state)
         samples = [(0.0,) * len(names), *task.plant.error_samples]
         self.errors = np.array(samples, dtype=float).reshape(len(samples), len(names))
-        self.batch = batch(self.plant, profile, steps, tuple(task.limits), names)
+        self.batch = batch(self.plant, profile, steps, tuple(task.limits), names, task.energy)
         self.parts = self.batch.parts
 
     @cached_property
@@ -93,8 +99,8 @@ class Program:
 
     def peaks(self, of: Derivatives, offset: Array | None = None) -> dict[str, float]:
         """The largest residual of all plants [m], and the peaks of the limited quantities."""
-        arrival = of.arrival if offset is None else of.arrival + offset
-        left = [np.abs(r @ z).max() for r, z in zip(self.tip_rows, arrival, strict=True)]
+        missed = of.arrival - self.wanted + (0.0 if offset is None else offset)
+        left = [np.abs(r @ z).max() for r, z in zip(self.tip_rows, missed, strict=True)]
         return {RESIDUAL: float(max(left)), **{name: self.peak(of, name) for name, _ in self.parts}}
 
     def peak(self, of: Derivatives, name: str) -> float:
@@ -110,7 +116,7 @@ def evaluated(programs: Sequence[Program], coefficients: Array) -> list[Derivati
     values = one.parts[-1][1].stop if one.parts else 0
     found = one.batch.derivatives(
         np.repeat(coefficients, counts, axis=0),
-        np.repeat([program.task.move for program in programs], counts, axis=0),
+        np.repeat([program.row for program in programs], counts, axis=0),
         np.concatenate([program.errors for program in programs]),
         np.zeros(rows),
         (np.zeros(rows), np.zeros((rows, 2 * one.plant.modes)), np.zeros((rows, values))),

@@ -58,14 +58,13 @@ class Stack:
         self._value = np.concatenate(chosen)
         self._plant = np.repeat(np.arange(len(chosen)), [len(of) for of in chosen])
         self.weights = np.array([_weights(*pair) for pair in zip(programs, asks, strict=True)])
-        self._move = np.array([program.task.move for program in programs])
+        self._move = np.array([program.row for program in programs])
         self._errors = np.array([program.errors for program in programs])
         self._scale = np.array([program.scale for program in programs])
         self._energy = np.array([program.energy for program in programs])
         self._offset = np.zeros((len(asks), self.plants, one.scale.size))
-        for row, each in enumerate(asks):
-            if each.offset is not None:
-                self._offset[row] = each.offset
+        for row, (program, each) in enumerate(zip(programs, asks, strict=True)):
+            self._offset[row] = (0.0 if each.offset is None else each.offset) - program.wanted
         self._rests = self._residual_rows(programs, asks)
         self._set_bounds(programs, asks)
 

@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
+from quietarm.ocp.energy import Energy
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
@@ -86,9 +87,10 @@ class ErrorPopulation:
         joint = _joint_at(times, task, profile, coefficients)
         between = task.residual_window / (self._samples - 1)
         self._function = BufferedFunction(
-            _compiled(task.plant, length.shape[1], self.names, not breaks)
+            _compiled(task.plant, length.shape[1], self.names, not breaks, task.energy)
         )
-        self._along = joint.T.full(), length.T.full(), *task.move[1:], between
+        times = *task.move[1:], between
+        self._along = joint.T.full(), length.T.full(), *times, task.initial_state
 
     @keep_interrupts()
     def __call__(
@@ -113,8 +115,8 @@ class ErrorPopulation:
         tip_of_state = np.zeros((_BLOCK, len(tips) // (size // 2), size))
         tip_of_state[:, :, : size // 2] = tips.T.reshape(_BLOCK, -1, size // 2)
         of_window = _at_samples(
-            tip_of_state, transition.T.reshape(_BLOCK, size, size), arrival.T[:, :, None],
-            self._samples,
+            tip_of_state, transition.T.reshape(_BLOCK, size, size),
+            self._task.missed(arrival.T)[:, :, None], self._samples,
         )  # fmt: skip
         residual = np.abs(of_window).max(axis=(1, 2))
         return np.column_stack([residual, energy[0], np.abs(torque).max(axis=0)])[:count]
@@ -150,8 +152,10 @@ def _joint_at(
 
 
 @lru_cache(maxsize=16)
-def _compiled(plant: Plant, steps: int, names: tuple[str, ...], unbroken: bool) -> ca.Function:
-    """(errors, joint at nodes, length of steps, target, duration, time between samples) -> figures.
+def _compiled(
+    plant: Plant, steps: int, names: tuple[str, ...], unbroken: bool, energy: Energy
+) -> ca.Function:
+    """(errors, joint, length of steps, target, duration, time between samples, state) -> figures.
 
     A row a plant: state on arrival; the transition of the state between two samples at rest and the
     tips of the modes, both row by row; energy; torque at the nodes.
@@ -159,14 +163,16 @@ def _compiled(plant: Plant, steps: int, names: tuple[str, ...], unbroken: bool) 
     errors, joint = ca.MX.sym("e", _BLOCK, len(names)), ca.MX.sym("joint", 3 * NODES, steps)
     length = ca.MX.sym("length", 1, steps)
     target, duration, between = (ca.MX.sym(name) for name in ("target", "duration", "dt"))
+    initial = ca.MX.sym("initial", 2 * plant.modes)
     columns = dict(zip(names, ca.horzsplit(errors, 1), strict=True))
     moving = with_errors(plant, {n: ca.repmat(e, 1, steps) for n, e in columns.items()})
     resting, modes = with_errors(plant, columns), range(plant.modes)
     rows = [ca.repmat(row, _BLOCK, 1) for row in ca.vertsplit(joint)]
     joints = [JointMotion(*rows[3 * node : 3 * node + 3]) for node in range(NODES)]
     rollout = rollout_along(
-        moving, joints, duration * ca.repmat(length, _BLOCK, 1), unbroken=unbroken
-    )
+        moving, joints, duration * ca.repmat(length, _BLOCK, 1), energy, unbroken=unbroken,
+        initial=ca.vertsplit(initial),
+    )  # fmt: skip
     by_column = step(resting, [JointMotion(target, 0.0, 0.0)] * NODES, between).transition()[1]
     transition = [column[row] for row in range(2 * plant.modes) for column in by_column]
     of_mode = [resting.tip_displacements([float(i == j) for i in modes]) for j in modes]
@@ -175,7 +181,7 @@ def _compiled(plant: Plant, steps: int, names: tuple[str, ...], unbroken: bool) 
         rollout.arrival, _rows(transition), _rows(tips), rollout.energy,
         ca.horzcat(*rollout.torque),
     ]  # fmt: skip
-    inputs = [errors, joint, length, target, duration, between]
+    inputs = [errors, joint, length, target, duration, between, initial]
     return ca.Function("errors", inputs, outputs, {"cse": steps <= _STEPS_OF_CSE})
 
 

@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
+from quietarm.ocp.energy import Energy, power_of
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
 from quietarm.ocp.task import QUANTITIES, PointToPoint
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
@@ -21,15 +21,32 @@ _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
 _TINY = 1e-300
 
 
-def power_of(torque: Any, speed: Any) -> Any:
-    """The joint's mechanical power [W], of any kind: what F2 and the net work are integrals of."""
-    return torque * speed
+def spent(
+    energy: Energy,
+    torque: Sequence[Expression],
+    speed: Sequence[Expression],
+    h: Expression,
+    *,
+    unbroken: bool = True,
+) -> Expression:
+    """F2 from torque and speed at the Gauss nodes of every step, a row a candidate."""
+    nodes = list(zip(torque, speed, strict=True))
+    power, beyond = [power_of(*node) for node in nodes], list[Expression]()
+    if unbroken:  # across a break neighbours say nothing
+        beyond = [ca.horzcat(*power) @ weights for weights in beyond_quadratic(h.shape[1])]
+    smooth = integrated([energy.smooth(*node) for node in nodes], h)
+    return energy.absolute * resolved_energy(power, h, *beyond) + smooth
+
+
+def integrated(at_nodes: Sequence[Expression], h: Expression) -> Expression:
+    """The integral of a smooth quantity from its values at the Gauss nodes of every step."""
+    return ca.sum2(h * sum(w * x for w, x in zip(GAUSS_WEIGHTS, at_nodes, strict=True)))
 
 
 def resolved_energy(
     power: Sequence[Expression], h: Expression, cubic: Expression = 0.0, quartic: Expression = 0.0
 ) -> Expression:
-    """Integral of |power| with its sign changes resolved: F2 of eqs (11) and (16).
+    """Integral of |power| with its sign changes resolved.
 
     The power on a step is the quadratic through its three Gauss nodes; its integral is split at the
     quadratic's zeros. Splitting where the power keeps its sign changes nothing, so that complex
@@ -140,9 +157,10 @@ class Motion(WithPeaks):
     Attributes
     ----------
     residual : float
-        F1: largest absolute tip displacement in the residual window after arrival [m].
+        F1: largest absolute tip displacement in the residual window after arrival [m], from the
+        free vibration of the state that the task asks for; of none where that is rest.
     energy : float
-        F2: integral of |torque * speed| over the move [J].
+        F2: the task's energy, by default the integral of |torque * speed| over the move [J].
     net_work : float
         Integral of torque * speed over the move [J]: what a lossless drive would need.
     peak_torque, peak_speed, peak_acceleration : float

@@ -36,6 +36,12 @@ def vibrations(plant: Plant, angle: float) -> list[tuple[float, float]]:
     return [(float(abs(value)), float(-value.real / abs(value))) for value in oscillating]
 
 
+def slowest_swing(plant: Plant, angle: float) -> float:
+    """Period of the slowest mode at rest [s]; 1 where none swings."""
+    swings = vibrations(plant.nominal, angle)
+    return 2 * math.pi / swings[0][0] if swings else 1.0
+
+
 def _fastest(plant: Plant, angle: float) -> float:
     return float(np.abs(_eigenvalues(plant, angle)).max())
 

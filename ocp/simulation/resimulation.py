@@ -19,10 +19,11 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant
+from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
 from quietarm.ocp.simulation.cvodes import (
     Errors,
     Trajectory,
@@ -37,13 +38,7 @@ from quietarm.ocp.simulation.cvodes import (
 )
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.extremes import extremes
-from quietarm.ocp.simulation.objective import (
-    Motion,
-    WithPeaks,
-    beyond_quadratic,
-    power_of,
-    resolved_energy,
-)
+from quietarm.ocp.simulation.objective import Motion, WithPeaks, integrated, spent
 from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
 from quietarm.ocp.simulation.residual import fastest_mode, residual_samples
 from quietarm.ocp.task import PointToPoint
@@ -101,7 +96,7 @@ def sample_trajectory(
     fractions, at = np.unique(np.append(moving / task.duration, [0.0, 1.0]), return_inverse=True)
     with cvodes_for(joint.remedy):
         states, outputs = _along(task.plant, joint.law, joint.given.shape, fractions)(
-            joint.given, ca.DM(0, 1)
+            joint.given, ca.DM(0, 1), task.initial_state
         )
         rows = outputs.full()[:, at[:-2]]
     if later.size:
@@ -220,10 +215,10 @@ def resimulated(task: PointToPoint, joint: PiecewiseMotion, errors: Errors = ())
     steps = max(of_a_piece, _LEAST_STEPS_OF_A_PIECE)
     with cvodes_for(joint.remedy):
         names = tuple(name for name, _ in errors)
-        figures = _figures(task.plant, joint.law, joint.given.shape, steps, names)
+        figures = _figures(task.plant, joint.law, joint.given.shape, steps, names, task.energy)
         wrong = [[error for _, error in errors]]
         outputs, arrival, energy, net_work = (
-            value.T.copy() for value in figures(joint.given.T, wrong)
+            value.T.copy() for value in figures(joint.given.T, wrong, [task.initial_state])
         )
     arrived = arrival[:, 0]
     residual = residual_of(task, arrived, errors)
@@ -240,22 +235,28 @@ def _fractions(steps: int) -> NDArray[np.float64]:
 @lru_cache(maxsize=32)
 @keep_interrupts()
 def _figures(
-    plant: Plant, law: Law, shape: tuple[int, int], steps: int, names: tuple[str, ...]
+    plant: Plant,
+    law: Law,
+    shape: tuple[int, int],
+    steps: int,
+    names: tuple[str, ...],
+    definition: Energy,
 ) -> BufferedFunction:
-    """(given, errors) -> outputs at nodes and ends of all pieces, arrival, energy, net work."""
+    """(given, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
     given, fractions = ca.MX.sym("p", *shape), _fractions(steps)
-    errors = ca.MX.sym("e", len(names))
-    states, outputs = _along(plant, law, shape, fractions, names)(given, errors)
+    errors, initial = ca.MX.sym("e", len(names)), ca.MX.sym("x", 2 * plant.modes)
+    states, outputs = _along(plant, law, shape, fractions, names)(given, errors, initial)
     rows = ca.vertsplit(outputs)
-    power = ca.reshape(power_of(rows[-1], rows[1]), len(fractions), shape[1])[1:-1, :]
+    torque, speed = (
+        [samples[1 + node : -1 : NODES, :].T for node in range(NODES)]
+        for samples in (ca.reshape(row, -1, shape[1]) for row in (rows[-1], rows[1]))
+    )
     h = given[-1, :].T @ mesh(ca.DM(np.arange(steps)).T, steps)[1]
-    at_nodes = [power[node::NODES, :].T for node in range(NODES)]
-    beyond = (ca.horzcat(*at_nodes) @ weights for weights in beyond_quadratic(steps))
-    energy = ca.sum1(resolved_energy(at_nodes, h, *beyond))
-    net_work = h * sum(w * p for w, p in zip(GAUSS_WEIGHTS, at_nodes, strict=True))
-    figures = [outputs, states[:, -1], energy, ca.sum1(ca.sum2(net_work))]
+    power = [power_of(*node) for node in zip(torque, speed, strict=True)]
+    energy, net_work = spent(definition, torque, speed, h), integrated(power, h)
+    figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]
     dense = [ca.densify(figure) for figure in figures]  # a plant's output may be zero throughout
-    return BufferedFunction(ca.Function("figures", [given, errors], dense))
+    return BufferedFunction(ca.Function("figures", [given, errors, initial], dense))
 
 
 def _along(
@@ -265,18 +266,20 @@ def _along(
     fractions: NDArray[np.float64],
     names: tuple[str, ...] = (),
 ) -> ca.Function:
-    """(given, errors) -> states and outputs at these fractions of every piece, from 0 on."""
-    (numbers, pieces), size, count = shape, 2 * plant.modes, len(fractions)
+    """(given, errors, state before) -> states and outputs at these fractions of every piece."""
+    (numbers, pieces), count = shape, len(fractions)
     integrate = _over_a_piece(plant, law, numbers, fractions, names)
     given, errors = ca.MX.sym("p", numbers, pieces), ca.MX.sym("e", len(names))
+    initial = ca.MX.sym("x", 2 * plant.modes)
     with_each = ca.vertcat(given, ca.repmat(errors, 1, pieces))
-    _, states = integrate.mapaccum(pieces)(ca.DM.zeros(size), with_each)
+    _, states = integrate.mapaccum(pieces)(initial, with_each)
     at_samples = [
         row if pieces == 1 else ca.vec(ca.repmat(row, count, 1)).T for row in ca.vertsplit(given)
     ]
     joint = law(at_samples, ca.DM(np.tile(fractions, pieces)).T, jerk=True)
     wrong = _wrong(plant, names, errors)
-    return ca.Function("along", [given, errors], [states, outputs_of(wrong, joint, states)])
+    outputs = outputs_of(wrong, joint, states)
+    return ca.Function("along", [given, errors, initial], [states, outputs])
 
 
 def _wrong(plant: Plant, names: tuple[str, ...], errors: ca.SX | ca.MX) -> Plant:

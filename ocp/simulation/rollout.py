@@ -13,18 +13,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.checks import whole
+from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
-    GAUSS_WEIGHTS,
     NodeState,
     end_to_end,
     is_zero,
     mesh,
     step,
 )
-from quietarm.ocp.simulation.objective import Motion, beyond_quadratic, power_of, resolved_energy
+from quietarm.ocp.simulation.objective import Motion, integrated, spent
 from quietarm.ocp.simulation.residual import fastest_mode, residual_matrix
 from quietarm.ocp.task import PointToPoint
 
@@ -54,6 +54,8 @@ class SymbolicRollout:
         Length of every step [s].
     unbroken : bool
         Whether the steps are those of `mesh` from start to end, without breaks between them.
+    definition : Energy
+        What counts as the energy.
     """
 
     joints: list[JointMotion]
@@ -62,6 +64,7 @@ class SymbolicRollout:
     arrival: Expression
     h: Expression
     unbroken: bool = True
+    definition: Energy = ABSOLUTE_POWER
 
     @property
     def power(self) -> list[Expression]:
@@ -71,13 +74,9 @@ class SymbolicRollout:
 
     @property
     def energy(self) -> Expression:
-        """F2 of eq (11) [J], one row a candidate."""
-        power = self.power
-        if not self.unbroken:  # across a break neighbours say nothing
-            return resolved_energy(power, self.h)
-        at_nodes = ca.horzcat(*power)
-        cubic, quartic = (at_nodes @ weights for weights in beyond_quadratic(power[0].shape[1]))
-        return resolved_energy(power, self.h, cubic, quartic)
+        """F2 [J], one row a candidate."""
+        speed = [joint.speed for joint in self.joints]
+        return spent(self.definition, self.torque, speed, self.h, unbroken=self.unbroken)
 
 
 @one_at_a_time
@@ -90,8 +89,10 @@ def symbolic_rollout(
     candidates: int = 1,
     jerk: bool = False,
     breaks: tuple[float, ...] = (),
+    initial: Sequence[Expression] = (),
+    energy: Energy = ABSOLUTE_POWER,
 ) -> SymbolicRollout:
-    """Simulate the modes from rest along the profile, with a fixed number of steps.
+    """Simulate the modes along the profile, with a fixed number of steps.
 
     Parameters
     ----------
@@ -111,6 +112,11 @@ def symbolic_rollout(
         Whether the joint's jerk is computed as well, at the times of `end_to_end`.
     breaks : tuple of float
         Fractions of the duration at which the motion is not smooth: there a step ends.
+    initial : sequence of Expression
+        W [m], then W' [m/s] at the start, each of shape (candidates, 1) or a scalar; at rest by
+        default.
+    energy : Energy
+        What counts as the energy.
 
     Returns
     -------
@@ -125,7 +131,8 @@ def symbolic_rollout(
         joints = [
             joint._replace(jerk=there.jerk) for joint, there in zip(joints, of_jerk, strict=True)
         ]
-    return rollout_along(plant, joints, move[2] * length, unbroken=not breaks)
+    h = move[2] * length
+    return rollout_along(plant, joints, h, energy, unbroken=not breaks, initial=initial)
 
 
 def node_times(
@@ -147,26 +154,33 @@ def node_times(
 
 
 def rollout_along(
-    plant: Plant, joints: list[JointMotion], h: Expression, *, unbroken: bool
+    plant: Plant,
+    joints: list[JointMotion],
+    h: Expression,
+    energy: Energy,
+    *,
+    unbroken: bool,
+    initial: Sequence[Expression] = (),
 ) -> SymbolicRollout:
-    """Simulate the modes from rest along joint motions that are known at the nodes."""
+    """Simulate the modes along joint motions that are known at the nodes."""
     every_step = step(plant, joints, h)
-    W, dW, arrival = march(*every_step.transition(), h.shape)
+    W, dW, arrival = march(*every_step.transition(), h.shape, initial)
     ddW = every_step.accelerations(W, dW)
     states = every_step.nodes(W, dW, ddW)
     torque = [
         plant.torque(joint, node.W, node.dW, node.ddW)
         for joint, node in zip(joints, states, strict=True)
     ]
-    return SymbolicRollout(joints, states, torque, arrival, h, unbroken)
+    return SymbolicRollout(joints, states, torque, arrival, h, unbroken, energy)
 
 
 def march(
     constant: Sequence[Expression],
     columns: Sequence[Sequence[Expression]],
     shape: tuple[int, int],
+    initial: Sequence[Expression] = (),
 ) -> tuple[list[Expression], list[Expression], Expression]:
-    """States before every step (rows, steps), by mode, and the state at arrival.
+    """States before every step (rows, steps), by mode, and the state at arrival; from rest or else.
 
     Only this recursion is sequential: everything else is computed for all steps at once.
     """
@@ -178,7 +192,7 @@ def march(
          if not is_zero(column[row])}
         for row in range(size)
     ]  # fmt: skip
-    state: list[Expression] = [ca.DM.zeros(rows, 1)] * size
+    state: list[Expression] = [ca.DM.zeros(rows, 1) + x for x in initial or [0.0] * size]
     before: list[list[Expression]] = [[] for _ in range(size)]
     for k in range(steps):
         for row in range(size):
@@ -210,29 +224,30 @@ def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
 
 @lru_cache(maxsize=32)
 def _compiled(
-    plant: Plant, profile: JointProfile, steps: int, breaks: tuple[float, ...]
+    plant: Plant, profile: JointProfile, steps: int, breaks: tuple[float, ...], energy: Energy
 ) -> ca.Function:
-    """(coefficients, move) -> samples at the nodes in order of time, arrival, energy, net work."""
-    a, move = ca.MX.sym("a", profile.size), ca.MX.sym("move", 3)
+    """(coefficients, row) -> samples at the nodes in order of time, arrival, energy, net work."""
+    a, row = ca.MX.sym("a", profile.size), ca.MX.sym("row", 3 + 2 * plant.modes)
+    *move, initial = ca.vertsplit(row, [0, 1, 2, 3, row.numel()])
     found = symbolic_rollout(
-        plant, profile, ca.vertsplit(a), ca.vertsplit(move), steps, jerk=True, breaks=breaks
-    )
+        plant, profile, ca.vertsplit(a), move, steps, jerk=True, breaks=breaks,
+        initial=ca.vertsplit(initial), energy=energy,
+    )  # fmt: skip
 
     def in_time(*rows: Sequence[Expression]) -> Expression:
         """A column for each quantity, from its values at the nodes of every step."""
         return ca.horzcat(*(ca.vec(ca.vertcat(*at_nodes)) for at_nodes in rows))
 
     tips = [plant.tip_displacements(node.W) for node in found.states]
-    net_work = sum(w * p for w, p in zip(GAUSS_WEIGHTS, found.power, strict=True))
     outputs = [
         in_time(*zip(*found.joints, strict=True)),
         in_time(*zip(*tips, strict=True)),
         in_time(found.torque),
         found.arrival,
         found.energy,
-        ca.sum2(found.h * net_work),
+        integrated(found.power, found.h),
     ]
-    return ca.Function("rollout", [a, move], outputs)
+    return ca.Function("rollout", [a, row], outputs)
 
 
 @dataclass(frozen=True)
@@ -283,15 +298,16 @@ def rollout(
         When the coefficients or the duration do not fit the profile.
     """
     steps = default_steps(task) if steps is None else whole("steps", steps, 1)
-    function = _compiled(task.plant, profile, steps, profile.breaks(task.duration))
-    values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.move))
+    breaks = profile.breaks(task.duration)
+    function = _compiled(task.plant, profile, steps, breaks, task.energy)
+    values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.row))
     joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
     motion = Motion.from_samples(
         task,
         JointMotion(*joint.T),
         tips,
         torque.ravel(),
-        residual=float(np.abs(residual_matrix(task) @ arrival.ravel()).max()),
+        residual=float(np.abs(residual_matrix(task) @ task.missed(arrival.ravel())).max()),
         energy=energy.item(),
         net_work=net_work.item(),
     )

@@ -5,7 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from typing import TypeVar
+from dataclasses import fields
+from functools import reduce
+from operator import add
+from typing import Any, TypeVar
+
+from quietarm.ocp import ModalState
+from quietarm.ocp.checks import finite, unknown
+from quietarm.ocp.energy import Energy, Mix, known_energies
 
 T = TypeVar("T")
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
@@ -14,6 +21,7 @@ _PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%]*)")
 _LENGTHS = {"": 1.0, "m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
 _TIMES = {"": 1.0, "s": 1.0, "ms": 1e3}
 _ANGLES = {"": 1.0, "rad": 1.0, "deg": 180 / math.pi}
+_PLUS = re.compile(r"(?<!\d[eE])\+")
 _MOST_WHOLE = 1e15
 # Units a metre, second or radian: dividing by 1000 is exact where multiplying by 0.001 is not.
 
@@ -70,6 +78,21 @@ def parse_time(text: str) -> float:
     return _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")
 
 
+def parse_state(text: str) -> ModalState:
+    """Read what rings, amplitudes W and rates W': ``5mm:-0.3`` or, of two modes, ``0,0:1,0``."""
+    try:
+        W, dW = (
+            [parse_length(one.removesuffix("/s")) for one in of.split(",")]
+            for of in text.split(":")
+        )
+    except ValueError:
+        raise ValueError(
+            f"{text!r} is no state; give W [m] of each mode, a colon, and W' [m/s] of each, as "
+            "5mm:-0.3 or 0,0:0.1,0"
+        ) from None
+    return ModalState(tuple(W), tuple(dW))
+
+
 def parse_share(text: str) -> float:
     """Read a share: ``10%`` or 0.1. ValueError when it is none."""
     return _with_unit(text, {"": 1.0, "%": 100.0}, "a share", "10% or 0.1")
@@ -114,6 +137,27 @@ def parse_weights(text: str) -> tuple[float, float]:
             f"{text!r} is no pair of weights; give those of residual and energy as in 1:3"
         ) from None
     return of_residual, of_energy
+
+
+def parse_energy(text: str) -> Energy:
+    """Read an energy or a sum of some: ``0.5*absolute+copper:0.12``. ValueError when it is none."""
+    return reduce(add, map(_part_of_energy, _PLUS.split(text)))
+
+
+def _part_of_energy(text: str) -> Energy:
+    weight, times, form = text.rpartition("*")
+    name, colon, numbers = (part.strip() for part in form.partition(":"))
+    known: dict[str, Any] = dict(known_energies())
+    del known[Mix.name]
+    if name not in known:
+        raise ValueError(unknown("energy", name, known))
+    wanted = [entry.name for entry in fields(known[name])]
+    given = numbers.split(",") if colon else []
+    if len(given) != len(wanted):
+        form = f"{name}:{','.join(wanted)}" if wanted else name
+        raise ValueError(f"{text!r} has {len(given)} numbers of {len(wanted)}; give {form}")
+    energy = known[name](*map(finite, wanted, given))
+    return finite("weight", weight) * energy if times else energy
 
 
 def _with_unit(text: str, units: dict[str, float], kind: str, examples: str) -> float:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+from quietarm.models import Plant
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, typed
@@ -15,21 +16,25 @@ from quietarm.studies.cli.plants import chosen_plant, uncertain
 from quietarm.studies.cli.quantities import parse_rate, parse_time
 from quietarm.studies.cli.types import (
     ANGLE,
+    ENERGY,
     ERROR,
     INPUT,
     LENGTH,
+    MODES,
     PLANT,
     PLANT_FILE,
     SETTING,
     TIME,
     Parsed,
 )
+from quietarm.studies.display.words import plant_words
 
 F = TypeVar("F", bound=Callable[..., Any])
 _OF_A_MOVE = (
-    "start", "target", "duration", "residual_window",
+    "start", "target", "duration", "residual_window", "initial", "final", "energy",
     *(quantity.limit for quantity in QUANTITIES.values()),
 )  # fmt: skip
+_EARLIER = ("after", "wait")
 
 
 def _limit_option(quantity: Quantity) -> Callable[[F], F]:
@@ -60,12 +65,17 @@ FASTEST = "fastest"
 _BEGIN = 1.0
 """Duration [s] at which the shortest is begun to be looked for."""
 _TIME_OR_FASTEST = Parsed("time", lambda text: text if text == FASTEST else parse_time(text))
+BEST = "best"
+"""In the place of a wait: the one of least energy."""
+_TIME_OR_BEST = Parsed("time", lambda text: text if text == BEST else parse_time(text))
 
 
 def _task_options(required: bool, fastest: bool = False) -> Callable[[F], F]:
     time, words = TIME, "Travelling time."
+    wait, until = TIME, "Time from that plan's arrival to this start"
     if fastest:
         time, words = _TIME_OR_FASTEST, "Travelling time, or `fastest`: the least in the limits."
+        wait, until = _TIME_OR_BEST, f"{until}, or `best`: of least energy, up to a period"
     return options(
         click.argument("plant", type=PLANT, required=False, metavar="PLANT"),
         plant_file_option(),
@@ -78,6 +88,19 @@ def _task_options(required: bool, fastest: bool = False) -> Callable[[F], F]:
         *map(_limit_option, QUANTITIES.values()),
         click.option("--residual-window", type=TIME, default=1.0, show_default=True,
                      help="Time after arrival in which the residual is measured."),
+        click.option("--after", type=INPUT,
+                     help="Begin where an earlier plan, of this file, has ended, and with what it "
+                     "left ringing."),
+        click.option("--wait", type=wait, help=f"{until}.  [default: 0]"),
+        click.option("--initial", type=MODES,
+                     help="What rings at the start, modal amplitudes W [m] and rates W' [m/s]: "
+                     "5mm:-0.3, or of two modes 5mm,0:0,0.1."),
+        click.option("--final", type=MODES,
+                     help="What shall ring on arrival, likewise; at rest by default."),
+        click.option("--energy", type=ENERGY, default="absolute", show_default=True,
+                     help="What counts as energy: absolute or positive power, the copper loss by "
+                     "the motor constant [N m/W^0.5] as copper:0.12, a sum as 0.5*absolute+"
+                     "copper:0.12, or one of your own in --plant-file."),
     )  # fmt: skip
 
 
@@ -92,14 +115,21 @@ def task_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def task_or_fastest_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The same where the duration may be looked for: the command gets `fastest` as well."""
+    """The same where duration or wait may be looked for: the command gets `fastest` as well.
+
+    And as `best_after` the file of the plan after which the best wait is looked for, or None.
+    """
 
     @wraps(command)
     def with_task(*positional: Any, **named: Any) -> Any:
-        fastest = named["duration"] == FASTEST
+        fastest, best = named["duration"] == FASTEST, named["wait"] == BEST
+        after = named["after"] if best else None
         if fastest:
             named["duration"] = _BEGIN
-        return command(*positional, task=_task_of(named), fastest=fastest, **named)
+        if best:
+            named["wait"] = 0.0
+        task = _task_of(named)
+        return command(*positional, task=task, fastest=fastest, best_after=after, **named)
 
     return _task_options(required=True, fastest=True)(with_task)
 
@@ -117,6 +147,8 @@ def task_or_path_options(command: Callable[..., Any]) -> Callable[..., Any]:
         for name in ("start", "target", "duration"):
             if typed(name):
                 raise click.UsageError(f"--{name} is in the file of --path; leave it out")
+        if typed("after"):
+            raise click.UsageError("--after is not for a --path; give what rings as --initial")
         from quietarm.studies.reading.path import read_path
 
         recorded = read_path(path)
@@ -151,11 +183,33 @@ def own_task_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def _task_of(named: dict[str, Any]) -> PointToPoint:
     kind, own, parameters = (named.pop(name) for name in ("plant", "plant_file", "parameters"))
     plant = uncertain(chosen_plant(kind, own, parameters), named.pop("robust", ()))
+    after, wait = (named.pop(name) for name in _EARLIER)
+    if after is not None:
+        named |= _left_by(after, wait or 0.0, plant)
+    elif wait is not None:
+        raise ValueError("--wait is for --after: give the earlier plan, too, or leave it out")
     return PointToPoint(plant, **{name: named.pop(name) for name in _OF_A_MOVE})
 
 
+def _left_by(file: Path, wait: float, plant: Plant) -> dict[str, Any]:
+    """Where an earlier plan of the same plant has ended, and what rings there a while [s] later."""
+    for name in ("start", "initial"):
+        if typed(name):
+            raise ValueError(f"--{name} follows from the plan of --after; leave it out")
+    from quietarm.studies.reading.saved import load_plans
+
+    (earlier,) = load_plans([file]).values()
+    its_plant = earlier.task.plant.nominal
+    if its_plant != plant.nominal:
+        raise ValueError(
+            f"{file} moves {plant_words(its_plant)}, not {plant_words(plant.nominal)}; give its "
+            "plant and parameters"
+        )
+    return {"start": earlier.task.target, "initial": earlier.state_after(wait)}
+
+
 def _no_task(named: dict[str, Any]) -> None:
-    for name in ("plant", "plant_file", "parameters", *_OF_A_MOVE):
+    for name in ("plant", "plant_file", "parameters", *_OF_A_MOVE, *_EARLIER):
         if typed(name):
             option = "set" if name == "parameters" else name.replace("_", "-")
             raise click.UsageError(f"--{option} is for a task of your own: give its plant as well")

@@ -15,9 +15,11 @@ from quietarm.ocp.files import check_folder, check_writable
 from quietarm.studies.cli.plants import parse_error, parse_plant, parse_setting
 from quietarm.studies.cli.quantities import (
     parse_coefficients,
+    parse_energy,
     parse_joint_angle,
     parse_length,
     parse_share,
+    parse_state,
     parse_time,
     parse_weights,
     parse_whole,
@@ -115,10 +117,12 @@ METHOD_SETTING = Parsed(
     "name=value", partial(parse_setting, what="a setting", example="mutation=1")
 )
 ERROR = Parsed("name=share", parse_error)
+ENERGY = Parsed("energy", parse_energy)
 ANGLE = Parsed("angle", parse_joint_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
 SHARE = Parsed("share", parse_share)
+MODES = Parsed("W:W'", parse_state)
 WHOLE = Parsed("integer", parse_whole)
 COEFFICIENTS = Parsed("numbers", parse_coefficients)
 WEIGHTS = Parsed("weights", parse_weights)

@@ -39,7 +39,7 @@ def summary(comparison: Comparison) -> Table:
     rows: list[list[Cell]] = []
     for group in comparison.groups:
         energies = [group.spread("energies", i).median for i in range(len(comparison.levels))]
-        stated = [one if isfinite(one) else "not reached" for one in energies]
+        stated = [_reached(one) for one in energies]
         seconds = group.spread("front.seconds").median
         cells: list[Cell] = [group.label, len(group.runs), *stated, seconds]
         rows.append([column.text(cell) for column, cell in zip(columns, cells, strict=True)])
@@ -72,7 +72,7 @@ def _fronts(comparison: Comparison) -> Table:
         ("method", "", [group.label for group in groups]),
         ("bound on coefficients", "{:g}", ["none" if b is None else b for b in bounds]),
         ("coefficients", "", [front.profile.size for front in fronts]),
-        ("seeds", "", [len(group.runs) if len(group.runs) > 1 else None for group in groups]),
+        ("seeds", "", [len(group.runs) for group in groups]),
         ("points", _COUNT, [spread.median for spread in points]),
         *spreads("hypervolume (more is better)", _SHARE, "hypervolume"),
         *([("  as found", _SHARE, as_found)] if comparison.fill else []),
@@ -93,7 +93,7 @@ def _energies(comparison: Comparison) -> Table:
         energies = [group.spread("energies", i) for group in groups]
         (heading, form, _), *quartiles = _quartiles(f"energy {where} [J]", _ENERGY, energies)
         medians = [spread.median for spread in energies]
-        stated: list[Cell] = [one if isfinite(one) else "not reached" for one in medians]
+        stated = [_reached(one) for one in medians]
         gaps = [100 * group.spread("gaps", i).median for group in groups]
         between = [
             100 * group.spread("gaps_between", i).median
@@ -114,13 +114,19 @@ def _energies(comparison: Comparison) -> Table:
 
 def _quartiles(heading: str, form: str, spreads: Sequence[Spread]) -> list[Line]:
     """The median, and the quartiles where there are several seeds."""
-    lower = [spread.lower if spread.count > 1 else None for spread in spreads]
-    upper = [spread.upper if spread.count > 1 else None for spread in spreads]
+    lower, upper = (
+        [_reached(getattr(spread, side)) if spread.count > 1 else None for spread in spreads]
+        for side in ("lower", "upper")
+    )
     return [
         (heading, form, [spread.median for spread in spreads]),
         ("  lower quartile of the seeds", form, lower),
         ("  upper quartile", form, upper),
     ]
+
+
+def _reached(energy: float) -> Cell:
+    return energy if isfinite(energy) else "not reached"
 
 
 def _coverage(comparison: Comparison) -> Table:

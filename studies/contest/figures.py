@@ -66,7 +66,7 @@ def _line(field: Field, looks: dict[str, Look]) -> dict[str, Any]:
 
 
 def attainment_figure(arena: Arena, looks: dict[str, Look]) -> Figure:
-    """Median attainment surfaces over each other, and the best method's less each other's."""
+    """Median attainment surfaces over each other, and the nearest method's less each other's."""
     best = arena.best
     others = sorted((one for one in arena.fields if one is not best), key=lambda one: one.middle)
     panels = 1 + len(others)

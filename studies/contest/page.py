@@ -60,7 +60,7 @@ _ANYTIME = (
 )
 _ATTAINMENT = (
     "What half of the runs of each method attain, with the exact front in black; and where more "
-    "runs of the best method (blue) or of another (red) attain residual and energy."
+    "runs of the method that ends nearest (blue) or of another (red) attain residual and energy."
 )
 _RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell apart."
 
@@ -76,7 +76,7 @@ def contest_document(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> Docu
         rankings = [*map(ranking_on, arenas), over]
         tables["pairs"] = pairs_table([pair for arena in arenas for pair in pairs_on(arena)])
         tables["ranks"] = ranks_table([found for found in rankings if found])
-    references = bibtex(methods, statistics=not why_none(arenas)).splitlines()
+    references = bibtex(arenas).splitlines()
     how = [
         Text(methods_paragraph(arenas)),
         Bullets(settings_lines(arenas)),
@@ -128,7 +128,7 @@ def _ranks(found: Ranking) -> Picture:
 def report_files(arenas: Sequence[Arena], folder: Path, notes: Sequence[str] = ()) -> list[File]:
     """The page, every table as CSV, every picture as PNG and PDF; and what writes each."""
     document = contest_document(arenas, notes)
-    references = bibtex(methods_in(arenas), statistics=not why_none(arenas))
+    references = bibtex(arenas)
     tables = {f"{name}.csv": table.save_csv for name, table in document.data.items()}
     pictures = {
         picture.name.replace(".png", suffix): drawing(picture.draw)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from importlib.metadata import version
 from importlib.resources import files
+from importlib.util import find_spec
 
 import numpy as np
 from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
@@ -11,31 +13,31 @@ from quietarm.studies.comparison.staircase import objectives
 from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, Field, methods_in
 from quietarm.studies.contest.names import is_own, label_of, method_in
-from quietarm.studies.contest.statistics import ALPHA, Ranking, nearest, why_none
+from quietarm.studies.contest.statistics import (
+    ALPHA,
+    Ranking,
+    nearest,
+    ranking_on,
+    ranking_over,
+    why_none,
+)
 from quietarm.studies.contest.tables import evaluations_words
 from quietarm.studies.display.words import counted, versions_of
 from quietarm.studies.document.prose import told
 
 _ALWAYS = ("casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment")
-_STATISTICS = (
-    "scipy",
-    "kruskalwallis",
-    "friedman",
-    "demsar",
-    "mannwhitney",
-    "holm",
-    "varghadelaney",
-)
+_OF_PAIRS = ("scipy", "mannwhitney", "holm", "varghadelaney")
 
 
-def bibtex(methods: Iterable[str], *, statistics: bool) -> str:
+def bibtex(arenas: Sequence[Arena]) -> str:
     """References to the methods, the software and the statistics of a contest."""
     from quietarm.metaheuristics import PRESETS
 
-    entries, methods = _entries(), list(methods)
+    entries, methods, tested = _entries(), methods_in(arenas), _tests(arenas)
     searches = dict.fromkeys(parts_of(method_in(method))[0] for method in methods if is_own(method))
     elsewhere = [method for method in methods if not is_own(method)]
-    keys = [*_ALWAYS, *(_STATISTICS if statistics else ())]
+    keys = [*_ALWAYS, *(_OF_PAIRS if tested["pairs"] else ())]
+    keys += ["kruskalwallis"] * tested["within"] + ["friedman", "demsar"] * tested["over"]
     unknown = [one for one in searches if one not in entries and one != MULTISTART]
     keys += [one for one in searches if one in entries]
     comments = [f"% {one}: see {PRESETS[one].source}" for one in unknown]
@@ -67,12 +69,13 @@ def _headline(arena: Arena) -> str:
     missing = _missing_words(arena.best, "its")
     if why_none([arena]):
         return f"{arena.best.label} ends nearest to the exact front, untested, with {missing}"
-    best, *alike = (field.label for field in nearest(arena))
+    best, *alike = nearest(arena)
     if not alike:
-        return f"{best} ends nearest to the exact front, with {missing}"
+        return f"{best.label} ends nearest to the exact front, with {missing}"
+    stated = ", ".join(f"{one.label} ({100 * one.middle:.3g} %)" for one in (best, *alike))
     return (
-        f"the tests name no winner among {', '.join([best, *alike])}; {best} ends nearest to the "
-        f"exact front, with {missing}"
+        "the tests name no winner among those that end nearest to the exact front, here with the "
+        f"hypervolume missing in their middle runs: {stated}"
     )
 
 
@@ -157,11 +160,27 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
         budgets=" or ".join(map(str, sorted({run.evaluations or 0 for run in runs}))),
         gradient=any(helped is not Help.NONE or search == MULTISTART for search, helped in parts),
         helps={helped.value for _, helped in parts},
-        tests="" if why_none(arenas) else f"{100 * ALPHA:g}",
+        alpha=f"{100 * ALPHA:g}",
+        tested=_tests(arenas),
         imports=", ".join(imports),
-        versions=", ".join(versions_of(run.front for run in runs)),
+        versions=", ".join(
+            [
+                *versions_of(run.front for run in runs),
+                *(f"{name} {version(name)}" for name in ("moocore", "scipy") if find_spec(name)),
+            ]
+        ),
     )
     return paragraph
+
+
+def _tests(arenas: Sequence[Arena]) -> dict[str, bool]:
+    """Which tests were held: of pairs, of all methods on a problem, over the problems."""
+    held = not why_none(arenas)
+    return {
+        "pairs": held,
+        "within": held and any(ranking_on(arena) for arena in arenas),
+        "over": held and ranking_over(arenas) is not None,
+    }
 
 
 def settings_lines(arenas: Sequence[Arena]) -> list[str]:

@@ -7,7 +7,8 @@ from dataclasses import fields
 from math import degrees
 
 from quietarm.models import Plant
-from quietarm.ocp import Front, PointToPoint
+from quietarm.ocp import Front, ModalState, PointToPoint
+from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.task import QUANTITIES
 from rich.console import Console
 
@@ -55,8 +56,22 @@ def error_words(plant: Plant) -> str:
 
 
 def move_of(task: PointToPoint) -> str:
-    """The move of a task: "0 to 30 deg in 0.8 s"."""
-    return f"{degrees(task.start):.6g} to {degrees(task.target):.6g} deg in {task.duration:g} s"
+    """The move of a task: "0 to 30 deg in 0.8 s"; its energy where that is not the paper's."""
+    ringing = ", ringing at the start" if task.initial else ""
+    wanted = ", to a state other than rest" if task.final else ""
+    angles = f"{degrees(task.start):.6g} to {degrees(task.target):.6g} deg"
+    return ", ".join([f"{angles} in {task.duration:g} s{ringing}{wanted}", *energy_words(task)])
+
+
+def state_words(state: ModalState) -> str:
+    """What rings, in millimetres: "W 5 mm, W' -300 mm/s"."""
+    W, dW = (" and ".join(f"{1e3 * one:.3g}" for one in of) for of in (state.W, state.dW))
+    return f"W {W} mm, W' {dW} mm/s"
+
+
+def energy_words(task: PointToPoint) -> list[str]:
+    """What counts as energy, as "energy copper:0.12"; nothing where that is the paper's."""
+    return [] if task.energy == ABSOLUTE_POWER else [f"energy {task.energy.label}"]
 
 
 def title_of(task: PointToPoint) -> str:

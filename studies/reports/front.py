@@ -16,7 +16,7 @@ from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness.worst import worst_of
-from quietarm.studies.display.words import counted, millimetres, residual_words
+from quietarm.studies.display.words import counted, energy_words, millimetres, residual_words
 from quietarm.studies.document.blocks import Document, Lines
 from quietarm.studies.reports.plan import worst_in_words
 
@@ -26,6 +26,7 @@ _SOLVERS = {"sqp": "sequential quadratic programs", "ipopt": "IPOPT"}
 def sweep_document(front: Front, asked_for: int, check: CrossCheck | None = None) -> Document:
     """A front by the gradient, of which so many points were asked for."""
     lines = [
+        *energy_words(front.task),
         f"{front.method}: {counted(len(front.points), 'point')}, "
         f"{counted(front.iterations, 'iteration')} of the solver "
         f"in {front.seconds:.1f} s{_state(front)}",
@@ -45,7 +46,7 @@ def sweep_document(front: Front, asked_for: int, check: CrossCheck | None = None
 
 def searches_document(fronts: Sequence[Front], notes: Sequence[str] = ()) -> Document:
     """Fronts of searches, and the spread of those that are complete."""
-    lines: list[str] = []
+    lines = energy_words(fronts[0].task)
     for front in fronts:
         seed = "" if front.seed is None else f", seed {front.seed}"
         lines += [
@@ -58,7 +59,8 @@ def searches_document(fronts: Sequence[Front], notes: Sequence[str] = ()) -> Doc
     if len(complete) > 1:
         energies, level = energies_at(complete), millimetres(SEARCH_RESIDUAL)
         lines += [
-            f"hypervolume: {_quartiles(hypervolumes(complete), '.4f')}",
+            f"hypervolume: {_quartiles(hypervolumes(complete), '.4f')} of the box up to "
+            f"{millimetres(complete[0].reference[0])} and {complete[0].reference[1]:.3g} J",
             f"energy at {level}: {_quartiles(energies, '.4g', ' J')}; "
             f"{energies.count} of {energies.seeds} seeds reach {level}",
         ]

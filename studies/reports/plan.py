@@ -9,7 +9,7 @@ from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCy
 from quietarm.ocp.plan.robust import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.display.words import REST, millimetres, move_of, plant_words
+from quietarm.studies.display.words import REST, millimetres, move_of, plant_words, state_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
 from quietarm.studies.document.table import Column, Table
 
@@ -107,6 +107,8 @@ def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     )
     return [
         ("move", f"{plant_words(task.plant)}, {move_of(task)}"),
+        *([("at the start", state_words(task.initial))] if task.initial else []),
+        *([("wanted", f"{state_words(task.final)} on arrival")] if task.final else []),
         *([("limits", limits)] if limits else []),
     ]
 
@@ -117,16 +119,17 @@ def figure_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     return [
         (
             "residual (F1)",
-            f"{_left(motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
+            f"{_left(task, motion.residual)} at the {_tip(task)} within {task.residual_window:g} s",
         ),
         *((f"peak {name}", _peak(name, task, motion)) for name in known),
         ("overshoot", f"{motion.overshoot:.3g} rad" if motion.overshoot > _ROUNDING else "none"),
     ]
 
 
-def _left(residual: float) -> str:
+def _left(task: PointToPoint, residual: float) -> str:
     """What is left after arrival; below a thousandth of a millimetre nobody sees a difference."""
-    return f"at rest (below {millimetres(REST)})" if residual < REST else millimetres(residual)
+    still = "as wanted" if task.final else "at rest"
+    return f"{still} (below {millimetres(REST)})" if residual < REST else millimetres(residual)
 
 
 def _peak(name: str, task: PointToPoint, motion: Motion) -> str:

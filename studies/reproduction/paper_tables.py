@@ -77,7 +77,7 @@ def _row(found: RowResult, mended: bool) -> list[Cell]:
 
 
 def _of_plan(words: str, key: str) -> list[Column]:
-    """Columns of a plan's `_figures`."""
+    """Columns of a plan's `figures_of`."""
     return [
         Column(f"F2 [J] {words}", _J, f"{key}_J"),
         Column("  residual [mm]", _MM, f"{key}_residual_mm"),

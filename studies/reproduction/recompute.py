@@ -54,7 +54,6 @@ from quietarm.studies.reproduction.searches import (
     SEARCHES,
     STUDIED,
     Experiment,
-    Input,
     Searched,
     earlier_input,
     input_name,
@@ -203,7 +202,7 @@ def recompute_paper(
             systems={c: done.answers[c, SYSTEMS] for c in CASES},
             checks={c: done.answers[c, CHECKED] for c in CONDITIONS},
             experiment={
-                (case, which): _searched(method, case, which, done, seeds)
+                (case, which): Searched.among(done.answers, method, case, which, seeds)
                 for method, case, which in LIKE_FOR_LIKE
             },
         )
@@ -222,10 +221,7 @@ def _row_result(row: Row, done: Done, seeds: int) -> RowResult:
         in_box=done.answers[case, terms, True],
         free=done.answers[case, terms, False],
         earlier=None if row.earlier_energy is None else done.answers[case, earlier_input(case)],
-        searched={method: _searched(method, case, terms, done, seeds) for method in SEARCHES},
+        searched={
+            method: Searched.among(done.answers, method, case, terms, seeds) for method in SEARCHES
+        },
     )
-
-
-def _searched(method: Method, case: Case, which: Input, done: Done, seeds: int) -> Searched:
-    fronts = tuple(done.answers[method, case, which, seed] for seed in range(seeds))
-    return Searched.of(case, which, fronts)

@@ -103,7 +103,7 @@ def reproduction_document(result: Reproduction) -> Document:
 
 def _one_seed(result: Reproduction) -> list[Block]:
     seeds = max(len(found.fronts) for found in result.experiment.values())
-    words = "Each search stands here by one seed alone; --seeds 8 gives medians and quartiles."
+    words = "Each search stands here by one seed alone; --seeds 9 gives medians and quartiles."
     return [Text(words, soft=True)] if seeds == 1 else []
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from statistics import median
+from typing import Any
 
 import numpy as np
 from quietarm.metaheuristics.ensemble import Spread, energies_at, energy_at
@@ -88,10 +89,16 @@ class Searched:
     fronts: tuple[Front, ...]
 
     @classmethod
+    def among(
+        cls, answers: Mapping[Hashable, Any], method: Method, case: Case, which: Input, seeds: int
+    ) -> Searched:
+        """What a method found, among the answers of all pieces."""
+        return cls.of(case, which, tuple(answers[method, case, which, s] for s in range(seeds)))
+
+    @classmethod
     def of(cls, case: Case, which: Input, fronts: tuple[Front, ...]) -> Searched:
         """Judged as the paper's coefficients of as many terms are; other inputs as its six."""
-        terms = which if which in (2, 4) else COMPARED_TERMS
-        assert isinstance(terms, int)
+        terms = min(which, COMPARED_TERMS) if isinstance(which, int) else COMPARED_TERMS
         return cls(case, residual_level(case, terms), fronts)
 
     @cached_property
@@ -106,10 +113,13 @@ class Searched:
 
     @cached_property
     def middle(self) -> Plan | None:
-        """The motion of the middle seed; None where that one did not come within the level."""
+        """The motion of the middle seed; None where that one did not come within the level.
+
+        Of an even number of seeds the dearer one of the two in the middle.
+        """
         energies = [energy_at(front, self.level) for front in self.fronts]
         order = np.argsort(energies, kind="stable")  # those that did not are last
-        place = order[(len(order) - 1) // 2]
+        place = order[len(order) // 2]
         if np.isnan(energies[place]):
             return None
         front = self.fronts[place]

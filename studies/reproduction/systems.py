@@ -75,20 +75,15 @@ Systems = Mapping[Case, Sequence[System]]
 
 def systems_of(case: Case, answers: Mapping[Hashable, Any], seeds: int) -> tuple[System, ...]:
     """Every system on a move, always in the same order."""
-    searches = {
-        method: Searched.of(
-            case,
-            COMPARED_TERMS,
-            tuple(answers[method, case, COMPARED_TERMS, seed] for seed in range(seeds)),
-        )
-        for method in SEARCHES
-    }
     return (
         replace(_of(CYCLOID, evaluate_coefficients(case.task, [])), seconds=None),
         *(_shaped(case, shaper) for shaper in COMPARED_SHAPERS),
         _paper(case),
         *(_of(name, answers[case, name]) for name in OTHERS),
-        *(searched(method, found) for method, found in searches.items()),
+        *(
+            searched(method, Searched.among(answers, method, case, COMPARED_TERMS, seeds))
+            for method in SEARCHES
+        ),
         _of(IN_BOX, answers[case, COMPARED_TERMS, True]),
         _of(FREE, answers[case, COMPARED_TERMS, False]),
         _robust(case, answers[case, ROBUST]),

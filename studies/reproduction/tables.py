@@ -106,13 +106,13 @@ def remarks(every: Sequence[System]) -> list[str]:
         if found.why:
             lines.append(f"{found.name}: {found.why}")
         if (spread := found.energies) and spread.seeds > 1 and spread.count:
-            quartiles = " and ".join(
+            middle, low, high = (
                 f"{each:.4f} J" if isfinite(each) else "none"
-                for each in (spread.lower, spread.upper)
+                for each in (spread.median, spread.lower, spread.upper)
             )
             lines.append(
                 f"{found.name}: the middle one of {spread.seeds} seeds, {spread.count} of which "
-                f"come near enough; quartiles {quartiles}"
+                f"come near enough; median {middle}, quartiles {low} and {high}"
             )
     back = [f"{s.name} by {s.turns_back:.2g} rad" for s in every if (s.turns_back or 0) > _TURNED]
     return [*lines, *([f"On its way the joint turns back: {', '.join(back)}"] if back else [])]

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
 BIN = Path(sys.executable).parent
 (SHORT,) = blocks("README", "python")
-(MOVE,) = blocks("moves", "python")
+MOVE, SEQUENCE, ENERGY = blocks("moves", "python")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
@@ -69,6 +69,22 @@ def test_the_example_in_python_plans_saves_and_exports(tmp_path):
     assert plan.residual < 1e-8  # docs/accuracy.md
     assert plan.motion.peak_torque <= 0.2 * 1.001  # docs/accuracy.md
     assert len((tmp_path / "move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
+
+
+def test_the_example_of_a_sequence_prints_what_the_page_shows(tmp_path):
+    printed = run_python(SEQUENCE, tmp_path)
+    _, shown = blocks("moves", "text")
+    numbers = [re.findall(r"[\d.]+", text) for text in (printed, shown)]
+    assert [float(x) for x in numbers[0]] == pytest.approx([float(x) for x in numbers[1]], abs=0.01)
+    last, before = (Plan.load(tmp_path / f"move-{number}.json") for number in (3, 2))
+    left = before.state_after(float(numbers[0][6]))
+    assert [*last.task.initial.W] == pytest.approx(left.W, abs=1e-4)
+
+
+def test_the_example_with_an_energy_of_ones_own_plans(tmp_path):
+    label, energy = run_python(ENERGY, tmp_path).split()
+    assert label == "recovering:0.6+copper:0.12"
+    assert 0.349 < float(energy) < 0.349 + 0.0212  # of copper loss alone, with positive power
 
 
 def test_the_example_with_an_algorithm_of_pymoo_searches_and_saves(tmp_path):
@@ -150,7 +166,7 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 9
+    assert sum(len(blocks(page, "python")) for page in others) == 11
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "text"}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
+from pathlib import Path
 
 import click
 from quietarm.metaheuristics import search
@@ -18,6 +19,7 @@ from quietarm.ocp import (
     SolveSettings,
     evaluate_coefficients,
     fastest_move,
+    plan_after,
     plan_move,
 )
 from quietarm.ocp.interrupts import note_interrupts
@@ -78,6 +80,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 def plan(
     task: PointToPoint,
     fastest: bool,
+    best_after: Path | None,
     profile: str,
     terms: int | None,
     bound: float | None,
@@ -105,6 +108,7 @@ def plan(
       quietarm plan single-link --target 30deg --duration 0.8 --profile network --terms 3
       quietarm plan dual-link --target pi/2 --duration 0.9 --profile zv
       quietarm plan single-link --target 30deg --duration fastest --torque-limit 0.15
+      quietarm plan single-link --target 0 --duration 0.8 --after earlier.json --wait best
     """  # noqa: D301  # \b is click's: do not rewrap
     refuse_idle(profile, {name: list(FAMILIES) for name in OF_FAMILIES})
     refuse_idle(method, {"starts": [GRADIENT], "solver": [GRADIENT]})
@@ -115,6 +119,11 @@ def plan(
         raise ValueError(
             "--duration fastest is for the gradient and profiles with coefficients; give a time"
         )
+    if best_after and (method != GRADIENT or profile not in FAMILIES or fastest):
+        raise ValueError(
+            "--wait best is for the gradient, profiles with coefficients and a given duration; "
+            "give a time"
+        )
     motions, notes = profile_of(profile, task, terms), list[str]()
     if fastest:
         with working("looking for the shortest duration", Console(stderr=True), quiet=quiet):
@@ -123,6 +132,13 @@ def plan(
             )
         found, (duration, why) = shortest.plan, shortest.failed[0]
         notes = [f"fastest: in {duration:.5g} s {why}"]
+    elif best_after:
+        with working("looking for the best wait", Console(stderr=True), quiet=quiet):
+            wait, found = plan_after(
+                Plan.load(best_after), task, None, motions, residual_limit=residual_limit,
+                bound=bound, starts=starts, seed=seed, solver=solver,
+            )  # fmt: skip
+        notes = [f"wait: {wait:.4g} s after the arrival of {best_after}"]
     elif method == GRADIENT:
         with working("solving", Console(stderr=True), quiet=quiet):
             found = plan_move(

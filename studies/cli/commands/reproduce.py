@@ -17,7 +17,7 @@ from rich.console import Console
     type=WHOLE,
     default=1,
     show_default=True,
-    help="Seeds of VEPSO and NSGA-II; 8 give medians and quartiles, in some 5 times the time.",
+    help="Seeds of VEPSO and NSGA-II; 9 give medians and quartiles, in some 6 times the time.",
 )
 @workers_at_hand_options
 @quiet_option

@@ -22,13 +22,15 @@ PROFILES = {
 }
 
 
-def _candidates(rows, profile, errors=(), seed=0):
-    """Coefficients, moves and errors, all of them others in every row."""
+def _candidates(rows, kind, seed=0):
+    """Coefficients, moves that begin in a ringing state and errors, others in every row."""
     random = np.random.default_rng(seed)
-    shape = rows, profile.size
-    coefficients = profile.plain + random.uniform(-0.3, 0.3, shape)
+    shape = rows, kind.profile.size
+    coefficients = kind.profile.plain + random.uniform(-0.3, 0.3, shape)
     moves = MOVES[np.arange(rows) % len(MOVES)] * random.uniform(0.9, 1.1, (rows, 1))
-    return coefficients, moves, random.uniform(-0.1, 0.1, (rows, len(errors)))
+    errors = random.uniform(-0.1, 0.1, (rows, len(kind.errors)))
+    ringing = random.uniform(-0.02, 0.02, (rows, 2 * kind.plant.modes))
+    return coefficients, np.hstack([moves, ringing]), errors
 
 
 def _weights(made, rows, energy=1.0, seed=1):
@@ -49,10 +51,11 @@ def _derivatives(made, candidates, width=0.0, weights=None):
 @pytest.mark.parametrize("errors", [{}, ERRORS], ids=["as assumed", "with errors"])
 def test_figures_are_those_of_the_rollout(task, errors):
     profile, steps = qa.CycloidPolynomial(4), 40
-    task = replace(task, start=-0.2, **dict.fromkeys(LIMITS, 1.0))
+    ringing = qa.ModalState(*np.reshape([0.01, -0.1, 0.02, 0.05][: 2 * task.plant.modes], (2, -1)))
+    task = replace(task, start=-0.2, initial=ringing, **dict.fromkeys(LIMITS, 1.0))
     made = batch(task.plant, profile, steps, QUANTITIES, tuple(errors))
-    a = _candidates(1, profile)[0]
-    inputs = a, np.array([task.move]), np.array([list(errors.values())])
+    a = _candidates(1, made.kind)[0]
+    inputs = a, np.array([task.row]), np.array([list(errors.values())])
     wrong = replace(task, plant=qa.with_errors(task.plant, errors))
     expected = qa.rollout(wrong, profile, a[0], steps=steps)
     for found in (made.values(*inputs), _derivatives(made, inputs)):
@@ -70,7 +73,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
 def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
     profile = qa.CycloidPolynomial(4)
     made = batch(plants["arm"], profile, 12, ("torque",), ("frequency",))
-    candidates = _candidates(rows, profile, made.kind.errors)
+    candidates = _candidates(rows, made.kind)
     weights = _weights(made, rows)
     together = _derivatives(made, candidates, 0.1, weights)
     valued = made.values(*candidates, threads=threads)
@@ -88,7 +91,7 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
 
 def test_more_rows_than_a_call_takes(plants):
     made = batch(plants["single link"], qa.CycloidPolynomial(2), 12)
-    candidates = _candidates(250, made.kind.profile)
+    candidates = _candidates(250, made.kind)
     found = made.values(*candidates, threads=2)
     for row in (0, 99, 100, 249):
         alone = made.values(*(one[row : row + 1] for one in candidates))
@@ -109,7 +112,7 @@ CASES = [
 def case(request, plants):
     name, family, quantities, errors = request.param
     made = batch(plants[name], PROFILES[family], 12, quantities, errors)
-    return made, _candidates(2, made.kind.profile, errors)
+    return made, _candidates(2, made.kind)
 
 
 def _differences(made, candidates, width, of, h=1e-5):
@@ -161,7 +164,7 @@ def test_curvature_is_the_limit_of_differences_of_the_lagrangians_gradient(case,
 @pytest.mark.parametrize("name", ["arm", "two links"])
 def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants, name):
     made = batch(plants[name], qa.CycloidPolynomial(3), 30)
-    candidates = _candidates(2, made.kind.profile, seed=5)
+    candidates = _candidates(2, made.kind, seed=5)
     weights = np.ones(2), np.zeros((2, 2 * made.kind.plant.modes)), np.zeros((2, 0))
     found = _derivatives(made, candidates, 0.0, weights).curvature
     expected = _differences(made, candidates, 0.0, lambda at: at.gradient, h=1e-6)
@@ -171,7 +174,7 @@ def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants,
 def test_the_rounded_energy_is_above_the_sharp_one_and_tends_to_it(task):
     # Rounded off, |power| is seen at the nodes only: of 80 steps they miss less than 2e-3 of it.
     made = batch(task.plant, qa.CycloidPolynomial(4), 80)
-    candidates = _candidates(4, made.kind.profile)
+    candidates = _candidates(4, made.kind)
     sharp = _derivatives(made, candidates).energy
     shares = []
     for width in WIDTHS[:-1]:  # as shares of the mean power

@@ -37,7 +37,7 @@ def test_frequency_is_what_matters_and_inertia_leaves_nothing(plan):
     of = {one.parameter: one for one in plan.sensitivities}
     assert first.parameter in ("frequency", "omega")
     # the single link has one mode: its frequency is omega
-    assert of["frequency"].residual == pytest.approx(of["omega"].residual, rel=1e-6)
+    assert of["frequency"].residual == pytest.approx(of["omega"].residual, rel=1e-5)
     # eq (9) does not know the hub: alpha1 and friction change the torque alone
     assert of["alpha1"].residual == of["c"].residual == 0
     assert of["c"].energy > 0

@@ -96,12 +96,12 @@ PHI = {"single link": 2.28, "arm": 0.508, "two links": 2.7244}  # docs/physics.m
 class ThirdOpinion:
     """Modes, torque, F1 and F2 of a move by SciPy."""
 
-    def __init__(self, name, a, start, target, duration):
+    def __init__(self, name, a, start, target, duration, initial=None):
         self.equations, self.phi, self.modes = EQUATIONS[name], PHI[name], 1 + (name == "two links")
         self.duration = duration
         self.joint = _joint(a, start, target, duration)
-        still = np.zeros(2 * self.modes)
-        self.during = self._solve(self.joint, 0.0, duration, still)
+        initial = np.zeros(2 * self.modes) if initial is None else np.array(initial)
+        self.during = self._solve(self.joint, 0.0, duration, initial)
         arrival, rest = self.during.y[:, -1], lambda t: (target, 0.0, 0.0)
         self.after = self._solve(rest, duration, duration + 1, arrival)
 

@@ -9,12 +9,15 @@ from quietarm.studies.cli.quantities import (
     literal,
     parse_angle,
     parse_coefficients,
+    parse_energy,
     parse_length,
     parse_rate,
     parse_time,
     parse_weights,
     parse_whole,
 )
+
+import quietarm as qa
 
 WHOLE = st.integers(0, 100_000)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
@@ -164,3 +167,37 @@ def test_whole_numbers_as_people_write_them(text, number):
     for read in (parse_whole, literal):
         found = read(text)
         assert (found, type(found)) == (number, int)
+
+
+ENERGIES = {
+    "absolute": qa.AbsolutePower(),
+    "positive": qa.PositivePower(),
+    "copper:0.12": qa.CopperLoss(0.12),
+    "0.5*absolute+copper:0.12": 0.5 * qa.AbsolutePower() + qa.CopperLoss(0.12),
+}
+
+
+@pytest.mark.parametrize("text", ENERGIES)
+def test_an_energy_is_typed_as_it_is_called(text):
+    assert parse_energy(text) == ENERGIES[text]
+    assert parse_energy(text).label == text
+    assert parse_energy(text.replace("*", " * ").replace("+", " + ")) == ENERGIES[text]
+    assert parse_energy(text.replace("0.12", "0.0012e+2")) == ENERGIES[text]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("cooper:1", r"unknown energy 'cooper'; did you mean 'copper'\? \(known: absolute"),
+        ("mix", "unknown energy 'mix'"),
+        ("absolute+", "unknown energy ''"),
+        ("copper", "'copper' has 0 numbers of 1; give copper:motor_constant"),
+        ("positive:2", "'positive:2' has 1 numbers of 0; give positive"),
+        ("copper:x", "motor_constant is 'x'; give a number"),
+        ("copper:0", "motor constant is 0 .*; give a positive number"),
+        ("-1*absolute", "weight is -1; give a positive number"),
+    ],
+)
+def test_what_is_no_energy_is_refused_with_a_remedy(text, message):
+    with pytest.raises(ValueError, match=message):
+        parse_energy(text)

@@ -10,6 +10,7 @@ import quietarm.studies.comparison.measures
 import quietarm.studies.reports.comparison
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import (
+    CopperLoss,
     CycloidPolynomial,
     PointToPoint,
     epsilon_front,
@@ -128,6 +129,7 @@ OTHERS = {
     "residual window is 0.5 s, not 1 s": {"residual_window": 0.5},
     "torque limit is 2 N m, not none": {"torque_limit": 2.0},
     "deflection limit is 0.1 m, not none": {"deflection_limit": 0.1},
+    "energy is copper:0.12, not absolute": {"energy": CopperLoss(0.12)},
     "duration is 1 s, not 0.8 s, speed limit is 3 rad/s, not none": {
         "duration": 1.0, "speed_limit": 3.0
     },

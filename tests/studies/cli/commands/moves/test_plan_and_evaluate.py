@@ -7,6 +7,7 @@ import math
 import os
 import re
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ import quietarm.studies.reading.saved
 import quietarm.studies.reproduction.recompute
 import quietarm.studies.study.work
 from lines import EVERY_FILE, MOVE, PLAN, TWO_TERMS, run
-from quietarm.ocp import InfeasibleTaskError, Plan
+from quietarm.ocp import CopperLoss, InfeasibleTaskError, Plan, PositivePower
 from quietarm.ocp.task import QUANTITIES
 
 
@@ -223,6 +224,22 @@ def test_a_broken_limit_is_shown_with_what_is_reached(call):
     assert shown == f"torque 0.01 N m (broken: {peak:.4g} N m), deflection 1 m"
 
 
+def test_an_energy_that_is_not_the_papers_is_named(call):
+    line = "single-link --target 30deg --duration 0.8 --energy positive+copper:0.12 --quiet"
+    named = "0 to 30 deg in 0.8 s, energy positive+copper:0.12"
+    spent = {}
+    for command in ("plan", "evaluate", "floor"):
+        more = "--coefficients=0" if command == "evaluate" else ""
+        code, out, err = call(f"{command} {line} {more} --output {command}.json")
+        assert (code, err) == (0, "")
+        assert named in " ".join(out.split())
+        spent[command] = json.loads(Path(f"{command}.json").read_text())["motion"]["energy"]
+    assert spent["floor"] < spent["plan"] < spent["evaluate"]
+    assert Plan.load("plan.json").task.energy == PositivePower() + CopperLoss(0.12)
+    _, out, _ = call(f"front {line} --method epsilon --points 2 --output front.json")
+    assert "energy positive+copper:0.12" in out
+
+
 def test_the_shortest_duration_is_found_and_why_no_shorter_one_will_do(call):
     line = "plan single-link --target 30deg --duration fastest --torque-limit 0.15"
     code, out, err = call(line)
@@ -256,3 +273,43 @@ def test_sensitivities_are_a_row_a_parameter_where_asked_for(call, line):
     rows = out.split("Sensitivities")[1]
     assert re.search(r"omega +[0-9.]+ +[-+][0-9.]+", rows)
     assert "Sensitivities" not in call(line)[1]
+
+
+@pytest.fixture
+def unquiet(call):
+    """The file of a motion that leaves 77 mm, to 30 degrees."""
+    call(f"evaluate {MOVE} --coefficients=0 --output earlier.json --quiet")
+    return Plan.load("earlier.json")
+
+
+BACK = "single-link --target 0 --duration 0.8"
+
+
+def test_a_plan_after_an_earlier_one_begins_with_what_that_left(call, unquiet):
+    code, out, _ = call(f"plan {BACK} --after earlier.json --wait 200ms --output next.json")
+    assert code == 0
+    found = Plan.load("next.json")
+    assert found.task.initial == unquiet.state_after(0.2)
+    assert found.task.start == unquiet.task.target
+    assert "30 to 0 deg in 0.8 s, ringing at the start" in out
+    assert "W -33.8 mm, W' -11.7 mm/s" in out
+    assert "at rest (below 0.001 mm)" in out
+
+
+def test_the_best_wait_is_said(call, unquiet):
+    code, out, _ = call(f"plan {BACK} --after earlier.json --wait best --starts 1 --output n.json")
+    found = Plan.load("n.json")
+    wait = float(re.search(r"wait: ([\d.]+) s after the arrival of earlier.json", out)[1])
+    assert code == 0
+    assert [*found.task.initial.W] == pytest.approx(unquiet.state_after(wait).W, abs=1e-5)
+
+
+def test_modal_states_are_read_with_their_units(call):
+    line = "evaluate dual-link --target 1 --duration 0.9 --coefficients=0 --output e.json"
+    code, out, _ = call(f"{line} --initial 5mm,-0.01:0,40mm/s --final 0,1cm:0,0")
+    found = Plan.load("e.json").task
+    assert code == 0
+    assert (found.initial.W, found.initial.dW) == ((0.005, -0.01), (0.0, 0.04))
+    assert (found.final.W, found.final.dW) == ((0.0, 0.01), (0.0, 0.0))
+    assert "to a state other than rest" in " ".join(out.split())
+    assert "W 0 and 10 mm, W' 0 and 0 mm/s on arrival" in out

@@ -1,0 +1,176 @@
+"""What a move costs: the energies that a task may ask for, one class a definition."""
+
+from __future__ import annotations
+
+from abc import ABC
+from dataclasses import astuple, dataclass
+from typing import Any, ClassVar
+
+from quietarm.models import Expression
+from quietarm.ocp.checks import positive
+
+
+def power_of(torque: Any, speed: Any) -> Any:
+    """The joint's mechanical power [W], of any kind: what the net work is the integral of."""
+    return torque * speed
+
+
+class Energy(ABC):
+    """F2 of a move [J]: the integral of `absolute` * |torque * speed| + `smooth`.
+
+    A new energy is one subclass: a frozen dataclass whose fields are numbers, with a name. Energies
+    are added, and multiplied by weights.
+    """
+
+    name: ClassVar[str]
+    """The name by which files and the command line know the energy."""
+
+    _known: ClassVar[dict[str, type[Energy]]] = {}
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if "name" in cls.__dict__:
+            Energy._known[cls.name] = cls
+
+    @property
+    def absolute(self) -> float:
+        """Weight of the absolute power, 0 or more; its sign changes are found."""
+        return 0.0
+
+    def smooth(self, torque: Expression, speed: Expression) -> Expression:
+        """What else is spent at one time, in smooth operations that work element by element.
+
+        Parameters
+        ----------
+        torque : Expression
+            Joint torque [N m].
+        speed : Expression
+            Joint speed [rad/s].
+
+        Returns
+        -------
+        Expression
+            Power [W].
+        """
+        return 0.0
+
+    @property
+    def label(self) -> str:
+        """What the energy is called, as ``copper:0.12``: so it is typed, too."""
+        own: Any = self
+        numbers = ",".join(f"{number:.12g}" for number in astuple(own))
+        return f"{self.name}:{numbers}" if numbers else self.name
+
+    def __add__(self, other: Energy) -> Mix:
+        return Mix((*_parts(self), *_parts(other)))
+
+    def __mul__(self, weight: float) -> Mix:
+        return Mix(tuple((weight * own, part) for own, part in _parts(self)))
+
+    __rmul__ = __mul__
+
+
+def known_energies() -> dict[str, type[Energy]]:
+    """The energies that can be found by name, those of the user's own files included."""
+    return dict(Energy._known)
+
+
+@dataclass(frozen=True)
+class AbsolutePower(Energy):
+    """Integral of |torque * speed|, eqs (11) and (16): braking costs as much as driving."""
+
+    name = "absolute"
+
+    @property
+    def absolute(self) -> float:
+        """As of `Energy`."""
+        return 1.0
+
+
+ABSOLUTE_POWER = AbsolutePower()
+
+
+@dataclass(frozen=True)
+class PositivePower(Energy):
+    """Integral of torque * speed where it is positive: braking costs nothing and gives nothing."""
+
+    name = "positive"
+
+    @property
+    def absolute(self) -> float:
+        """As of `Energy`."""
+        return 0.5
+
+    def smooth(self, torque: Expression, speed: Expression) -> Expression:
+        """As of `Energy`."""
+        return power_of(torque, speed) / 2
+
+
+@dataclass(frozen=True)
+class CopperLoss(Energy):
+    """Integral of (torque / motor constant)^2: the heat of the motor's windings.
+
+    Parameters
+    ----------
+    motor_constant : float
+        Torque at the joint by the root of the loss [N m/W^0.5]: the motor's, times the gear ratio.
+
+    Raises
+    ------
+    ValueError
+        When it is not positive.
+    """
+
+    name = "copper"
+    motor_constant: float
+
+    def __post_init__(self) -> None:
+        constant = positive("motor constant", self.motor_constant, "N m/W^0.5")
+        object.__setattr__(self, "motor_constant", constant)
+
+    def smooth(self, torque: Expression, speed: Expression) -> Expression:
+        """As of `Energy`."""
+        return torque * torque / self.motor_constant**2
+
+
+@dataclass(frozen=True)
+class Mix(Energy):
+    """A weighted sum of energies, as ``0.5 * AbsolutePower() + CopperLoss(0.12)``.
+
+    Parameters
+    ----------
+    parts : tuple of (float, Energy)
+        Weights and energies.
+
+    Raises
+    ------
+    ValueError
+        When a weight is not positive.
+    """
+
+    name = "mix"
+    parts: tuple[tuple[float, Energy], ...]
+
+    def __post_init__(self) -> None:
+        parts = tuple((positive("weight", weight), part) for weight, part in self.parts)
+        object.__setattr__(self, "parts", parts)
+
+    @property
+    def absolute(self) -> float:
+        """As of `Energy`."""
+        return sum(weight * part.absolute for weight, part in self.parts)
+
+    def smooth(self, torque: Expression, speed: Expression) -> Expression:
+        """As of `Energy`."""
+        return sum(weight * part.smooth(torque, speed) for weight, part in self.parts)
+
+    @property
+    def label(self) -> str:
+        """As of `Energy`."""
+        weights = ("" if weight == 1 else f"{weight:.12g}*" for weight, _ in self.parts)
+        labels = (part.label for _, part in self.parts)
+        return "+".join(map("".join, zip(weights, labels, strict=True)))
+
+
+def _parts(energy: Energy) -> tuple[tuple[float, Energy], ...]:
+    return energy.parts if isinstance(energy, Mix) else ((1.0, energy),)

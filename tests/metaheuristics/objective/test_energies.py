@@ -1,0 +1,39 @@
+"""A search spends what CVODES finds, whatever counts as energy."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from quietarm.metaheuristics.objective.population import PopulationObjective
+from quietarm.ocp.simulation.rollout import default_steps
+
+import quietarm as qa
+
+
+@pytest.fixture(
+    params=[qa.PositivePower(), qa.CopperLoss(0.12), qa.AbsolutePower() + qa.CopperLoss(0.3)],
+    ids=lambda energy: energy.label,
+)
+def energy(request):
+    return request.param
+
+
+@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
+def test_a_population_spends_what_cvodes_finds(tasks, name, energy):
+    task, bound = tasks[name]
+    task, profile = replace(task, energy=energy), qa.CycloidPolynomial(4)
+    X = np.random.default_rng(3).uniform(-bound, bound, (6, 4))
+    expected = [qa.resimulate(task, profile, x).energy for x in X]
+    fine = PopulationObjective(task, profile, steps=default_steps(task))(X).energy
+    assert fine == pytest.approx(expected, rel=1e-5)
+    assert PopulationObjective(task, profile)(X).energy == pytest.approx(expected, rel=3e-3)
+
+
+def test_a_search_states_what_cvodes_finds(tasks, energy):
+    task = replace(tasks["single link"][0], energy=energy)
+    front = qa.search(task, "nsga2", bound=0.2, population=20, generations=10)
+    for point in (front.points[0], front.points[-1]):
+        motion = qa.resimulate(task, front.profile, point.coefficients)
+        assert point.energy == pytest.approx(motion.energy, rel=1e-5)
+    floor = qa.energy_floor(task, starts=1).energy
+    assert all(point.energy > floor for point in front.points if point.residual < 1e-4)

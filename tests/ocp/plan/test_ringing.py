@@ -1,0 +1,200 @@
+"""Moves that begin with what an earlier one left, or arrive in a state that is asked for."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from quietarm.metaheuristics.objective.population import PopulationObjective
+from third_opinion import ThirdOpinion
+
+import quietarm as qa
+
+SIX = qa.CycloidPolynomial(6)
+WAIT = 0.15
+
+
+@pytest.fixture(params=["single link", "arm", "two links"])
+def name(request):
+    return request.param
+
+
+@pytest.fixture
+def next_move(tasks, name):
+    """A move back from where the plain cycloid, which leaves most, has ended a while ago."""
+    unquiet = qa.evaluate_coefficients(tasks[name], [])
+    return unquiet.next_move(0.2, 0.8, wait=WAIT)
+
+
+def _third_opinion(task, name, a):
+    return ThirdOpinion(name, list(a), *task.move, task.initial_state)
+
+
+def test_the_next_move_arrives_still_and_scipy_agrees(next_move, name):
+    assert np.abs(next_move.initial.dW).max() > 0.03  # it rings
+    plan = qa.plan_move(next_move, SIX, starts=1)
+    still = max(1e-8, 1e-7 * qa.resimulate(next_move, qa.CycloidPolynomial(0), []).residual)
+    assert plan.residual < still
+    other = _third_opinion(next_move, name, plan.coefficients)
+    assert plan.energy == pytest.approx(other.energy, rel=1e-9)
+    assert other.residual < 1.01 * still
+    # what it takes depends on what rings
+    assert plan.energy != pytest.approx(
+        qa.plan_move(replace(next_move, initial=None), SIX, starts=1).energy, rel=0.01
+    )
+
+
+def test_the_state_after_a_move_is_that_of_its_trajectory_and_of_scipy(tasks, name):
+    task = tasks[name]
+    plan, other = (
+        qa.evaluate_coefficients(task, [0.1, -0.1]),
+        _third_opinion(task, name, [0.1, -0.1]),
+    )
+    for wait in (0.0, WAIT):
+        found = plan.state_after(wait)
+        expected = other.after.sol(task.duration + wait)
+        assert [*found.W, *found.dW] == pytest.approx(expected, abs=1e-9)
+    sampled = plan.sampled([task.duration, task.duration + WAIT]).modes[1]
+    assert [*plan.state_after(WAIT).W] == pytest.approx(sampled, abs=1e-10)
+
+
+def test_searches_see_what_cvodes_does(next_move):
+    population = np.random.default_rng(3).uniform(-0.2, 0.2, (5, 6))
+    found = PopulationObjective(next_move, SIX, steps=140)(population)
+    for a, residual, energy in zip(population, found.residual, found.energy, strict=True):
+        exact = qa.resimulate(next_move, SIX, a)
+        assert energy == pytest.approx(exact.energy, rel=1e-5)
+        assert residual == pytest.approx(exact.residual, rel=3e-4)
+        fixed = qa.rollout(next_move, SIX, a)
+        assert fixed.motion.energy == pytest.approx(exact.energy, rel=1e-5)
+        assert fixed.motion.residual == pytest.approx(exact.residual, rel=3e-4)
+
+
+def test_errors_of_the_plant_begin_in_the_same_state(next_move):
+    a, error = [0.05, -0.1, 0.02], 0.07
+    robustness = qa.evaluate_robustness(
+        next_move, qa.CycloidPolynomial(3), a, {"frequency": error}, samples=1
+    )
+    wrong = replace(next_move, plant=qa.with_errors(next_move.plant, {"frequency": error}))
+    exact, figures = qa.resimulate(wrong, qa.CycloidPolynomial(3), a), robustness.sweeps[0].figures
+    assert figures.residual[-1] == pytest.approx(exact.residual, rel=1e-4)
+    assert figures.energy[-1] == pytest.approx(exact.energy, rel=1e-5)
+    uncertain = replace(next_move, plant=qa.UncertainPlant(next_move.plant, {"frequency": error}))
+    most = max(exact.residual, figures.residual[0], figures.residual[100])
+    found = PopulationObjective(uncertain, qa.CycloidPolynomial(3), steps=140)(np.array([a]))
+    assert found.residual[0] == pytest.approx(most, rel=3e-4)
+    assert qa.resimulate(uncertain, qa.CycloidPolynomial(3), a).residual == pytest.approx(
+        most, rel=1e-4
+    )
+
+
+def test_a_robust_plan_holds_its_limit_from_a_ringing_start(tasks):
+    task = qa.evaluate_coefficients(tasks["single link"], []).next_move(0.0, 0.8, wait=WAIT)
+    uncertain = replace(task, plant=qa.UncertainPlant(task.plant, {"frequency": 0.05}))
+    plan = qa.plan_move(uncertain, SIX, starts=1, residual_limit=0.01)
+    assert plan.worst.residual < 0.01 * 1.05
+
+
+def test_both_solvers_fronts_and_the_floor_begin_in_the_same_state(tasks):
+    task = qa.evaluate_coefficients(tasks["single link"], []).next_move(0.0, 0.8, wait=WAIT)
+    profile, settings = qa.CycloidPolynomial(4), {"bound": 0.3, "starts": 1}
+    plans = [qa.plan_move(task, profile, solver=by, **settings) for by in ("sqp", "ipopt")]
+    assert plans[0].energy == pytest.approx(plans[1].energy, rel=1e-5)
+    front = qa.epsilon_front(task, profile, points=3, **settings)
+    assert front.points[0].energy == pytest.approx(plans[0].energy, rel=1e-5)
+    for point in front.points:
+        exact = qa.resimulate(task, profile, point.coefficients)
+        assert point.energy == pytest.approx(exact.energy, rel=1e-6)
+        assert point.residual == pytest.approx(exact.residual, rel=1e-6, abs=1e-8)
+    floor = qa.energy_floor(replace(task, acceleration_limit=40.0), starts=1, tolerance=0.05)
+    limited = qa.plan_move(replace(task, acceleration_limit=40.0), SIX, starts=1)
+    assert floor.residual < 1e-6
+    assert 0 < floor.energy < limited.energy
+    many = qa.plan_moves([task, replace(task, initial=None)], profile, bound=0.3)
+    assert many.energy[0] == pytest.approx(plans[0].energy, rel=1e-5)
+
+
+def _wanted(plant):
+    return qa.ModalState(W=(0.004,) * plant.modes, dW=(-0.05,) * plant.modes)
+
+
+def test_a_wanted_state_is_reached_and_scipy_agrees(tasks, name):
+    task = replace(tasks[name], final=_wanted(tasks[name].plant))
+    plan = qa.plan_move(task, SIX, starts=1)
+    wanted = np.array(task.final_state)
+    other = _third_opinion(task, name, plan.coefficients)
+    assert other.during.y[:, -1] == pytest.approx(wanted, abs=1e-6)
+    assert plan.energy == pytest.approx(other.energy, rel=1e-9)
+    # it rings on as from the wanted state: at rest the same motion would count as loud
+    assert plan.residual < 1e-6
+    assert qa.resimulate(tasks[name], SIX, plan.coefficients).residual > 2e-3
+
+
+def test_the_residual_is_the_distance_from_the_wanted_free_vibration(tasks, name):
+    task = replace(tasks[name], final=_wanted(tasks[name].plant))
+    a, n = [0.05, -0.1], task.plant.modes
+    other = _third_opinion(task, name, a)
+    wanted = other._solve(lambda t: (task.target, 0.0, 0.0), 0.0, 1.0, np.array(task.final_state))
+    times = np.linspace(0.0, 1.0, 8001)
+    apart = other.after.sol(task.duration + times)[:n] - wanted.sol(times)[:n]
+    expected = other.phi * np.abs(apart).max()
+    profile = qa.CycloidPolynomial(2)
+    assert qa.resimulate(task, profile, a).residual == pytest.approx(expected, rel=3e-6)
+    assert qa.rollout(task, profile, a).motion.residual == pytest.approx(expected, rel=1e-4)
+    found = PopulationObjective(task, profile, steps=140)(np.array([a]))
+    assert found.residual[0] == pytest.approx(expected, rel=1e-4)
+    assert np.abs(qa.residual_matrix(task) @ task.missed(other.during.y[:, -1])).max() == (
+        pytest.approx(expected, rel=1e-4)
+    )
+
+
+def test_what_rings_adds_to_what_a_move_leaves_on_a_linear_link():
+    # Undamped and of constant stiffness, in a time of one period: what rang at the start rings
+    # again as it did on arrival, and where that is wanted only what the move adds is left.
+    link = qa.SingleLinkManipulator(zeta=0.0, beta2=0.0)
+    task, plain = qa.PointToPoint(link, 0.5, 2 * np.pi / link.omega), qa.CycloidPolynomial(0)
+    ringing = qa.ModalState((0.01,), (0.2,))
+    own = qa.resimulate(task, plain, []).residual
+    kept = qa.resimulate(replace(task, initial=ringing, final=ringing), plain, []).residual
+    assert kept == pytest.approx(own, rel=1e-8)
+
+
+def test_a_deflection_held_before_the_move_saves_energy(tasks):
+    # As Abe (2024) says: bent back before the start, the structure gives its work to the joint.
+    task = replace(tasks["single link"], acceleration_limit=40.0)
+    from_rest = qa.plan_move(task).energy
+    bent = {W: qa.plan_move(replace(task, initial=qa.ModalState((W,), (0.0,)))).energy
+            for W in (-0.02, 0.02)}  # fmt: skip
+    assert bent[-0.02] < 0.75 * from_rest < from_rest < bent[0.02]
+
+
+def test_at_rest_is_the_default(tasks, name):
+    task = tasks[name]
+    zeros = (0.0,) * task.plant.modes
+    given = replace(task, initial=qa.ModalState(zeros, zeros), final=qa.ModalState(zeros, zeros))
+    profile, a = qa.CycloidPolynomial(2), [0.1, -0.1]
+    assert qa.resimulate(given, profile, a) == qa.resimulate(task, profile, a)
+    assert qa.plan_move(given, profile, starts=1, residual_limit=0.05).coefficients == (
+        qa.plan_move(task, profile, starts=1, residual_limit=0.05).coefficients
+    )
+
+
+def test_plans_load_with_their_states(tasks, tmp_path):
+    state = qa.ModalState(W=[0.01], dW=[-0.2])
+    task = replace(tasks["single link"], initial=state, final=state)
+    plan = qa.evaluate_coefficients(task, [0.1])
+    plan.save(tmp_path / "plan.json")
+    assert qa.Plan.load(tmp_path / "plan.json") == plan
+
+
+@pytest.mark.parametrize(
+    ("W", "dW", "told"),
+    [
+        ([float("nan")], [0.0], "W of mode 1 is nan; give a finite"),
+        ([0.0], [float("inf")], "dW of mode 1 is inf; give a finite"),
+        ([0.0, 1.0], [0.0], "2 amplitudes and 1 rates; give one of each"),
+        ([0.0, 0.0], [0.0, 0.0], "initial state has 2 modes and single-link has 1; give"),
+    ],
+)
+def test_a_wrong_state_is_refused_with_the_remedy(tasks, W, dW, told):
+    with pytest.raises(ValueError, match=told):
+        replace(tasks["single link"], initial=qa.ModalState(W, dW))

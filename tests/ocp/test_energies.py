@@ -1,0 +1,192 @@
+"""What counts as energy: against SciPy, closed forms and differences, the same in every answer."""
+
+import math
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+from quietarm.ocp.energy import known_energies
+from quietarm.ocp.program.batch import batch
+from quietarm.ocp.simulation.collocation import GAUSS_NODES
+from quietarm.ocp.simulation.objective import spent
+from scipy.integrate import quad
+from third_opinion import ThirdOpinion
+
+import quietarm as qa
+
+SIX = [-0.05, -0.14, 0.04, 0.2, 0.05, -0.3]
+
+
+@dataclass(frozen=True)
+class Recovering(qa.Energy):
+    """Positive power, less a share of the braking power; and friction that grows with speed."""
+
+    name = "recovering"
+    share: float = 0.0
+    drag: float = 0.01
+
+    @property
+    def absolute(self):
+        return (1 - self.share) / 2
+
+    def smooth(self, torque, speed):
+        return (1 + self.share) / 2 * torque * speed + self.drag * speed**4
+
+
+ENERGIES = {
+    "absolute": qa.AbsolutePower(),
+    "positive": qa.PositivePower(),
+    "copper": qa.CopperLoss(0.12),
+    "mixed": 0.5 * qa.PositivePower() + qa.CopperLoss(0.3),
+    "own": Recovering(0.6),
+}
+WATTS = {
+    "absolute": lambda torque, speed: abs(torque * speed),
+    "positive": lambda torque, speed: max(torque * speed, 0.0),
+    "copper": lambda torque, speed: (torque / 0.12) ** 2,
+    "mixed": lambda torque, speed: 0.5 * max(torque * speed, 0.0) + (torque / 0.3) ** 2,
+    "own": lambda torque, speed: (
+        max(torque * speed, 0.0) + 0.6 * min(torque * speed, 0.0) + 0.01 * speed**4
+    ),
+}
+"""What each spends at one time, written out."""
+
+
+@pytest.fixture(params=ENERGIES)
+def name(request):
+    return request.param
+
+
+@pytest.fixture
+def task(tasks, name):
+    return replace(tasks["single link"], energy=ENERGIES[name])
+
+
+@pytest.mark.parametrize("plant", ["single link", "arm", "two links"])
+def test_cvodes_and_the_rollout_spend_what_scipy_finds(tasks, name, plant):
+    task = replace(tasks[plant], energy=ENERGIES[name])
+    opinion = ThirdOpinion(plant, SIX, *task.move)
+
+    def watts(t):
+        joint = opinion.joint(t)
+        return WATTS[name](float(opinion.torque(joint, opinion.during.sol(t))), float(joint[1]))
+
+    edges = np.linspace(0.0, task.duration, 201)
+    spent = sum(quad(watts, *edges[k : k + 2], epsrel=1e-9)[0] for k in range(200))
+    profile = qa.CycloidPolynomial(6)
+    assert qa.resimulate(task, profile, SIX).energy == pytest.approx(spent, rel=1e-7)
+    assert qa.rollout(task, profile, SIX).motion.energy == pytest.approx(spent, rel=1e-5)
+
+
+@pytest.mark.parametrize("width", [0.0, 0.2])
+def test_derivatives_are_the_limit_of_differences(plants, name, width):
+    made = batch(plants["arm"], qa.CycloidPolynomial(3), 20, energy=ENERGIES[name])
+    a, move = np.array([[-0.1, 0.2, -0.3]]), np.array([[0.1, 1.4, 0.8, 0.0, 0.0]])
+    weights = np.ones(1), np.zeros((1, 2)), np.zeros((1, 0))
+
+    def at(x):
+        return made.derivatives(x, move, np.zeros((1, 0)), np.array([width]), weights)
+
+    h, found = 1e-5, at(a)
+    sides = [(at(a + h * e), at(a - h * e)) for e in np.eye(3)]
+    slope = [(after.energy - before.energy)[0] / (2 * h) for after, before in sides]
+    bend = [(after.gradient - before.gradient)[0] / (2 * h) for after, before in sides]
+    assert found.gradient[0] == pytest.approx(np.array(slope), rel=1e-6, abs=1e-7)
+    assert found.curvature[0] == pytest.approx(np.array(bend), rel=1e-4, abs=1e-4)
+
+
+def test_both_solvers_and_the_floor_agree_with_the_plan(task, solved):
+    plan, other = solved(task), solved(task, solver="ipopt")
+    assert (plan.verification.agrees, plan.residual < 1e-8) == (True, True)
+    assert plan.energy == pytest.approx(other.energy, rel=1e-6)
+    plain = qa.evaluate_coefficients(task, []).energy
+    floor = qa.energy_floor(task, starts=2)
+    assert floor.energy < plan.energy < plain
+    assert floor.energy == pytest.approx(floor.levels[-1].energy, rel=1e-3)
+
+
+def test_a_plan_is_cheapest_by_the_energy_it_was_asked_for(tasks, solved):
+    tasks = [replace(tasks["single link"], energy=energy) for energy in ENERGIES.values()]
+    spent = np.array([
+        [qa.evaluate_coefficients(by, solved(task).coefficients).energy for task in tasks]
+        for by in tasks
+    ])  # fmt: skip
+    assert np.argmin(spent, axis=1).tolist() == list(range(len(tasks)))
+
+
+def test_copper_loss_of_a_rigid_body():
+    # torque = J theta''; the plain cycloid's is a sine: 2 pi^2 (J span / k)^2 / T^3. The least of
+    # all motions has a parabola as its speed: 12 in the place of 2 pi^2.
+    rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
+    task = qa.PointToPoint(rigid, math.pi / 6, 0.8, energy=qa.CopperLoss(0.12))
+    unit = (0.02 * task.span / 0.12) ** 2 / task.duration**3
+    motion = qa.resimulate(task, qa.CycloidPolynomial(0), [])
+    assert motion.energy == pytest.approx(2 * math.pi**2 * unit, rel=1e-9)
+    # The link still has to arrive at rest, which takes a little more than the parabola.
+    assert 12 * unit <= qa.energy_floor(task, starts=1).energy < 2 * math.pi**2 * unit
+
+
+def test_positive_power_of_a_rigid_body_is_what_it_takes_to_start():
+    rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
+    task = qa.PointToPoint(rigid, math.pi / 6, 0.8, energy=qa.PositivePower())
+    spent = qa.resimulate(task, qa.CycloidPolynomial(0), []).energy
+    assert spent == pytest.approx(0.02 * (2 * (math.pi / 6) / 0.8) ** 2 / 2, rel=1e-9)
+
+
+def test_a_front_by_the_gradient_is_of_the_tasks_energy(task):
+    front = qa.epsilon_front(task, qa.CycloidPolynomial(2), points=4)
+    for point in front.points:
+        again = qa.resimulate(task, front.profile, point.coefficients)
+        assert point.energy == pytest.approx(again.energy, rel=1e-6)
+
+
+def test_robustness_without_errors_gives_the_plans_own_energy(task, solved):
+    plan = solved(task)
+    motion = task, plan.profile, plan.coefficients
+    sweep = qa.evaluate_robustness(*motion, {"frequency": 0.1}, samples=50).sweeps[0]
+    middle = sweep.figures.energy[sweep.errors == 0]
+    assert middle == pytest.approx([plan.energy], rel=1e-5)
+
+
+def test_an_energy_is_saved_and_loaded_to_an_equal_value(task, solved, tmp_path):
+    plan = solved(task)
+    plan.save(tmp_path / "plan.json")
+    assert qa.Plan.load(tmp_path / "plan.json") == plan
+
+
+def test_an_energy_that_is_not_known_is_refused(tasks, solved, tmp_path):
+    path = tmp_path / "plan.json"
+    solved(replace(tasks["single link"], energy=ENERGIES["mixed"])).save(path)
+    path.write_text(path.read_text().replace('"copper"', '"cupper"'))
+    with pytest.raises(qa.FileFormatError, match="energy 'cupper' is not known here"):
+        qa.Plan.load(path)
+
+
+def test_energies_are_values():
+    a, b = qa.AbsolutePower(), qa.CopperLoss(0.12)
+    assert known_energies()["recovering"] is Recovering
+    assert 2 * (a + 0.5 * b) == qa.Mix(((2.0, a), (1.0, b)))
+    assert (2 * (a + 3 * b)).label == "2*absolute+6*copper:0.12"
+    assert hash(a + b) == hash(a + b)
+    assert Recovering(0.6).label == "recovering:0.6,0.01"
+    for wrong in (lambda: qa.CopperLoss(0.0), lambda: -1 * a):
+        with pytest.raises(ValueError, match="give a positive number"):
+            wrong()
+
+
+def test_tasks_of_two_energies_are_two(tasks):
+    one = tasks["single link"]
+    other = replace(one, energy=qa.PositivePower())
+    assert one != other
+    with pytest.raises(ValueError, match="move 2 has another plant or energy"):
+        qa.plan_moves([one, other])
+
+
+def test_a_smooth_step_is_integrated_exactly_up_to_degree_five():
+    # Torque and speed of degree 2 in time: torque^2 has degree 4.
+    torque, speed = Polynomial([0.3, -1.0, 2.0]), Polynomial([1.0, 0.5])
+    nodes = [[of(x) for x in GAUSS_NODES] for of in (torque, speed)]
+    found = spent(qa.CopperLoss(0.5), *[[ca.DM(x) for x in of] for of in nodes], ca.DM(1.0))
+    assert float(found) == pytest.approx((torque**2).integ()(1.0) / 0.25, rel=1e-12)
