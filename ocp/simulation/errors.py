@@ -97,12 +97,13 @@ def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     if all(isinstance(value, Real) for value in values.values()):
         changed = replace(plant, **values) if values else plant
     else:
-        changed = _with_symbols(plant, values)
+        changed = with_values(plant, values)
     factors = [1 + errors.get(name, 0.0) for name in _OF_MODES]
     return ScaledModes(changed, *factors) if any(name in errors for name in _OF_MODES) else changed
 
 
-def _with_symbols(plant: Plant, values: Mapping[str, Expression]) -> Plant:
+def with_values(plant: Plant, values: Mapping[str, Expression]) -> Plant:
+    """The plant with symbols for parameters, unchecked."""
     changed = copy.copy(plant)  # not by its class, which takes numbers
     for name, value in values.items():
         object.__setattr__(changed, name, value)
@@ -161,7 +162,7 @@ def _check_symbols(plant: Plant, name: str, error: float) -> None:
         return
     value, symbol = getattr(plant, name) * (1 + error), ca.SX.sym(name)
     motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 3 * plant.modes).tolist()
-    expressions = outputs_of(_with_symbols(plant, {name: symbol}), motion)
+    expressions = outputs_of(with_values(plant, {name: symbol}), motion)
     found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
     anew = outputs_of(replace(plant, **{name: value}), motion)
     if not np.allclose(found, [float(entry) for entry in anew], rtol=_SAME, atol=0.0):

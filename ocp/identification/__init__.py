@@ -1,0 +1,1 @@
+"""A plant's parameters from recordings of the machine."""

@@ -1,0 +1,112 @@
+"""A plant with the parameters that recordings tell, and how sure they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from quietarm.models import Plant
+from quietarm.ocp.saved import Saved
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter that recordings tell.
+
+    Attributes
+    ----------
+    parameter : str
+        Its name.
+    value : float
+        By least squares [SI units].
+    low, high : float
+        Ends of the interval that covers the truth in 95 of 100 cases.
+    by : str
+        What the interval is of: ``"fit"``, or ``"spread"`` where ring-downs differ by more.
+    """
+
+    parameter: str
+    value: float
+    low: float
+    high: float
+    by: str
+
+    @property
+    def error(self) -> float:
+        """The larger distance to an end, as a share of the value."""
+        return max(self.high - self.value, self.value - self.low) / self.value
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A part of a recording, and how it is met.
+
+    Attributes
+    ----------
+    recording : str
+        Name of the recording.
+    begin, end : float
+        The part of it [s].
+    values : tuple of float
+        The parameters by this part alone, those told and then those not.
+    misfit : float
+        Root mean square of what the fit leaves, as a share of the signals'.
+    held_back : float or None
+        The same where this part was not fitted, but the others; None where there are none.
+    """
+
+    recording: str
+    begin: float
+    end: float
+    values: tuple[float, ...]
+    misfit: float
+    held_back: float | None
+
+
+@dataclass(frozen=True)
+class Identified(Saved):
+    """A plant as recordings tell it.
+
+    Attributes
+    ----------
+    plant : Plant
+        With what is told; all else is as it was given.
+    told : tuple of Estimate
+        The parameters that the recordings tell.
+    untold : dict of str to str
+        Those asked for that they do not tell, and why.
+    parts : tuple of Fitted
+        What was fitted.
+    left_out : tuple of str
+        Recordings without a ring-down.
+    versions : dict of str to str
+        Of what identified it.
+    """
+
+    kind: ClassVar[str] = "machine"
+    version: ClassVar[int] = 1
+
+    plant: Plant
+    told: tuple[Estimate, ...]
+    untold: dict[str, str]
+    parts: tuple[Fitted, ...]
+    left_out: tuple[str, ...]
+    versions: dict[str, str]
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Relative errors of the plant by the intervals, for an `UncertainPlant`.
+
+        Raises
+        ------
+        ValueError
+            When a parameter is not told.
+        """
+        if self.untold:
+            name = next(iter(self.untold))
+            raise ValueError(
+                f"{name} was not told by the recordings ({self.untold[name]}): there is no interval "
+                f"to be robust to; state the errors, as --robust frequency=5%, or identify with "
+                f"--free {','.join(one.parameter for one in self.told) or 'omega'}"
+            )
+        return {one.parameter: one.error for one in self.told}
