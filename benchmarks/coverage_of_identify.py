@@ -11,9 +11,10 @@ import argparse
 import time
 
 import numpy as np
-import quietarm as qa
 from quietarm.models import JointMotion
 from scipy.integrate import solve_ivp
+
+import quietarm as qa
 
 COUNT, QUANTUM, NOISE, RATE = 2 * np.pi / 4096, 1e-3, 0.05, 200
 
@@ -57,7 +58,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=200)
     runs = parser.parse_args().runs
-    covered, told, widths, seconds = {}, {}, {}, []
+    covered, widths, seconds = {}, {}, []
     for run in range(runs):
         rng = np.random.default_rng([run, 7])
         truth = qa.FlexibleBeam(
@@ -73,7 +74,7 @@ def main():
             widths.setdefault(one.parameter, []).append(one.error)
     for name, hits in covered.items():
         print(
-            f"{name:6} told in {len(hits)} of {runs}, covered in {100 * np.mean(hits):.1f} % of these, "
+            f"{name:6} told in {len(hits)} of {runs}, covered in {100 * np.mean(hits):.1f} %, "
             f"interval +-{100 * np.median(widths[name]):.2g} % at the median"
         )
     print(f"{np.median(seconds):.2f} s at the median, {max(seconds):.2f} s at most")

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from quietarm.models import Plant
+import casadi as ca
+from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
+from quietarm.ocp.simulation.errors import with_values
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,8 @@ class Identified(Saved):
     ----------
     plant : Plant
         With what is told; all else is as it was given.
+    fitted : dict of str to float
+        What least squares made of the parameters, also of those not told.
     told : tuple of Estimate
         The parameters that the recordings tell.
     untold : dict of str to str
@@ -87,6 +91,7 @@ class Identified(Saved):
     version: ClassVar[int] = 1
 
     plant: Plant
+    fitted: dict[str, float]
     told: tuple[Estimate, ...]
     untold: dict[str, str]
     parts: tuple[Fitted, ...]
@@ -103,10 +108,24 @@ class Identified(Saved):
             When a parameter is not told.
         """
         if self.untold:
-            name = next(iter(self.untold))
+            name, told = next(iter(self.untold)), [one.parameter for one in self.told]
             raise ValueError(
-                f"{name} was not told by the recordings ({self.untold[name]}): there is no interval "
-                f"to be robust to; state the errors, as --robust frequency=5%, or identify with "
-                f"--free {','.join(one.parameter for one in self.told) or 'omega'}"
+                f"{name} was not told by the recordings ({self.untold[name]}); state errors of "
+                f"your own, as frequency=5%, or identify {' and '.join(told) or 'the frequency'} alone"
             )
-        return {one.parameter: one.error for one in self.told}
+        return {
+            one.parameter: one.error
+            for one in self.told
+            if not in_torque_alone(self.plant, one.parameter)
+        }
+
+
+def in_torque_alone(plant: Plant, name: str) -> bool:
+    """Whether a parameter shows in the torque, and neither in the modes nor at the tips."""
+    symbol, joint = ca.SX.sym(name), JointMotion(*(ca.SX.sym("joint") for _ in range(3)))
+    W, dW = ([ca.SX.sym("W") for _ in range(plant.modes)] for _ in range(2))
+    changed = with_values(plant, {name: symbol})
+    ddW = changed.modal_accelerations(joint, W, dW)
+    moves = ca.SX(ca.vertcat(*ddW, *changed.tip_displacements(W)))
+    torque = ca.SX(changed.torque(joint, W, dW, ddW))
+    return not ca.depends_on(moves, symbol) and ca.depends_on(torque, symbol)

@@ -24,8 +24,9 @@ _LONGEST = 0.2
 _HUBER = 2.5
 """Residuals beyond so many deviations count by their size alone (Huber's)."""
 _BLOCKS = 8
+"""Of a piece, for the intervals."""
 _DEPENDENT = 1e-3
-"""Share of a parameter's effect that others do not explain, below which they cannot be told apart."""
+"""Parameters cannot be told apart where others explain all but this share of what one does."""
 
 
 @dataclass(frozen=True)

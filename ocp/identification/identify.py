@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from math import pi
 
-import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import JointMotion, Plant
+from quietarm.models import Plant
 from quietarm.ocp.checks import has_no
-from quietarm.ocp.identification.answer import Estimate, Fitted, Identified
+from quietarm.ocp.identification.answer import Estimate, Fitted, Identified, in_torque_alone
 from quietarm.ocp.identification.fit import Fit, Piece, fit, left, measured, not_told
 from quietarm.ocp.identification.recording import Recording
 from quietarm.ocp.identification.response import Joint, Response
@@ -23,7 +22,6 @@ from quietarm.ocp.identification.ring_downs import (
 )
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
-from quietarm.ocp.simulation.errors import with_values
 
 Array = NDArray[np.float64]
 _FREQUENCY, _DAMPING = "rad/s", "zeta"
@@ -77,11 +75,33 @@ def identify(
     _check_tips(plant, recordings)
     names = _sought(plant, free, kinds)
     modal = [name for name in names if _is_modal(plant, name)]
-    swings = len(modal) == len(names) and "torque" not in kinds
+    swings = _swings_alone(plant, names, kinds)
     pieces, left_out, frequency = _pieces(recordings, forced=not swings)
     plant = _started(plant, modal, frequency)
     answer = _Identification(plant, names, kinds, pieces, frequency, swings)
     return answer.made(left_out)
+
+
+def fitted_parts(
+    found: Identified, recordings: Sequence[Recording]
+) -> list[tuple[Array, Array, Array]]:
+    """Time, measured and fitted signals of every part, a row a sample."""
+    kinds, names = list(recordings[0].signals), list(found.fitted)
+    response = Response(found.plant, names, kinds)
+    p, scaled = np.array([*found.fitted.values()]), _swings_alone(found.plant, names, kinds)
+    drawn: list[tuple[Array, Array, Array]] = []
+    for part in found.parts:
+        (one,) = (each for each in recordings if each.name == part.recording)
+        first, last = np.searchsorted(one.time, [part.begin, part.end])
+        piece = Piece.of(one.part(int(first), int(last) + 1), Joint.of(one))
+        fitted = left(response, piece, p, scaled).fitted
+        drawn.append((piece.recording.time, measured(piece.recording), fitted))
+    return drawn
+
+
+def _swings_alone(plant: Plant, names: Sequence[str], kinds: Sequence[str]) -> bool:
+    """Whether only frequencies and dampings are sought, which need no scale."""
+    return "torque" not in kinds and all(_is_modal(plant, name) for name in names)
 
 
 def _is_modal(plant: Plant, name: str) -> bool:
@@ -111,23 +131,13 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
         return list(dict.fromkeys(free))
     names = [name for name in known if _is_modal(plant, name)]
     if "torque" in kinds:
-        names += [name for name in known if name not in names and _in_torque_alone(plant, name)]
+        names += [name for name in known if name not in names and in_torque_alone(plant, name)]
     if not names:
         raise ValueError(
             f"{plant.name} has no parameter in rad/s and none that begins with zeta; name what is "
             "sought by free"
         )
     return names
-
-
-def _in_torque_alone(plant: Plant, name: str) -> bool:
-    symbol, joint = ca.SX.sym(name), JointMotion(*(ca.SX.sym("joint") for _ in range(3)))
-    W, dW = ([ca.SX.sym("W") for _ in range(plant.modes)] for _ in range(2))
-    changed = with_values(plant, {name: symbol})
-    ddW = changed.modal_accelerations(joint, W, dW)
-    moves = ca.SX(ca.vertcat(*ddW, *changed.tip_displacements(W)))
-    torque = ca.SX(changed.torque(joint, W, dW, ddW))
-    return not ca.depends_on(moves, symbol) and ca.depends_on(torque, symbol)
 
 
 def _pieces(recordings: Sequence[Recording], forced: bool) -> tuple[list[Piece], list[str], float]:
@@ -153,9 +163,10 @@ def _pieces(recordings: Sequence[Recording], forced: bool) -> tuple[list[Piece],
             "record the joint's angle, too"
         )
     if forced and len(whole) < len(known):
+        name = next(one.name for one, joint in known if not joint.moves)
         raise ValueError(
-            f"{next(one.name for one, joint in known if not joint.moves)}: the joint does not move, "
-            "and what is sought shows in how it moves alone; record its angle during a move"
+            f"{name}: the joint does not move, and what is sought shows while it moves alone; "
+            "record its angle during a move"
         )
     names = {piece.recording.name for piece in taken}
     return taken, [one.name for one in recordings if one.name not in names], frequency
@@ -204,18 +215,17 @@ class _Identification:
         for k, name in enumerate(names):
             one = self._estimate(name, among, np.array([each.p[k] for each in alone]), k)
             if one.low <= 0 or one.error >= 1:
-                untold[name] = (
-                    f"its interval, {max(one.low, 0.0):.3g} to {one.high:.3g}, is as wide as its value"
-                )
+                ends = f"{max(one.low, 0.0):.3g} to {one.high:.3g}"
+                untold[name] = f"its interval, {ends}, is as wide as its value"
             else:
                 estimates.append(one)
-        order = {name: self.names.index(name) for name in untold}
+        untold = {name: untold[name] for name in self.names if name in untold}
+        fitted = dict(zip(names, map(float, among.p), strict=True))
         plant = replace(self.plant, **{one.parameter: one.value for one in estimates})
         parts = tuple(self._part(response, among, alone, k) for k in range(len(alone)))
         return Identified(
-            plant, tuple(estimates), dict(sorted(untold.items(), key=lambda e: order[e[0]])),
-            parts, tuple(left_out), versions(),
-        )  # fmt: skip
+            plant, fitted, tuple(estimates), untold, parts, tuple(left_out), versions()
+        )
 
     def _check(self, among: Fit) -> None:
         misfits = [
@@ -223,8 +233,9 @@ class _Identification:
         ]
         if min(misfits) > _BAD:
             raise ValueError(
-                f"no {' and '.join(self.names)} of {self.plant.name} meet {self.pieces[0].recording.name}: "
-                f"{100 * min(misfits):.0f} % of its swing is left; are columns and units right?"
+                f"{self.pieces[0].recording.name}: with no {' and '.join(self.names)} does "
+                f"{self.plant.name} move so, {min(misfits):.0%} of the signal is left; check "
+                "columns and units"
             )
 
     def _estimate(self, name: str, among: Fit, alone: Array, k: int) -> Estimate:

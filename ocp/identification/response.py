@@ -85,8 +85,8 @@ class Response:
 
     def __init__(self, plant: Plant, names: Sequence[str], signals: Sequence[str]) -> None:
         self.names = tuple(names)
-        columns = [[kind] * (1 if kind == "torque" else plant.tips) for kind in signals]
-        self.kinds = np.array(sum(columns, []))
+        counts = [1 if kind == "torque" else plant.tips for kind in signals]
+        self.kinds = np.repeat(list(signals), counts)
         p = ca.SX.sym("p", len(names))
         changed = with_values(plant, dict(zip(names, ca.vertsplit(p), strict=True)))
         size, count = 2 * plant.modes, 1 + 2 * plant.modes

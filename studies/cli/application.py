@@ -18,6 +18,7 @@ from quietarm.ocp.interrupts import as_ctrl_c
 BAD_INPUT, NOT_SOLVED = 2, 1
 
 COMMANDS = {
+    "identify": "Fit a plant's parameters to recordings of a machine.",
     "plan": "Find the still move of least energy.",
     "evaluate": "Compute the figures of given coefficients.",
     "front": "Find the trade-off of residual and energy.",
@@ -76,9 +77,9 @@ def _say_version(ctx: click.Context, param: click.Parameter, wanted: bool) -> No
 def quietarm() -> None:
     """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
 
-    PLANT is single-link, arm-on-flexible-link or dual-link, or that of a --plant-file. Angles are
-    radians, or 30deg, pi/6, -pi/2; speeds rad/s, or 60deg; lengths metres, or 1mm; times seconds,
-    or 800ms.
+    PLANT is single-link, arm-on-flexible-link, dual-link or flexible-beam, that of a --plant-file,
+    or the file of an identified machine. Angles are radians, or 30deg, pi/6, -pi/2; speeds rad/s,
+    or 60deg; lengths metres, or 1mm; times seconds, or 800ms.
 
     \b
     Examples:

@@ -4,24 +4,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, Field, fields
+from dataclasses import MISSING, Field, fields, replace
 from typing import Any
 
 from quietarm.models import Plant, known_plants
-from quietarm.ocp import UncertainPlant
+from quietarm.ocp import Identified, UncertainPlant
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import once, parse_share
 
 HERTZ_OF = "rad/s"
 """The unit of parameters that may be given in Hz."""
+MEASURED = "measured"
+"""In the place of errors: the intervals of an identified machine."""
 
 
-def parse_plant(name: str) -> type[Plant]:
-    """A class of plants by its name; ValueError suggests the nearest name."""
+def parse_plant(name: str) -> type[Plant] | Identified:
+    """A class of plants by its name, or an identified machine by its file.
+
+    ValueError suggests the nearest name.
+    """
+    if name.endswith(".json"):
+        return Identified.load(name)
     plants = known_plants()
     if name in plants:
         return plants[name]
-    raise ValueError(unknown("plant", name, sorted(plants), "; your own by its --plant-file"))
+    raise ValueError(
+        unknown(
+            "plant",
+            name,
+            sorted(plants),
+            "; your own by its --plant-file, an identified one by its .json",
+        )
+    )
 
 
 def parse_setting(text: str, what: str, example: str) -> tuple[str, str]:
@@ -33,21 +47,35 @@ def parse_setting(text: str, what: str, example: str) -> tuple[str, str]:
 
 
 def parse_error(text: str) -> tuple[str, float]:
-    """Read how far a parameter may be wrong, ``frequency=10%``; ValueError when it is none."""
+    """Read how far a parameter may be wrong, ``frequency=10%``; ValueError when it is none.
+
+    ``measured`` stands for the intervals of an identified machine.
+    """
+    if text == MEASURED:
+        return MEASURED, 0.0
     name, equals, share = (part.strip() for part in text.partition("="))
     if not (equals and name and share):
         raise ValueError(f"{text!r} is no error; give a name and its share, as frequency=10%")
     return name.replace("-", "_"), parse_share(share)
 
 
-def uncertain(plant: Plant, errors: Iterable[tuple[str, float]]) -> Plant:
+def uncertain(
+    plant: Plant, errors: Iterable[tuple[str, float]], kind: type[Plant] | Identified | None
+) -> Plant:
     """The plant that may be wrong by these errors; ValueError where it cannot be."""
     ranges = once(errors, "--robust ")
+    if ranges.pop(MEASURED, None) is not None:
+        if not isinstance(kind, Identified):
+            raise ValueError(
+                "--robust measured is for an identified machine; give its file as PLANT, or errors "
+                "as frequency=10%"
+            )
+        ranges = {**kind.errors, **ranges}
     return UncertainPlant(plant, ranges) if ranges else plant
 
 
 def chosen_plant(
-    kind: type[Plant] | None,
+    kind: type[Plant] | Identified | None,
     own: Mapping[str, type[Plant]] | None,
     settings: Iterable[tuple[str, str]],
 ) -> Plant:
@@ -60,21 +88,26 @@ def chosen_plant(
         if len(own) > 1:
             raise ValueError(f"the plant file defines {' and '.join(own)}; name one as PLANT")
         (kind,) = own.values()
-    elif own is not None and kind not in own.values():
+    machine = kind.plant if isinstance(kind, Identified) else None
+    if isinstance(kind, Identified):
+        kind = type(kind.plant)
+    if own is not None and kind not in own.values():
         raise ValueError(
             f"the plant file defines {' and '.join(own)}, not {kind.name}; leave {kind.name} or "
             "--plant-file out"
         )
-    return _made(kind, settings)
+    return _made(kind, machine, settings)
 
 
-def _made(kind: type[Plant], settings: Iterable[tuple[str, str]]) -> Plant:
+def _made(kind: type[Plant], machine: Plant | None, settings: Iterable[tuple[str, str]]) -> Plant:
     known = {entry.name: entry for entry in fields(kind)}
     given: dict[str, float] = {}
     for name, text in once(settings, "--set ").items():
         if name not in known:
             raise ValueError(has_no(kind.name, "parameter", name, known))
         given[name] = _number(known[name], text)
+    if machine is not None:
+        return replace(machine, **given)
     for name, entry in known.items():
         if entry.default is MISSING and entry.default_factory is MISSING and name not in given:
             raise ValueError(f"{kind.name} has no value for {name}; give --set {name}=...")

@@ -56,7 +56,8 @@ plant_file_option = partial(
 robust_option = click.option(
     "--robust", type=ERROR, multiple=True, metavar="NAME=SHARE",
     help="Count as the residual the largest one while the frequency, the damping or a parameter of "
-    "the plant is wrong by up to this, as frequency=10%; may be repeated.",
+    "the plant is wrong by up to this, as frequency=10%; may be repeated. `measured` has the "
+    "intervals of an identified machine.",
 )  # fmt: skip
 
 
@@ -182,7 +183,7 @@ def own_task_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def _task_of(named: dict[str, Any]) -> PointToPoint:
     kind, own, parameters = (named.pop(name) for name in ("plant", "plant_file", "parameters"))
-    plant = uncertain(chosen_plant(kind, own, parameters), named.pop("robust", ()))
+    plant = uncertain(chosen_plant(kind, own, parameters), named.pop("robust", ()), kind)
     after, wait = (named.pop(name) for name in _EARLIER)
     if after is not None:
         named |= _left_by(after, wait or 0.0, plant)

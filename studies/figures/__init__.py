@@ -19,6 +19,7 @@ from quietarm.studies.figures.fronts import (
     draw_seed_energies,
     front_figure,
 )
+from quietarm.studies.figures.identification import identification_figure
 from quietarm.studies.figures.looks import BLUE, COLOURS, GREEN, GREY, RED, Look, look
 from quietarm.studies.figures.motion import (
     PAPER_PANELS,
@@ -63,6 +64,7 @@ __all__ = [
     "draw_whole",
     "floor_figure",
     "front_figure",
+    "identification_figure",
     "look",
     "motion_figure",
     "polish_figure",

@@ -8,16 +8,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
-from quietarm.ocp.files import read_bytes
+from quietarm.ocp.identification.recording import MOST_ANGLE
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.studies.export.tables import UNITS
+from quietarm.studies.reading.table import column_in, column_of, read_table
 
 Array = NDArray[np.float64]
-_NAMES = {"time": ("time", "t"), "angle": ("angle", "theta")}
-"""What headings of a column begin with, before _ and the unit."""
 _LEAST_ROWS, _MOST_ROWS = 5, 5000
-_MOST_ANGLE = 100.0
-"""Angles beyond this [rad] are in degrees, most likely."""
 _JUMP = 20.0
 """A speed so many times that of three to six points before and after it is a jump."""
 
@@ -47,39 +44,18 @@ def read_path(path: Path) -> RecordedPath:
     """
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
-    table = _table(path)
-    time, angle = (_column(path, table, quantity) for quantity in _NAMES)
+    table = read_table(path)
+    time, angle = (
+        column_in(
+            path, table, column_of(path, table, quantity, UNITS[quantity]), "", UNITS[quantity]
+        )
+        for quantity in ("time", "angle")
+    )
     _check(path, time, angle)
     spline = CubicSpline(time - time[0], angle, bc_type="clamped")
     jerk, acceleration, *_ = spline.c
     motion = FreeMotion(time - time[0], 2 * acceleration, 6 * jerk)
     return RecordedPath(float(angle[0]), float(angle[-1]), motion)
-
-
-def _table(path: Path) -> dict[str, Array]:
-    try:
-        lines = read_bytes(path).decode().splitlines()
-        heading = [name.strip() for name in lines[0].split(",")]
-        rows = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:] if line])
-    except (UnicodeDecodeError, ValueError, IndexError) as error:
-        raise FileFormatError(
-            f"{path} is no table of numbers under a heading ({error}); write columns time_s and "
-            "angle_rad, separated by commas"
-        ) from None
-    if rows.ndim != 2 or rows.shape[1] != len(heading):
-        raise FileFormatError(f"{path} has rows of other length than its heading; mend it")
-    return dict(zip(heading, rows.T, strict=True))
-
-
-def _column(path: Path, table: dict[str, Array], quantity: str) -> Array:
-    """The first column of a quantity, in SI units."""
-    for name, values in table.items():
-        begin, _, unit = name.partition("_")
-        units = UNITS[quantity]
-        if begin.lower() in _NAMES[quantity] and (not unit or unit in units):
-            return values / units[unit or next(iter(units))]
-    wanted = " or ".join(f"{quantity}_{unit}" for unit in UNITS[quantity])
-    raise FileFormatError(f"{path} has no column {wanted}; its columns are {', '.join(table)}")
 
 
 def _check(path: Path, time: Array, angle: Array) -> None:
@@ -95,7 +71,7 @@ def _check(path: Path, time: Array, angle: Array) -> None:
         raise FileFormatError(
             f"{path}: the time does not increase from row {late[0] + 1} to the next; sort the rows"
         )
-    if np.abs(angle).max() > _MOST_ANGLE:
+    if np.abs(angle).max() > MOST_ANGLE:
         raise FileFormatError(
             f"{path}: an angle of {np.abs(angle).max():g} rad; is it in degrees? name the column "
             "angle_deg"
