@@ -111,7 +111,7 @@ class Identified(Saved):
             name, told = next(iter(self.untold)), [one.parameter for one in self.told]
             raise ValueError(
                 f"{name} was not told by the recordings ({self.untold[name]}); state errors of "
-                f"your own, as frequency=5%, or identify {' and '.join(told) or 'the frequency'} alone"
+                f"your own, as frequency=5%, or identify {' and '.join(told) or 'omega'} alone"
             )
         return {
             one.parameter: one.error

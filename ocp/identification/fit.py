@@ -7,7 +7,7 @@ linear in the signals and eliminated by projection (Golub and Pereyra, SIAM J. N
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,7 +84,7 @@ def left(response: Response, piece: Piece, p: Array, scaled: bool) -> Left:
     target = ((y - known) * w).ravel()
     share = solved(target)[:among]
     residual = target - basis @ (basis.T @ target)
-    change = np.tensordot(slopes[..., 0 if scaled else 1 :], share, axes=(3, 0))
+    change: Array = np.tensordot(slopes[..., 0 if scaled else 1 :], share, axes=(3, 0))
     change = change + slopes[..., 0] * (not scaled)
     D = (change * w).reshape(len(p), -1).T
     D = basis @ (basis.T @ D) - D
@@ -92,7 +92,7 @@ def left(response: Response, piece: Piece, p: Array, scaled: bool) -> Left:
     return Left(y - residual / w, residual, D.T.reshape(-1, *y.shape))
 
 
-def _projector(A: Array):
+def _projector(A: Array) -> tuple[Array, Callable[[Array], Array]]:
     """An orthonormal basis of the columns, and a function that solves for their shares."""
     scale = np.linalg.norm(A, axis=0)
     scale[scale == 0] = 1.0
@@ -183,7 +183,7 @@ def _block_sums(information: Array, pull: Array) -> Array:
     """Sums of a pull over blocks of equal information."""
     before = np.cumsum(information) / information.sum()
     block = np.minimum((before * _BLOCKS).astype(int), _BLOCKS - 1)
-    return np.bincount(block, pull, _BLOCKS)
+    return np.bincount(block, pull, _BLOCKS).astype(float)
 
 
 def fit(response: Response, pieces: Sequence[Piece], start: Array, scaled: bool) -> Fit:
@@ -207,7 +207,7 @@ def fit(response: Response, pieces: Sequence[Piece], start: Array, scaled: bool)
     return now
 
 
-def _minimised(at, now: Fit, scale: Array) -> Fit:
+def _minimised(at: Callable[[Array, Sequence[Piece]], Fit], now: Fit, scale: Array) -> Fit:
     damping = 1e-3
     for _ in range(_ITERATIONS):
         J, r = now.slopes * scale[:, None], now.residual

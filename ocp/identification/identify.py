@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 _FREQUENCY, _DAMPING = "rad/s", "zeta"
 """Unit of a mode's frequency, and how the name of its damping ratio begins."""
 _LEVEL = 0.95
+_SLOWEST, _FASTEST = 0.02, 500.0
+"""Frequencies [Hz] beyond which a wrong unit of the time is more likely."""
 _BAD = 0.9
 """Share of the signals' size that a fit may leave."""
 
@@ -146,6 +148,11 @@ def _pieces(recordings: Sequence[Recording], forced: bool) -> tuple[list[Piece],
     known = list(zip(recordings, joints, strict=True))
     stills = [still for one, joint in known for still in standstills(one, joint)]
     frequency = strongest_frequency(_loudest(stills) or recordings)
+    if not _SLOWEST <= frequency <= _FASTEST:
+        raise ValueError(
+            f"{recordings[0].name} swings at {frequency:.3g} Hz, as no arm does; is its time in "
+            "another unit?"
+        )
     whole = [Piece.of(*each) for each in known if each[1].moves]
     found = [
         Piece.of(decay, joint)
@@ -153,6 +160,12 @@ def _pieces(recordings: Sequence[Recording], forced: bool) -> tuple[list[Piece],
         for decay in ring_downs(one, joint, frequency)
     ]
     taken = whole if forced or not found else found
+    if forced and len(whole) < len(known):
+        name = next(one.name for one, joint in known if not joint.moves)
+        raise ValueError(
+            f"{name}: the joint does not move, and what is sought shows while it moves alone; "
+            "record its angle during a move"
+        )
     if not taken:
         longest = max(one.periods(frequency) for one in recordings)
         few = longest < LEAST_PERIODS
@@ -161,12 +174,6 @@ def _pieces(recordings: Sequence[Recording], forced: bool) -> tuple[list[Piece],
             + (f": it lasts {longest:.2g} periods of {frequency:.3g} Hz" if few else "")
             + "; record the tip for two periods and more after a push, with the joint held, or "
             "record the joint's angle, too"
-        )
-    if forced and len(whole) < len(known):
-        name = next(one.name for one, joint in known if not joint.moves)
-        raise ValueError(
-            f"{name}: the joint does not move, and what is sought shows while it moves alone; "
-            "record its angle during a move"
         )
     names = {piece.recording.name for piece in taken}
     return taken, [one.name for one in recordings if one.name not in names], frequency

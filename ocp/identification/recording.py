@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,8 +108,9 @@ class Recording:
 
     def part(self, first: int, last: int) -> Recording:
         """Rows from first up to last."""
-        cut = {
-            name: None if getattr(self, name) is None else getattr(self, name)[first:last]
-            for name in ("time", "angle", "tip", "acceleration", "torque")
+        cut: dict[str, Any] = {
+            name: getattr(self, name)[first:last] for name in ("time", *self.signals)
         }
+        if self.angle is not None:
+            cut["angle"] = self.angle[first:last]
         return Recording(**cut, name=self.name)

@@ -11,11 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil
+from typing import Any
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models import JointMotion, Plant
+from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.identification.recording import Recording
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, modal_system, step
 from quietarm.ocp.simulation.errors import with_values
@@ -33,7 +34,7 @@ _KNOTS = (12, 24, 48, 96, 192, 384, 768, 1536)
 class Joint:
     """The joint's motion at any time, of a recorded angle: the smooth part of it."""
 
-    spline: object
+    spline: Any
 
     @classmethod
     def of(cls, recording: Recording) -> Joint:
@@ -183,7 +184,7 @@ def _units(count: int) -> list[ca.DM]:
     return [ca.DM(np.eye(count)[:, k]) for k in range(count)]
 
 
-def _fastest(plant: Plant, joint: JointMotion) -> ca.SX:
+def _fastest(plant: Plant, joint: JointMotion) -> Expression:
     """A bound on the frequencies of the modes [rad/s]."""
     K = modal_system(plant, joint).K
     return ca.sqrt(ca.mmax(ca.vertcat(*(sum(ca.fabs(entry) for entry in row) for row in K))))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,11 @@ def column_in(path: Path, table: Mapping[str, Array], name: str, unit: str, unit
     if name not in table:
         raise FileFormatError(f"{path}: {unknown('column', name, table)}")
     ending = name.rpartition("_")[2]
+    if unit and ending in units and ending != unit:
+        raise FileFormatError(
+            f"{path}: column {name} is in {ending} by its name and in {unit} as given; leave the "
+            "unit out, or rename the column"
+        )
     unit = unit or (ending if ending in units else next(iter(units)))
     return table[name] / units[unit]
 
@@ -87,7 +93,7 @@ def _of_text(text: str) -> dict[str, Array]:
     return dict(zip(heading, np.array(cells, float).T, strict=True))
 
 
-def _of_array(values: Array) -> dict[str, Array]:
+def _of_array(values: Any) -> dict[str, Array]:
     if values.dtype.names:
         return {name: np.asarray(values[name], float) for name in values.dtype.names}
     if values.ndim != 2:
