@@ -71,9 +71,20 @@ BEST = "best"
 _TIME_OR_BEST = Parsed("time", lambda text: text if text == BEST else parse_time(text))
 
 
-def _task_options(required: bool, fastest: bool = False) -> Callable[[F], F]:
+def _range(text: str) -> float | tuple[float, float]:
+    """A time, or two with a colon between."""
+    first, colon, last = text.partition(":")
+    return (parse_time(first), parse_time(last)) if colon else parse_time(text)
+
+
+_TIME_OR_RANGE = Parsed("time", _range)
+
+
+def _task_options(required: bool, fastest: bool = False, ranged: bool = False) -> Callable[[F], F]:
     time, words = TIME, "Travelling time."
     wait, until = TIME, "Time from that plan's arrival to this start"
+    if ranged:
+        time, words = _TIME_OR_RANGE, "Travelling time; with --over duration two, as 600ms:1.4s."
     if fastest:
         time, words = _TIME_OR_FASTEST, "Travelling time, or `fastest`: the least in the limits."
         wait, until = _TIME_OR_BEST, f"{until}, or `best`: of least energy, up to a period"
@@ -133,6 +144,20 @@ def task_or_fastest_options(command: Callable[..., Any]) -> Callable[..., Any]:
         return command(*positional, task=task, fastest=fastest, best_after=after, **named)
 
     return _task_options(required=True, fastest=True)(with_task)
+
+
+def task_or_durations_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same where the duration may be a range: the command gets both its ends or None."""
+
+    @wraps(command)
+    def with_task(*positional: Any, **named: Any) -> Any:
+        given = named["duration"]
+        durations = given if isinstance(given, tuple) else None
+        if durations is not None:
+            named["duration"] = durations[0]
+        return command(*positional, task=_task_of(named), durations=durations, **named)
+
+    return _task_options(required=True, ranged=True)(with_task)
 
 
 def task_or_path_options(command: Callable[..., Any]) -> Callable[..., Any]:
