@@ -189,7 +189,7 @@ def shortened(words):
     """The words of a command, with fewer generations or points."""
     quiet = ["--quiet"] * (words[0] in QUIET)
     fewer = SHORTER.get(words[0], [])
-    if words[0] == "front":
+    if words[0] == "front" and "--method" in words:
         fewer = SHORTER.get(words[words.index("--method") + 1], SEARCH)
     return [*words, *quiet, *fewer]
 
