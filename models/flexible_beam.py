@@ -26,6 +26,8 @@ _PLACES = [(float(x + 1) / 2, float(w) / 2) for x, w in zip(_NODES, _WEIGHTS, st
 """Places along the beam, as shares of its length, and their weights in integrals."""
 _NEWTON = 12
 """Newton's iterations for a wave number: from its bounds it takes six."""
+_LONGEST = 100.0
+"""A longer beam [m] was typed in other units."""
 _NONE = "none by default"
 _PAPERS = "the paper's plate, section 3.1"
 
@@ -177,6 +179,11 @@ class FlexibleBeam(Plant):
         for name in ("zeta", "hub_inertia", "friction", "tip_mass", "hub_radius"):
             if getattr(self, name) < 0:
                 raise ValueError(f"{name} is {getattr(self, name):g}; give 0 or more")
+        if self.length > _LONGEST:
+            raise ValueError(
+                f"length is {self.length:g} m, more than {_LONGEST:g}; are these millimetres? give "
+                "metres, or 475mm"
+            )
         if self.mode_count not in range(1, MOST_MODES + 1):
             raise ValueError(
                 f"mode_count is {self.mode_count:g}; give a whole number from 1 to {MOST_MODES}"

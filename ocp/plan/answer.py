@@ -170,7 +170,7 @@ class Plan(MotionAnswer):
         sampled = self.sampled(np.arange(ticks + 1) / sample_rate)
         tips = sampled.tips.shape[1]
         tip_names = ["tip_m"] if tips == 1 else [f"tip_{i + 1}_m" for i in range(tips)]
-        header = ["t_s", "theta_rad", "dtheta_rad_s", "ddtheta_rad_s2", *tip_names]
+        header = ["time_s", "angle_rad", "speed_rad_s", "acceleration_rad_s2", *tip_names]
         header += ["torque_Nm", "power_W"]
         table = np.column_stack(
             [sampled.time, sampled.joint, sampled.tips, sampled.torque, sampled.power]

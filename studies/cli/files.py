@@ -11,16 +11,16 @@ import click
 from quietarm.ocp import Plan, PointToPoint
 from quietarm.ocp.plan.answer import ticks_of_move
 from quietarm.studies.cli.options import options, typed
-from quietarm.studies.cli.types import OUTPUT, PICTURE
+from quietarm.studies.cli.types import CSV_FILE, JSON_FILE, PICTURE
 from quietarm.studies.display.saving import File, drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _PLAN_FILES = options(
-    click.option("--output", type=OUTPUT,
+    click.option("--output", type=JSON_FILE,
                  help="Write the plan to this JSON file; - is standard output."),
-    click.option("--csv", "csv_file", type=OUTPUT, help="Write the move to this CSV file."),
+    click.option("--csv", "csv_file", type=CSV_FILE, help="Write the move to this CSV file."),
     click.option("--sample-rate", type=float, default=1000.0, show_default=True,
                  help="Rows per second of the CSV file [Hz]."),
     click.option("--figure", type=PICTURE,

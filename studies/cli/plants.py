@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, Field, fields, replace
-from typing import Any
+from dataclasses import MISSING, fields, replace
 
 from quietarm.models import Plant, known_plants
 from quietarm.ocp import Identified, UncertainPlant
 from quietarm.ocp.checks import has_no, unknown
-from quietarm.studies.cli.quantities import once, parse_share
+from quietarm.studies.cli.quantities import once, parse_in, parse_share
 
-HERTZ_OF = "rad/s"
-"""The unit of parameters that may be given in Hz."""
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
 
@@ -105,24 +101,10 @@ def _made(kind: type[Plant], machine: Plant | None, settings: Iterable[tuple[str
     for name, text in once(settings, "--set ").items():
         if name not in known:
             raise ValueError(has_no(kind.name, "parameter", name, known))
-        given[name] = _number(known[name], text)
+        given[name] = parse_in(known[name].metadata.get("unit", "-"), text, name)
     if machine is not None:
         return replace(machine, **given)
     for name, entry in known.items():
         if entry.default is MISSING and entry.default_factory is MISSING and name not in given:
             raise ValueError(f"{kind.name} has no value for {name}; give --set {name}=...")
     return kind(**given)
-
-
-def _number(entry: Field[Any], text: str) -> float:
-    hertz = text.removesuffix("Hz")
-    try:
-        if hertz != text and entry.metadata.get("unit") == HERTZ_OF:
-            return 2 * math.pi * float(hertz)
-        return float(text)
-    except ValueError:
-        unit = entry.metadata.get("unit", "-")
-        wanted = "number" if unit == "-" else f"number in {unit}, without the unit"
-        if unit == HERTZ_OF:
-            wanted = f"number in {unit}, or one in Hz, as {entry.name}=3.2Hz"
-        raise ValueError(f"parameter {entry.name} is {text!r}; give a {wanted}") from None

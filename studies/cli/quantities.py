@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from functools import reduce
 from operator import add
@@ -17,10 +17,18 @@ from quietarm.ocp.energy import Energy, Mix, known_energies
 T = TypeVar("T")
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")
-_PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%]*)")
+_PLAIN = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%°/]*)")
 _LENGTHS = {"": 1.0, "m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6}
 _TIMES = {"": 1.0, "s": 1.0, "ms": 1e3}
-_ANGLES = {"": 1.0, "rad": 1.0, "deg": 180 / math.pi}
+_ANGLES = {"": 1.0, "rad": 1.0, **dict.fromkeys(("deg", "°", "degrees"), 180 / math.pi)}
+_COMMA = re.compile(r"[+-]?\d+,\d+[^\d,]*")
+_TORQUES = {"": 1.0, "Nm": 1.0, "mNm": 1e3}
+_IN_UNITS: Mapping[str, dict[str, float]] = {
+    "m": _LENGTHS, "s": _TIMES, "N m": _TORQUES, "kg": {"": 1.0, "kg": 1.0, "g": 1e3},
+    "rad/s": {"": 1.0, "rad/s": 1.0, "kHz": 5e-4 / math.pi,
+              **dict.fromkeys(("Hz", "hz"), 0.5 / math.pi)},
+}  # fmt: skip
+"""By the unit of SI, those that a quantity may be typed in."""
 _PLUS = re.compile(r"(?<!\d[eE])\+")
 _MOST_WHOLE = 1e15
 # Units a metre, second or radian: dividing by 1000 is exact where multiplying by 0.001 is not.
@@ -76,6 +84,21 @@ def parse_length(text: str) -> float:
 def parse_time(text: str) -> float:
     """Read a time: seconds, or with s or ms. ValueError when it is none."""
     return _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")
+
+
+def parse_torque(text: str) -> float:
+    """Read a torque: newton metres, or with Nm or mNm. ValueError when it is none."""
+    return _with_unit(text, _TORQUES, "a torque", "newton metres (1.5) or 200mNm")
+
+
+def parse_in(unit: str, text: str, name: str) -> float:
+    """Read a number of a unit of SI, or with another unit of its kind: 0.6, 600mm, 3.2Hz."""
+    units = _IN_UNITS.get(unit, {"": 1.0})
+    others = [one for one in units if one not in ("", unit, "hz")]
+    wanted = "number" if unit == "-" else f"number in {unit}, without the unit"
+    if others:
+        wanted = f"number in {unit}, or with {' or '.join(others)} behind it"
+    return _with_unit(text, units, f"a value of {name}", f"a {wanted}")
 
 
 def parse_state(text: str) -> ModalState:
@@ -167,6 +190,8 @@ def _with_unit(text: str, units: dict[str, float], kind: str, examples: str) -> 
     try:
         return float(text)  # nan and inf, for the task to refuse with its own words
     except ValueError:
+        if _COMMA.fullmatch(text.strip()):
+            examples = f"{text.strip().replace(',', '.')}, with a point"
         raise ValueError(f"{text!r} is not {kind}; give {examples}") from None
 
 

@@ -25,6 +25,7 @@ from quietarm.studies.cli.types import (
     PLANT_FILE,
     SETTING,
     TIME,
+    TORQUE,
     Parsed,
 )
 from quietarm.studies.display.words import plant_words
@@ -45,7 +46,8 @@ def _limit_option(quantity: Quantity) -> Callable[[F], F]:
         parse = partial(parse_rate, order=quantity.derivative)
         help_text = f"{words} [{quantity.unit}], or as 60deg."
         return click.option(option, type=Parsed(quantity.name, parse), help=help_text)
-    return click.option(option, type=float, help=f"{words} [{quantity.unit}].")
+    kind = TORQUE if quantity.unit == "N m" else float
+    return click.option(option, type=kind, help=f"{words} [{quantity.unit}].")
 
 
 plant_file_option = partial(

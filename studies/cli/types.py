@@ -21,6 +21,7 @@ from quietarm.studies.cli.quantities import (
     parse_share,
     parse_state,
     parse_time,
+    parse_torque,
     parse_weights,
     parse_whole,
 )
@@ -97,10 +98,10 @@ def _is_output(text: str) -> Path:
     return STDOUT if text == str(STDOUT) else check_writable(text)
 
 
-def _is_page(text: str) -> Path:
+def _ends_in(endings: tuple[str, ...], what: str, text: str) -> Path:
     path = _is_output(text)
-    if path is not STDOUT and path.suffix.lower() not in (".html", ".htm"):
-        raise ValueError(f"{text} is for a page of HTML; end its name in .html")
+    if path is not STDOUT and path.suffix.lower() not in endings:
+        raise ValueError(f"{text} is for {what}; end its name in {endings[0]}")
     return path
 
 
@@ -121,6 +122,7 @@ ENERGY = Parsed("energy", parse_energy)
 ANGLE = Parsed("angle", parse_joint_angle)
 LENGTH = Parsed("length", parse_length)
 TIME = Parsed("time", parse_time)
+TORQUE = Parsed("torque", parse_torque)
 SHARE = Parsed("share", parse_share)
 MODES = Parsed("W:W'", parse_state)
 WHOLE = Parsed("integer", parse_whole)
@@ -129,6 +131,8 @@ WEIGHTS = Parsed("weights", parse_weights)
 INPUT = FileName("file", _is_input, READ)
 OUTPUT = FileName("file", _is_output, WRITTEN)
 STATE = FileName("file", partial(_in_place, check_writable), KEPT)
-PAGE = FileName("page", _is_page, WRITTEN)
+JSON_FILE = FileName("file", partial(_ends_in, (".json", ""), "JSON"), WRITTEN)
+CSV_FILE = FileName("file", partial(_ends_in, (".csv", ".txt", ""), "a table as CSV"), WRITTEN)
+PAGE = FileName("page", partial(_ends_in, (".html", ".htm"), "a page of HTML"), WRITTEN)
 PICTURE = FileName("picture", check_figure, WRITTEN)
 FOLDER = FileName("folder", partial(_in_place, check_folder), WRITTEN)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import positive, unknown
@@ -51,22 +52,32 @@ def _mat(plan: Plan, path: Path, wishes: Wishes) -> Files:
     return {path: mat_bytes(columns, facts)}
 
 
-FORMATS: dict[str, tuple[tuple[str, ...], Callable[[Plan, Path, Wishes], Files]]] = {
-    "csv": ((".csv",), _csv),
-    "c": ((".c",), _c),
-    "ros": ((".yaml", ".yml"), _ros),
-    "mat": ((".mat",), _mat),
+class Format(NamedTuple):
+    """The endings of a form's files, what makes them, and which wishes it takes."""
+
+    endings: tuple[str, ...]
+    make: Callable[[Plan, Path, Wishes], Files]
+    takes: tuple[str, ...]
+
+
+FORMATS = {
+    "csv": Format((".csv",), _csv, ("columns", "rate")),
+    "c": Format((".c",), _c, ()),
+    "ros": Format((".yaml", ".yml"), _ros, ("rate", "joint")),
+    "mat": Format((".mat",), _mat, ("columns", "rate")),
 }
-"""By name: the endings of its files, and what makes them."""
 
 
 def format_of(path: Path) -> str:
     """The format of a file by its ending; ValueError where it says none."""
-    for name, (endings, _) in FORMATS.items():
-        if path.suffix.lower() in endings:
+    ending = path.suffix.lower()
+    for name, form in FORMATS.items():
+        if ending in form.endings:
             return name
-    known = ", ".join(ending for endings, _ in FORMATS.values() for ending in endings)
-    raise ValueError(f"{path} does not say in which form it is; give --format, or one of {known}")
+    if ending == ".h":
+        raise ValueError(f"{path} is written beside its C source; give {path.with_suffix('.c')}")
+    known = ", ".join(one for form in FORMATS.values() for one in form.endings)
+    raise ValueError(f"{path} does not say in which form it is; end its name in one of {known}")
 
 
 def export_plan(
@@ -110,8 +121,11 @@ def export_plan(
     name = format or format_of(path)
     if name not in FORMATS:
         raise ValueError(unknown("format", name, FORMATS))
+    form = FORMATS[name]
+    if path.suffix and format_of(path) != name:
+        raise ValueError(f"{path} is no name for {name}; end it in {form.endings[0]}")
     wishes = Wishes(columns, positive("sample rate", rate, "Hz"), joint)
-    files = FORMATS[name][1](plan, path, wishes)
+    files = form.make(plan, path, wishes)
     for file, content in files.items():
         write_whole(file, content)
     return list(files)

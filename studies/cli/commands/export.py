@@ -6,10 +6,11 @@ from pathlib import Path
 
 import click
 from quietarm.studies.cli.ending import finish
+from quietarm.studies.cli.options import typed
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import INPUT, OUTPUT, Named
 from quietarm.studies.document.blocks import Document, Lines
-from quietarm.studies.export.formats import FORMATS, Wishes, export_plan
+from quietarm.studies.export.formats import FORMATS, Wishes, export_plan, format_of
 from quietarm.studies.reading.saved import load_plans
 
 
@@ -39,6 +40,11 @@ def export(
       quietarm export plan.json --output move.csv --columns time:ms,angle:deg,torque --rate 500
       quietarm export plan.json --output move.yaml --joint shoulder_pan_joint --rate 100
     """  # noqa: D301  # \b is click's: do not rewrap
+    form = form or format_of(output)
+    for name in ("columns", "rate", "joint"):
+        if typed(name) and name not in FORMATS[form].takes:
+            takers = " and ".join(one for one, each in FORMATS.items() if name in each.takes)
+            raise ValueError(f"--{name} is for {takers}, not for {form}; leave it out")
     (saved,) = load_plans([plan]).values()
     written = export_plan(saved, output, form, columns=columns, rate=rate, joint=joint)
     finish([], Document("", [Lines([f"wrote {path}" for path in written])]))

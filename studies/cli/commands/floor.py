@@ -11,7 +11,7 @@ from quietarm.ocp.interrupts import note_interrupts
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import task_options
-from quietarm.studies.cli.types import OUTPUT, PICTURE, WHOLE
+from quietarm.studies.cli.types import JSON_FILE, PICTURE, WHOLE
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.reports.floor import floor_document, plan_beside
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     "--tolerance", type=float, default=0.005, show_default=True,
     help="Refine the grid until the energy changes by less than this share.",
 )  # fmt: skip
-@click.option("--output", type=OUTPUT, help="Write the floor to this JSON file.")
+@click.option("--output", type=JSON_FILE, help="Write the floor to this JSON file.")
 @click.option("--figure", type=PICTURE, help="Draw it over the plan (.png, .pdf or .svg).")
 @quiet_option
 def floor(

@@ -25,7 +25,16 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.over import FEW, check_over, found_over
 from quietarm.studies.cli.task import robust_option, task_or_durations_options
-from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, STATE, WEIGHTS, WHOLE, Named
+from quietarm.studies.cli.types import (
+    CSV_FILE,
+    INPUT,
+    JSON_FILE,
+    PICTURE,
+    STATE,
+    WEIGHTS,
+    WHOLE,
+    Named,
+)
 from quietarm.studies.display.progress import count
 from quietarm.studies.display.saving import STDOUT, drawing
 from quietarm.studies.display.search_progress import search_display
@@ -113,12 +122,12 @@ _search_options = options(
 @_gradient_options
 @_search_options
 @click.option(
-    "--output", type=OUTPUT,
+    "--output", type=JSON_FILE,
     help="Write the front to this JSON file; with --runs one for every seed: front.json gives "
     "front-seed0.json, front-seed1.json, ...",
 )  # fmt: skip
 @click.option(
-    "--csv", "csv_file", type=OUTPUT,
+    "--csv", "csv_file", type=CSV_FILE,
     help="Write the points to this CSV file: residual, energy, coefficients; with --runs as "
     "--output.",
 )  # fmt: skip

@@ -13,7 +13,7 @@ from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.plants import chosen_plant
 from quietarm.studies.cli.task import plant_file_option
-from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, PLANT, SETTING, Parsed
+from quietarm.studies.cli.types import INPUT, JSON_FILE, PICTURE, PLANT, SETTING, Parsed
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.reading.recording import read_recording, units_of
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 @click.option("--free", type=Parsed("names", lambda text: [one.strip() for one in text.split(",")]),
               help="The parameters that are sought, as omega,zeta. [default: frequencies and "
               "dampings, and with a torque what shows in it alone]")  # fmt: skip
-@click.option("--output", type=OUTPUT,
+@click.option("--output", type=JSON_FILE,
               help="Write the machine to this JSON file, which serves as a PLANT.")  # fmt: skip
 @click.option("--figure", type=PICTURE, help="Draw recordings and fit (.png, .pdf or .svg).")
 @quiet_option

@@ -10,7 +10,7 @@ from quietarm.ocp import PointToPoint
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import family_option, quiet_option
 from quietarm.studies.cli.task import task_options
-from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, WHOLE
+from quietarm.studies.cli.types import CSV_FILE, INPUT, JSON_FILE, PICTURE, WHOLE
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.reading.foreign import read_found
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 @click.option("--bound", type=float, help="Refuse coefficients beyond this box.")
 @click.option("--evaluations", type=WHOLE, help="Candidates that it took to find them.")
 @click.option("--method", help="What found them; by default the name of the file.")
-@click.option("--output", type=OUTPUT, help="Write the front to this JSON file.")
-@click.option("--csv", "csv_file", type=OUTPUT, help="Write its points to this CSV file.")
+@click.option("--output", type=JSON_FILE, help="Write the front to this JSON file.")
+@click.option("--csv", "csv_file", type=CSV_FILE, help="Write its points to this CSV file.")
 @click.option("--figure", type=PICTURE, help="Draw the front (.png, .pdf or .svg).")
 @quiet_option
 def import_(

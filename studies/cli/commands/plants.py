@@ -9,7 +9,6 @@ from typing import Any
 import click
 from quietarm.models import Plant, known_plants
 from quietarm.studies.cli.ending import finish
-from quietarm.studies.cli.plants import HERTZ_OF
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import PLANT
 from quietarm.studies.document.blocks import Document, Facts, Lines
@@ -32,7 +31,7 @@ def plants(plant: type[Plant] | None, plant_file: Mapping[str, type[Plant]] | No
         (plant,) = known.values()
     if plant is not None:
         rows = [(entry.name, _in_words(entry)) for entry in fields(plant)]
-        title, then = plant.name, f"--set NAME=VALUE sets one; what is in {HERTZ_OF} also as 2Hz."
+        title, then = plant.name, "--set NAME=VALUE sets one; also as 2Hz, 600mm or 200g."
     else:
         rows = [(name, (kind.__doc__ or "").partition("\n")[0]) for name, kind in known.items()]
         title, then = "", "quietarm plants NAME lists its parameters."

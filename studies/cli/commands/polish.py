@@ -14,7 +14,7 @@ from quietarm.ocp.checks import whole
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import plant_file_option
-from quietarm.studies.cli.types import INPUT, OUTPUT, PICTURE, WHOLE
+from quietarm.studies.cli.types import CSV_FILE, INPUT, JSON_FILE, PICTURE, WHOLE
 from quietarm.studies.display.progress import count, working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.display.words import counted, millimetres
@@ -38,8 +38,8 @@ _ROWS = 10
     help="Only this many points, spread evenly along the front; all of them by default, which "
     "takes about 50 ms each.",
 )  # fmt: skip
-@click.option("--output", type=OUTPUT, help="Write the improved front to this JSON file.")
-@click.option("--csv", "csv_file", type=OUTPUT, help="Write every point's gain to this CSV file.")
+@click.option("--output", type=JSON_FILE, help="Write the improved front to this JSON file.")
+@click.option("--csv", "csv_file", type=CSV_FILE, help="Write every point's gain to this CSV file.")
 @click.option(
     "--figure", type=PICTURE, help="Draw the front before and after (.png, .pdf or .svg)."
 )

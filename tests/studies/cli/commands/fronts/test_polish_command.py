@@ -114,7 +114,7 @@ def without(**changes):
         (lambda: without(settings={"bound": "wide"}), "", "bound is 'wide'; give a number"),
         (without, "--points 1", "points is 1; give a whole number from 2 up"),
         (without, "--output ./bad.json", "are both bad.json; give two files"),
-        (without, "--csv a.png --figure a.png", "--csv and --figure are both a.png"),
+        (without, "--csv a --output ./a", "are both a; give two files"),
         (without, "--figure a.txt", "a.txt is no picture"),
         (without, "--output nowhere/a", "folder nowhere does not exist"),
     ],

@@ -96,7 +96,7 @@ def test_the_csv_file_drives_a_joint_at_the_rate_asked_for(planned):
     with open(planned[0] / "move.csv", newline="") as file:
         header, *rows = csv.reader(file)
     assert header == [
-        "t_s", "theta_rad", "dtheta_rad_s", "ddtheta_rad_s2", "tip_m", "torque_Nm", "power_W"
+        "time_s", "angle_rad", "speed_rad_s", "acceleration_rad_s2", "tip_m", "torque_Nm", "power_W"
     ]  # fmt: skip
     time, angle, speed, acceleration, tip, torque, power = np.array(rows, dtype=float).T
     np.testing.assert_allclose(time, np.arange(251) / 250, atol=1e-9)
