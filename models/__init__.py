@@ -3,7 +3,7 @@
 from quietarm.models.arm_on_flexible_link import ArmOnFlexibleLink
 from quietarm.models.drawing import Body, flexible_link, rigid_link
 from quietarm.models.dual_link import DualLinkManipulator
-from quietarm.models.flexible_beam import BeamModes, FlexibleBeam, beam_modes
+from quietarm.models.flexible_beam import FlexibleBeam
 from quietarm.models.joint_motion import Expression, JointMotion
 from quietarm.models.plant import Plant, known_plants, parameter
 from quietarm.models.plant_file import PlantFile, file_of_plant, load_plant_file
@@ -12,7 +12,6 @@ from quietarm.models.version import __version__
 
 __all__ = [
     "ArmOnFlexibleLink",
-    "BeamModes",
     "Body",
     "DualLinkManipulator",
     "Expression",
@@ -22,7 +21,6 @@ __all__ = [
     "PlantFile",
     "SingleLinkManipulator",
     "__version__",
-    "beam_modes",
     "file_of_plant",
     "flexible_link",
     "known_plants",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -34,10 +35,13 @@ class Fastest:
     failed : tuple of (float, str)
         Shorter durations [s] that were tried, the longest first, and why each failed: the first is
         shorter by no more than the tolerance.
+    complete : bool
+        Whether no Ctrl-C came; the plan is then of the shortest duration found until it did.
     """
 
     plan: Plan
     failed: tuple[tuple[float, str], ...]
+    complete: bool
 
     @property
     def duration(self) -> float:
@@ -72,7 +76,7 @@ def fastest_move(
     Returns
     -------
     Fastest
-        The plan, and the shorter durations that failed.
+        The plan, which states the seconds of all the search, and the shorter durations that failed.
 
     Raises
     ------
@@ -85,27 +89,44 @@ def fastest_move(
     positive("tolerance", tolerance)
     profile.refuse_no_choice()
     if not task.limits:
-        options = ", ".join(f"--{name.removesuffix('_limit')}-limit" for name in LIMITS)
-        raise ValueError(f"nothing limits how fast the move may be; give one of {options}")
+        names = ", ".join(name.removesuffix("_limit") for name in LIMITS)
+        raise ValueError(f"nothing limits how fast the move may be; give a limit of {names}")
+    begin = time.perf_counter()
     search = _Search(task, profile, {
         "residual_limit": residual_limit, "bound": bound, **{"starts": 1, **settings},
     })  # fmt: skip
-    low, high = search.bracket(_least_duration(task))
-    while high / low > 1 + tolerance:
-        middle = math.sqrt(low * high)
-        if search.succeeds(middle):
-            high = middle
-        else:
-            low = middle
-    for share in _SHORTER:
-        if search.succeeds(share * low):  # durations that fail have others below them
-            return fastest_move(
-                replace(task, duration=share * low), profile, residual_limit=residual_limit,
-                bound=bound, tolerance=tolerance, **settings,
-            )  # fmt: skip
+    complete = True
+    try:
+        _narrow(search, tolerance)
+    except KeyboardInterrupt:
+        complete = False
+        if search.best is None:
+            raise
+    best = search.best
+    assert best is not None  # the bracket found one
+    seconds = time.perf_counter() - begin
+    plan = replace(best, provenance=replace(best.provenance, seconds=seconds))
     failed = sorted(search.failed.items(), reverse=True)
-    assert search.best is not None  # the bracket found one
-    return Fastest(search.best, tuple(one for one in failed if one[0] < high))
+    shorter = tuple(one for one in failed if one[0] < plan.task.duration)
+    return Fastest(plan, shorter, complete)
+
+
+def _narrow(search: _Search, tolerance: float) -> None:
+    """Bisect, and again below what failed as long as something there succeeds."""
+    least = _least_duration(search.task)
+    low, high = search.bracket(least)
+    while True:
+        while high / low > 1 + tolerance:
+            middle = math.sqrt(low * high)
+            if search.succeeds(middle):
+                high = middle
+            else:
+                low = middle
+        below = (share * low for share in _SHORTER if share * low > least)
+        shorter = next((one for one in below if search.succeeds(one)), None)
+        if shorter is None:
+            return
+        low, high = least or shorter / _GROWTH, shorter
 
 
 class _Search:
@@ -121,16 +142,19 @@ class _Search:
         guess = None if self.best is None else self.best.coefficients
         task = replace(self.task, duration=duration)
         try:
-            self.best = plan_move(task, self.profile, guess=guess, **self.settings)
+            plan = plan_move(task, self.profile, guess=guess, **self.settings)
         except SolverFailedError as error:
             self.failed[duration] = str(error)
             return False
-        if not self.best.complete:
+        if not plan.complete:
             raise KeyboardInterrupt
+        self.best = plan
         return True
 
     def bracket(self, least: float) -> tuple[float, float]:
         """Two durations, of which the longer one succeeds and the shorter one does not."""
+        if least > 0:
+            self.failed[least] = "within its limits of speed and acceleration a joint takes longer"
         low, high = max(least, LEAST_DURATION), max(self.task.duration, 1.01 * least)
         longest = max(
             self.task.duration, _LONGEST * slowest_swing(self.task.plant, self.task.target)

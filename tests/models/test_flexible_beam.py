@@ -3,7 +3,8 @@
 from math import pi
 
 import pytest
-from quietarm.models import FlexibleBeam, SingleLinkManipulator, beam_modes
+from quietarm.models import FlexibleBeam, SingleLinkManipulator
+from quietarm.models.flexible_beam import beam_modes
 from quietarm.models.joint_motion import JointMotion
 from quietarm.ocp import PointToPoint, UncertainPlant, evaluate_coefficients, plan_move
 

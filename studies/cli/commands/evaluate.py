@@ -64,7 +64,8 @@ def evaluate(
     if recorded is not None:
         for name in _NOT_OF_A_PATH:
             if typed(name):
-                raise click.UsageError(f"--{name.removesuffix('_file')} is not for a --path")
+                option = "sensitivities" if name == "sensitive" else name.removesuffix("_file")
+                raise click.UsageError(f"--{option} is not for a --path")
         with working("integrating", Console(stderr=True), quiet=quiet):
             path = evaluated_path(task, recorded)
         finish([], path)

@@ -124,14 +124,14 @@ def plan(
             "--wait best is for the gradient, profiles with coefficients and a given duration; "
             "give a time"
         )
-    motions, notes = profile_of(profile, task, terms), list[str]()
+    motions, notes, complete = profile_of(profile, task, terms), list[str](), True
     if fastest:
         with working("looking for the shortest duration", Console(stderr=True), quiet=quiet):
             shortest = fastest_move(
                 task, motions, residual_limit=residual_limit, bound=bound, seed=seed, solver=solver
             )
-        found, (duration, why) = shortest.plan, shortest.failed[0]
-        notes = [f"fastest: in {duration:.5g} s {why}"]
+        found, complete = shortest.plan, shortest.complete
+        notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
     elif best_after:
         with working("looking for the best wait", Console(stderr=True), quiet=quiet):
             wait, found = plan_after(
@@ -156,7 +156,8 @@ def plan(
             "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; --polish "
             "does"
         ]
-    stopped = None if found.complete else interruption(found.provenance.stopped)
+    complete = complete and found.complete
+    stopped = None if complete else interruption(found.provenance.stopped)
     finish(files_of(found), plan_document(found, notes, sensitive), trouble=stopped)
 
 

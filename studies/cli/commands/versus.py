@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import click
 from quietarm.ocp import PointToPoint
-from quietarm.studies.cli.ending import finish
+from quietarm.ocp.interrupts import hear_interrupts
+from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option, terms_option
 from quietarm.studies.cli.task import robust_option, task_options
 from quietarm.studies.cli.types import FOLDER, LENGTH
@@ -14,7 +16,7 @@ from quietarm.studies.display.progress import working
 from quietarm.studies.document.files import document_files
 from quietarm.studies.registry.profiles import POLYNOMIAL, profile_of
 from quietarm.studies.versus.report import versus_document
-from quietarm.studies.versus.rivals import rivals
+from quietarm.studies.versus.rivals import Rival, rivals
 from rich.console import Console
 
 
@@ -45,6 +47,18 @@ def versus(
     """  # noqa: D301  # \b is click's: do not rewrap
     profile = profile_of(POLYNOMIAL, task, terms)
     with working("planning and shaping", Console(stderr=True), quiet=quiet):
-        found = list(rivals(task, profile, residual_limit))
+        found, complete = list[Rival](), False
+        with suppress(KeyboardInterrupt), hear_interrupts() as came:
+            for rival in rivals(task, profile, residual_limit):
+                if came:  # what was stopped is no answer
+                    break
+                found.append(rival)
+            complete = not came
+    if not found:
+        raise KeyboardInterrupt
     document = versus_document(task, found)
-    finish([] if output is None else document_files(output, document), document)
+    finish(
+        [] if output is None else document_files(output, document),
+        document,
+        trouble=None if complete else interruption(f"{len(found)} motions"),
+    )
