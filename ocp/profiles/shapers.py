@@ -18,6 +18,26 @@ MOST_DAMPING_OF_EI = 1 / math.hypot(1, math.pi / math.log(_LEAST_DECAY_OF_EI))
 """The damping ratio of that decay, about 0.504."""
 
 
+_TWO_HUMPS = (
+    "2hump-ei", 0.3,
+    ((0.0, 0.0, 0.0, 0.0), (0.49890, 0.16270, -0.54262, 6.16180),
+     (0.99748, 0.18382, -1.58270, 8.17120), (1.49920, -0.09297, -0.28338, 1.85710)),
+    ((0.16054, 0.76699, 2.26560, -1.22750), (0.33911, 0.45081, -2.58080, 1.73650),
+     (0.34089, -0.61533, -0.68765, 0.42261), (0.15997, -0.60246, 1.00280, -0.93145)),
+)  # fmt: skip
+_THREE_HUMPS = (
+    "3hump-ei", 0.2,
+    ((0.0, 0.0, 0.0, 0.0), (0.49974, 0.23834, 0.44559, 12.4720),
+     (0.99849, 0.29808, -2.36460, 23.3990), (1.49870, 0.10306, -2.01390, 17.0320),
+     (1.99960, -0.28231, 0.61536, 5.40450)),
+    ((0.11275, 0.76632, 3.29160, -1.44380), (0.23698, 0.61164, -2.57850, 4.85220),
+     (0.30008, -0.19062, -2.14560, 0.13744), (0.23775, -0.73297, 0.46885, -2.08650),
+     (0.11244, -0.45439, 0.96382, -1.46000)),
+)  # fmt: skip
+"""Name, largest damping ratio, and of every impulse the time over the undamped period and the
+amplitude, by powers of the damping ratio: Klipper's definitions since September 2025."""
+
+
 class Impulses(NamedTuple):
     """A shaper: impulses whose amplitudes sum to one, the first at time 0.
 
@@ -64,20 +84,12 @@ def mzv(frequency: float, damping_ratio: float) -> Impulses:
 
 def two_hump_ei(frequency: float, damping_ratio: float) -> Impulses:
     """Four impulses that leave `TOLERATED` or less over a wider range than EI."""
-    V = TOLERATED
-    X = (V**2 * (math.sqrt(1 - V**2) + 1)) ** (1 / 3)
-    outer = (3 * X**2 + 2 * X + 3 * V**2) / (16 * X)
-    inner = 0.5 - outer
-    return _half_periods_apart([outer, inner, inner, outer], frequency, damping_ratio)
+    return _fitted(_TWO_HUMPS, frequency, damping_ratio)
 
 
 def three_hump_ei(frequency: float, damping_ratio: float) -> Impulses:
     """Five impulses, for a range that is wider still."""
-    V = TOLERATED
-    first, second = (1 + 3 * V + 2 * math.sqrt(2 * V * (V + 1))) / 16, (1 - V) / 4
-    middle = 1 - 2 * (first + second)
-    weights = [first, second, middle, second, first]
-    return _half_periods_apart(weights, frequency, damping_ratio)
+    return _fitted(_THREE_HUMPS, frequency, damping_ratio)
 
 
 SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {
@@ -102,6 +114,27 @@ def convolved(shapers: Sequence[Impulses]) -> Impulses:
         ]
     times, amplitudes = zip(*sorted(impulses), strict=True)
     return Impulses(amplitudes, times)
+
+
+def _fitted(
+    shaper: tuple[str, float, Sequence[Sequence[float]], Sequence[Sequence[float]]],
+    frequency: float,
+    damping_ratio: float,
+) -> Impulses:
+    name, most, times, amplitudes = shaper
+    if damping_ratio > most:
+        raise ValueError(
+            f"damping ratio is {damping_ratio:g}; the {name} shaper goes up to {most:g}: take zv "
+            "or zvd"
+        )
+
+    def at(powers: Sequence[float]) -> float:
+        return sum(one * damping_ratio**k for k, one in enumerate(powers))
+
+    total, period = sum(map(at, amplitudes)), 2 * math.pi / frequency
+    return Impulses(
+        tuple(at(one) / total for one in amplitudes), tuple(at(one) * period for one in times)
+    )
 
 
 def _decay(damping_ratio: float) -> float:
