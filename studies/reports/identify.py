@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from math import pi
+from math import floor, log10, pi
 
 from quietarm.models import Plant
 from quietarm.ocp import Estimate, Identified
@@ -37,5 +37,6 @@ def _told(plant: Plant, one: Estimate) -> str:
     size, words = 1.0, "" if unit == "-" else f" {unit}"
     if unit == "rad/s":
         size, words = 2 * pi, " Hz"
-    value, low, high = (number / size for number in (one.value, one.low, one.high))
-    return f"{value:.4g}{words}, within {low:.4g} to {high:.4g}{words} (95 %, {_BY[one.by]})"
+    digits = max(3, 1 - floor(log10(one.error)))  # two of the interval
+    value, low, high = (f"{x / size:.{digits}g}" for x in (one.value, one.low, one.high))
+    return f"{value}{words}, within {low} to {high}{words} (95 %, {_BY[one.by]})"

@@ -4,6 +4,7 @@ import inspect
 import math
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from functools import partial
@@ -24,6 +25,7 @@ pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 BIN = Path(sys.executable).parent
 (SHORT,) = blocks("README", "python")
 MOVE, SEQUENCE, ENERGY = blocks("moves", "python")
+(MACHINE,) = blocks("machine", "python")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
@@ -166,7 +168,7 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 11
+    assert sum(len(blocks(page, "python")) for page in others) == 12
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "text"}
 
@@ -180,8 +182,8 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
     "floor": ["--starts", "1", "--tolerance", "0.05"],
 }
 QUIET = {
-    "animate", "compare", "contest", "front", "import", "plan", "polish", "problems", "robustness",
-    "study",
+    "animate", "compare", "contest", "front", "identify", "import", "plan", "polish", "problems",
+    "robustness", "study", "versus",
 }  # fmt: skip
 
 
@@ -234,13 +236,50 @@ def test_the_first_commands_run_one_after_another(tmp_path, monkeypatch, block, 
 
 
 @pytest.mark.parametrize("block", [name for name in COMMAND_BLOCKS if name not in STARTED])
-def test_the_commands_run_one_after_another(tmp_path, monkeypatch, block, called):
-    run_block(block, tmp_path, monkeypatch, called)
+def test_the_commands_run_one_after_another(tmp_path, monkeypatch, block, called, request):
+    given = request.getfixturevalue("machine")[0] if block.startswith("machine") else None
+    run_block(block, tmp_path, monkeypatch, called, given)
 
 
-def run_block(block, folder, monkeypatch, run):
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory):
+    """The recording of docs/machine.md, and what its commands have made of it before the last."""
+    folder = tmp_path_factory.mktemp("machine")
+    run_python(MACHINE, folder)
+    (folder / "example.py").unlink()
+    identify, plan = COMMAND_BLOCKS["machine-0"][0], COMMAND_BLOCKS["machine-1"][1]
+    printed = [
+        subprocess.run(
+            [BIN / "quietarm", *shlex.split(line)[1:], "--quiet"],
+            cwd=folder, capture_output=True, text=True, timeout=600, check=True,
+        ).stdout
+        for line in (identify, plan)
+    ]  # fmt: skip
+    for picture in folder.glob("*.png"):
+        picture.unlink()
+    return folder, printed[0]
+
+
+def test_the_machine_of_the_page_is_the_one_that_was_recorded(machine):
+    _, printed = machine
+    (shown,) = blocks("machine", "text")
+    of_page, now = (
+        [[float(x) for x in re.findall(r"\d+\.\d+", line)] for line in text.splitlines()[:4]]
+        for text in (shown, printed)
+    )
+    for before, after in zip(of_page, now, strict=True):
+        assert after == pytest.approx(before, rel=2e-3, abs=0.1 * (before == of_page[3]))
+    (_, low, high), (_, least, most) = ([line[0], *line[1:3]] for line in now[1:3])
+    assert low < 20.1 / (2 * math.pi) < high
+    assert least < 0.01 < most
+
+
+def run_block(block, folder, monkeypatch, run, given=None):
     monkeypatch.chdir(folder)
     asked = set()
+    if given is not None:
+        shutil.copytree(given, folder, dirs_exist_ok=True)
+        asked = {path.name for path in folder.iterdir()}
     for line in COMMAND_BLOCKS[block]:
         command, *words = shlex.split(line)
         assert command == ".venv/bin/quietarm"
