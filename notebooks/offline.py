@@ -16,8 +16,8 @@ from latex2mathml.converter import convert
 from nbconvert import HTMLExporter, SlidesExporter
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 
-WALL = {"reveal_width": "1280", "reveal_height": "800"}
-"""Slides as wide and as high [pixels]."""
+WALL = {"reveal_width": "1152", "reveal_height": "648"}
+"""Slides as wide and as high [pixels]; what shows them enlarges them."""
 _TAG = re.compile(r"\\tag\{(.*?)\}")
 _FROM_THE_NETWORK = re.compile(
     r"<script[^>]*\ssrc=\"https?://[^\"]*\"[^>]*>\s*</script>"
@@ -29,7 +29,28 @@ _UNDESCRIBED = re.compile(r'alt="No description[^"]*"')
 _STYLE = """<style>
 .equation { display: flex; align-items: center; margin: 1em 0; }
 .equation div { flex: 1; }
-.reveal .slides section section { max-height: 100%; overflow-y: auto; }
+math { font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math", math; }
+</style>"""
+_ON_THE_WALL = """<style>
+:root { --jp-content-font-size1: 21px; --jp-code-font-size: 17px; }
+.reveal .slides section section { max-height: 100%; overflow-y: auto; padding: 0; }
+.reveal section { text-align: left; }
+.reveal :is(h1, h2, h3) { margin: 0 0 0.4em; }
+.reveal h1 { font-size: 50px; }
+.reveal h2 { font-size: 38px; }
+.reveal h3 { font-size: 30px; }
+.reveal p { margin: 0.7em 0; }
+.reveal p:empty { display: none; }
+.reveal ul, .reveal ol { display: block; }
+.reveal math { font-size: 1.1em; }
+.reveal .equation { font-size: 1.1em; margin: 0.6em 0; }
+.reveal pre { margin: 0; width: 100%; box-shadow: none; }
+.reveal details pre { font-size: 15px; line-height: 18px; }
+.reveal img { display: block; margin: 0 auto; max-width: 100%; }
+.reveal .jp-Cell { padding: 0; }
+.reveal .jp-RenderedText pre { padding: 0; }
+.reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
+.reveal .controls { font-size: 4px; }
 </style>"""
 _SCRIPTS = """<script>{reveal}</script>
 <script>{notes}</script>
@@ -37,6 +58,18 @@ _SCRIPTS = """<script>{reveal}</script>
 // what the slides' own script asks for is in this file already
 const require = (options, addresses, begin) => begin(Reveal, RevealNotes);
 const MathJax = {{ Hub: {{ getAllJax: () => false }} }};
+const initialize = Reveal.initialize;
+Reveal.initialize = (options) => initialize({{ ...options, center: false, margin: 0.06 }});
+// pictures fill the room that the words leave
+async function fill({{ currentSlide: slide }}) {{
+  const pictures = [...slide.querySelectorAll("img:not([style*=width])")];
+  await Promise.all(pictures.map((one) => one.decode()));
+  const high = pictures.reduce((sum, one) => sum + one.offsetHeight, 0);
+  const times = Math.min(1.7, 1 + (Reveal.getConfig().height - slide.scrollHeight) / high);
+  for (const one of pictures) one.style.width = `${{times * one.offsetWidth}}px`;
+}}
+Reveal.on("ready", fill);
+Reveal.on("slidechanged", fill);
 </script>"""
 
 
@@ -99,7 +132,7 @@ class Slides(_Offline, SlidesExporter):
             reveal=(package / "dist" / "reveal.js").read_text(),
             notes=(package / "plugin" / "notes" / "notes.js").read_text(),
         )
-        return f"<style>{fonts.sub('', ''.join(looks))}</style>{_STYLE}{scripts}"
+        return f"<style>{fonts.sub('', ''.join(looks))}</style>{_STYLE}{_ON_THE_WALL}{scripts}"
 
 
 def main():

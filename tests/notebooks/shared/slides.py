@@ -4,17 +4,19 @@ import base64
 import re
 from itertools import pairwise
 
-WALL = 760
-"""Height of a full slide [pixels] of the 800 of the README's command; a higher one scrolls."""
+WALL = 640
+"""Height of a full slide [pixels] of the 648 of `offline.py`; a higher one scrolls."""
 BEGINS = ("slide", "subslide")
 HIDDEN = ("%matplotlib", "# Your attempt")
 """How the code cells begin that are left out."""
 
-_HEADINGS = {"# ": 100, "## ": 92, "###": 73}
-_LINE, _PARAGRAPH, _DISPLAYED, _CELL = 25, 19, 88, 19
-_CHARACTERS = 105
+_HEADINGS = {"# ": 80, "## ": 61, "###": 48}
+_LINE, _PARAGRAPH, _DISPLAYED, _CELL = 27, 17, 67, 4
+_CHARACTERS = 101
 """How many characters of text a line has."""
-_PRINTED_LINE, _SHOWN = 22, 40
+_PRINTED_LINE, _FOLDED_LINE, _SHOWN = 22, 17.5, 10
+_LEAST = 0.9
+"""A picture fills what the words leave: of its own height no less than this."""
 _FENCED = re.compile(r"```.*?```", re.DOTALL)
 _PICTURES = {"image/png": "", "text/html": "data:image/gif;base64,"}
 """Outputs with a picture, and what its bytes follow."""
@@ -83,7 +85,7 @@ def _block_height(block):
 
 
 def _fenced_height(block):
-    return _PRINTED_LINE * (len(block.splitlines()) - 1)
+    return _FOLDED_LINE * (len(block.splitlines()) - 1)
 
 
 def _output_height(output):
@@ -91,7 +93,7 @@ def _output_height(output):
     for kind, before in _PICTURES.items():
         begin = data.get(kind, "").find(before)
         if kind in data and begin >= 0:
-            return _SHOWN + _picture_height(data[kind][begin + len(before) :][:32])
+            return _SHOWN + _LEAST * _picture_height(data[kind][begin + len(before) :][:32])
     text = output.get("text", data.get("text/plain", ""))
     return _SHOWN + _PRINTED_LINE * len(text.rstrip().splitlines())
 
