@@ -84,6 +84,8 @@ def _of_text(text: str) -> dict[str, Array]:
         pass
     else:
         raise ValueError("its first line has numbers and names no columns")
+    if not rows:
+        raise ValueError("it has no rows below its first line")
     if between == ";":
         rows = [row.replace(",", ".") for row in rows]
     cells = [row.split(between) for row in rows]
