@@ -12,8 +12,8 @@ HIDDEN = ("%matplotlib", "# Your attempt")
 
 _HEADINGS = {"# ": 80, "## ": 61, "###": 48}
 _LINE, _PARAGRAPH, _DISPLAYED, _CELL = 27, 17, 67, 4
-_CHARACTERS = 101
-"""How many characters of text a line has."""
+_CHARACTERS, _PRINTED_CHARACTERS = 101, 105
+"""How many characters a line of text has, and one of what is printed."""
 _PRINTED_LINE, _FOLDED_LINE, _SHOWN = 22, 17.5, 10
 _LEAST = 0.9
 """A picture fills what the words leave: of its own height no less than this."""
@@ -95,7 +95,8 @@ def _output_height(output):
         if kind in data and begin >= 0:
             return _SHOWN + _LEAST * _picture_height(data[kind][begin + len(before) :][:32])
     text = output.get("text", data.get("text/plain", ""))
-    return _SHOWN + _PRINTED_LINE * len(text.rstrip().splitlines())
+    lines = sum(-(-max(len(line), 1) // _PRINTED_CHARACTERS) for line in text.rstrip().splitlines())
+    return _SHOWN + _PRINTED_LINE * lines
 
 
 def _picture_height(encoded):
