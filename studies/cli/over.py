@@ -25,8 +25,10 @@ FEW, _MOST = 15, 1000
 _OF_DURATIONS = ("points", "bound", "starts", "solver")
 
 
-def check_over(durations: tuple[float, float] | None, settings: Mapping[str, Any]) -> None:
-    """Refuse what has no meaning over a range of durations; ValueError names it."""
+def checked_range(
+    durations: tuple[float, float] | None, settings: Mapping[str, Any]
+) -> tuple[float, float]:
+    """The range; ValueError names what has no meaning over one."""
     if durations is None:
         raise ValueError("--over duration takes a range; give it as --duration 600ms:1.4s")
     if durations[0] >= durations[1]:
@@ -37,6 +39,7 @@ def check_over(durations: tuple[float, float] | None, settings: Mapping[str, Any
         if name not in _OF_DURATIONS and typed(name):
             option = "check" if name == "check" else name.replace("_", "-")
             raise ValueError(f"--{option} is not for --over duration; leave it out")
+    return durations
 
 
 def found_over(

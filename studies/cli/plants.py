@@ -70,6 +70,15 @@ def uncertain(
     return UncertainPlant(plant, ranges) if ranges else plant
 
 
+def units_of_plant(plant: Plant, names: Iterable[str]) -> dict[str, str]:
+    """Units of parameters; ValueError where there is no such parameter."""
+    known = {entry.name: entry.metadata.get("unit", "-") for entry in fields(plant)}
+    for name in names:
+        if name not in known:
+            raise ValueError(has_no(plant.name, "parameter", name, known))
+    return {name: known[name] for name in names}
+
+
 def chosen_plant(
     kind: type[Plant] | Identified | None,
     own: Mapping[str, type[Plant]] | None,

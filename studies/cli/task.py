@@ -12,8 +12,8 @@ from quietarm.models import Plant
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, typed
-from quietarm.studies.cli.plants import chosen_plant, uncertain
-from quietarm.studies.cli.quantities import parse_rate, parse_time
+from quietarm.studies.cli.plants import chosen_plant, uncertain, units_of_plant
+from quietarm.studies.cli.quantities import parse_in, parse_joint_angle, parse_rate, parse_time
 from quietarm.studies.cli.types import (
     ANGLE,
     ENERGY,
@@ -29,6 +29,7 @@ from quietarm.studies.cli.types import (
     Parsed,
 )
 from quietarm.studies.display.words import plant_words
+from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid, axis_values
 
 F = TypeVar("F", bound=Callable[..., Any])
 _OF_A_MOVE = (
@@ -82,8 +83,13 @@ def _range(text: str) -> float | tuple[float, float]:
 _TIME_OR_RANGE = Parsed("time", _range)
 
 
-def _task_options(required: bool, fastest: bool = False, ranged: bool = False) -> Callable[[F], F]:
+def _task_options(
+    required: bool, fastest: bool = False, ranged: bool = False, axes: bool = False
+) -> Callable[[F], F]:
     time, words = TIME, "Travelling time."
+    angle = _axis_of(parse_joint_angle) if axes else ANGLE
+    if axes:
+        time = _axis_of(parse_time)
     wait, until = TIME, "Time from that plan's arrival to this start"
     if ranged:
         time, words = _TIME_OR_RANGE, "Travelling time; with --over duration two, as 600ms:1.4s."
@@ -95,9 +101,9 @@ def _task_options(required: bool, fastest: bool = False, ranged: bool = False) -
         plant_file_option(),
         click.option("--set", "parameters", type=SETTING, multiple=True,
                      help="Set a parameter of the plant, as omega=9 (SI units); may be repeated."),
-        click.option("--start", type=ANGLE, default="0", show_default=True,
+        click.option("--start", type=angle, default="0", show_default=True,
                      help="Joint angle at the start."),
-        click.option("--target", type=ANGLE, required=required, help="Joint angle at the end."),
+        click.option("--target", type=angle, required=required, help="Joint angle at the end."),
         click.option("--duration", type=time, required=required, help=words),
         *map(_limit_option, QUANTITIES.values()),
         click.option("--residual-window", type=TIME, default=1.0, show_default=True,
@@ -160,6 +166,40 @@ def task_or_durations_options(command: Callable[..., Any]) -> Callable[..., Any]
         return command(*positional, task=_task_of(named), durations=durations, **named)
 
     return _task_options(required=True, ranged=True)(with_task)
+
+
+def _axis_of(parse: Callable[[str], float]) -> Parsed:
+    return Parsed("axis", partial(axis_values, parse=parse))
+
+
+def task_grid_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same where start, target, duration and parameters may be axes: it gets a `grid`."""
+
+    @wraps(command)
+    def with_grid(*positional: Any, **named: Any) -> Any:
+        moves = {name: named[name] for name in OF_MOVES}
+        named |= {name: values[0] for name, values in moves.items()}
+        kind, own, given = (named[name] for name in ("plant", "plant_file", "parameters"))
+        several = {name: text for name, text in given if ":" in text or "," in text}
+        single = [(name, text) for name, text in given if name not in several]
+        plant = chosen_plant(kind, own, single)
+        units = units_of_plant(plant, several)
+        axes = [
+            Axis(name, axis_values(text, partial(parse_in, units[name], name=name)), units[name])
+            for name, text in several.items()
+        ]
+        axes += [
+            Axis(name, values, OF_MOVES[name]) for name, values in moves.items() if len(values) > 1
+        ]
+        firsts = [(axis.name, repr(axis.values[0])) for axis in axes if axis.name in several]
+        named["parameters"] = (*single, *firsts)
+        if not axes:
+            raise click.UsageError(
+                "no axis is given; give one as --target 10deg:90deg:5deg, or quietarm plan"
+            )
+        return command(*positional, grid=Grid(_task_of(named), tuple(axes)), **named)
+
+    return _task_options(required=True, axes=True)(with_grid)
 
 
 def task_or_path_options(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -26,6 +26,7 @@ BIN = Path(sys.executable).parent
 (SHORT,) = blocks("README", "python")
 MOVE, SEQUENCE, ENERGY = blocks("moves", "python")
 (MACHINE,) = blocks("machine", "python")
+(CELL,) = blocks("sweeps", "python")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
@@ -132,6 +133,13 @@ assert all(ax.figure is figure and ax.get_lines() for ax in (left, middle, right
     assert (tmp_path / "mine.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_cell_of_the_sweep_of_the_page_is_found(tmp_path, monkeypatch, called):
+    monkeypatch.chdir(tmp_path)
+    assert called([*shlex.split(COMMAND_BLOCKS["sweeps-0"][0])[1:], "--quiet"])[0] == 0
+    energy = float(run_python(CELL, tmp_path).split()[0])
+    assert 0.02 < energy < 0.03  # README: the link's first move takes 0.0237 J
+
+
 def test_the_functions_that_draw_are_public_and_documented():
     named = set(re.findall(r"`((?:draw_|compare_)\w+|\w+_figure)`", DOCS["pictures"]))
     assert named <= set(figures.__all__)
@@ -168,7 +176,7 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 12
+    assert sum(len(blocks(page, "python")) for page in others) == 13
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "text"}
 
@@ -183,7 +191,7 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
 }
 QUIET = {
     "animate", "compare", "contest", "front", "identify", "import", "plan", "polish", "problems",
-    "robustness", "study", "versus",
+    "robustness", "study", "sweep", "versus",
 }  # fmt: skip
 
 

@@ -23,7 +23,7 @@ from quietarm.studies.cli.options import (
     warn_of_workers,
     workers_options,
 )
-from quietarm.studies.cli.over import FEW, check_over, found_over
+from quietarm.studies.cli.over import FEW, checked_range, found_over
 from quietarm.studies.cli.task import robust_option, task_or_durations_options
 from quietarm.studies.cli.types import (
     CSV_FILE,
@@ -170,11 +170,11 @@ def front(
           --acceleration-limit 40 --figure times.png
     """  # noqa: D301  # \b is click's: do not rewrap
     if over is not None:
-        check_over(durations, settings)
+        between = checked_range(durations, settings)
         asked = {name: settings[name] for name in ("bound", "starts", "solver")}
         points = settings["points"] if typed("points") else FEW
         asked["profile"], files = profile_of(profile, task, terms), (csv_file, figure)
-        found_over(task, durations, points, asked, files, quiet)
+        found_over(task, between, points, asked, files, quiet)
         return
     if durations is not None:
         raise ValueError("--duration is a range, which is for --over duration; give one time")

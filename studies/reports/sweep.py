@@ -1,0 +1,34 @@
+"""A sweep on the screen: how many moves there are, what they cost, which cannot be."""
+
+from __future__ import annotations
+
+import numpy as np
+from quietarm.ocp import SolveStatus
+from quietarm.studies.display.words import plant_words
+from quietarm.studies.document.blocks import Document, Facts
+from quietarm.studies.sweep.store import STATES, STATUS, Store
+
+
+def sweep_document(store: Store) -> Document:
+    """Axes, then how many cells ended how."""
+    grid, status, energy = store.grid, store.read(STATUS), store.read("energy")
+    rows = [("plant", plant_words(grid.task.plant))]
+    rows += [
+        (
+            axis.name,
+            f"{len(axis.values)} from {axis.values[0]:.6g} to {axis.values[-1]:.6g} {axis.unit}",
+        )
+        for axis in grid.axes
+    ]
+    known, solved = np.isfinite(energy), f"{np.isfinite(energy).sum()} of {grid.cells}"
+    rows.append(("moves", f"{solved} have a plan, in {store.path}"))
+    solved_states = (SolveStatus.OPTIMAL.value, SolveStatus.ACCEPTABLE.value)
+    counts = [(state, int((status == k).sum())) for k, state in enumerate(STATES)]
+    others = [each for each in counts if each[0] not in solved_states]
+    rows += [(state, f"{count} cells") for state, count in others if count]
+    if known.any():
+        rows += [
+            ("energy", f"{energy[known].min():.4g} to {energy[known].max():.4g} J"),
+            ("residual", f"{1e3 * store.read('residual')[known].max():.3g} mm at most, by CVODES"),
+        ]
+    return Document("", [Facts(rows)])

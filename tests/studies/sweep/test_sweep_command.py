@@ -1,0 +1,121 @@
+"""`quietarm sweep`: certified plans of a grid, whatever stops it on the way."""
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from quietarm.models import FlexibleBeam, SingleLinkManipulator
+from quietarm.ocp import PointToPoint, plan_move
+from quietarm.studies.sweep.grid import axis_values
+
+QUIETARM = [str(Path(sys.executable).parent / "quietarm")]
+MOVES = "sweep single-link --target 10deg:80deg:10deg --duration 600ms:1.4s:10ms --quiet"
+FEW = "sweep single-link --target 30deg,60deg --duration 0.8,1.2 --quiet --output few.zarr"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def dataset(path):
+    return xr.open_zarr(path, consolidated=False).load()
+
+
+def same(one, other):
+    return all(np.array_equal(one[name], other[name], equal_nan=True) for name in one.data_vars)
+
+
+def test_every_cell_is_the_plan_of_its_move(call, folder):
+    code, out, err = call(FEW + " --figure few.png")
+    assert (code, err) == (0, "")
+    assert "4 of 4 have a plan" in out
+    found = dataset("few.zarr")
+    assert found.energy.dims == ("target", "duration")
+    assert found.energy.attrs["units"] == "J"
+    plan = plan_move(PointToPoint(SingleLinkManipulator(), math.pi / 3, 1.2))
+    cell = found.isel(target=1, duration=1)
+    # by gradient from several starts and here from the cells beside: 1e-4, issue 28
+    assert float(cell.energy) == pytest.approx(plan.energy, rel=1e-4)
+    assert float(cell.residual) < 1e-7
+    assert float(cell.peak_speed) == pytest.approx(plan.motion.peak_speed, rel=0.01)
+    assert (folder / "few.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_parameters_are_axes_and_what_cannot_be_has_a_reason(call, folder):
+    code, out, err = call(
+        "sweep flexible-beam --set tip_mass=0,200g --target 60deg --duration 0.5,1 --quiet "
+        "--torque-limit 0.6 --output payload.zarr --figure payload.png"
+    )
+    assert (code, err) == (0, "")
+    assert "infeasible  1 cells" in out
+    found = dataset("payload.zarr")
+    meanings = found.status.attrs["flag_meanings"].split()
+    assert meanings[int(found.status.sel(tip_mass=0.2, duration=0.5))] == "infeasible"
+    assert np.isfinite(found.energy).sum() == 3
+    light = plan_move(PointToPoint(FlexibleBeam(tip_mass=0.0), math.pi / 3, 0.5, torque_limit=0.6))
+    here = float(found.energy.sel(tip_mass=0.0, duration=0.5))
+    assert here == pytest.approx(light.energy, rel=1e-3)  # limits: docs/accuracy.md
+
+
+def test_two_parts_and_a_killed_run_end_as_one_that_ran_through(call, folder):
+    assert call(f"{MOVES} --output whole.zarr")[0] == 0
+    whole = dataset("whole.zarr")
+    assert whole.energy.size == 8 * 81  # three chunks
+    parts = [
+        subprocess.Popen([*QUIETARM, *f"{MOVES} --output parts.zarr --part {k}/2".split()],
+                         stdout=subprocess.DEVNULL)
+        for k in (1, 2)
+    ]  # fmt: skip
+    assert [one.wait(timeout=300) for one in parts] == [0, 0]
+    assert same(dataset("parts.zarr"), whole)
+
+    killed = subprocess.Popen([*QUIETARM, *f"{MOVES} --output killed.zarr".split()])
+    status = folder / "killed.zarr" / "status" / "c"
+    for _ in range(3000):  # until the first chunk is there
+        if status.exists() or killed.poll() is not None:
+            break
+        time.sleep(0.05)
+    os.kill(killed.pid, signal.SIGKILL)
+    killed.wait(timeout=60)
+    assert call(f"{MOVES} --output killed.zarr")[0] == 0
+    assert same(dataset("killed.zarr"), whole)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        (FEW.replace("30deg,60deg", "30deg,70deg"), "is of another sweep: axes differ in target"),
+        (f"{FEW} --bound 0.3", "is of another sweep: settings differ in bound"),
+        (FEW.replace("few.zarr", "other"), "other is no dataset of a sweep"),
+        (FEW.replace("30deg,60deg", "0:1:0.3"), "steps of 0.3 from 0 do not reach 1"),
+        (FEW.replace("30deg,60deg", "1:0:0.1"), "do not lead from 1 to 0"),
+        (FEW.replace("30deg,60deg", "1,1"), "has a value twice"),
+        (FEW.replace("30deg,60deg", "0.5,0"), "start and target are both 0 rad"),
+        (FEW.replace("30deg,60deg", "1").replace("0.8,1.2", "1"), "no axis is given"),
+        (FEW.replace("0.8,1.2", "1:2:0.0000001"), "cells, some 60 hours on a core"),
+        (f"{FEW} --set omga=1,2", "did you mean 'omega'"),
+        (f"{FEW} --part 3/2", "'3/2' is no part"),
+    ],
+)
+def test_what_cannot_be_swept_is_refused(call, folder, line, said):
+    (folder / "other").mkdir()
+    if "another sweep" in said:
+        assert call(FEW)[0] == 0
+    code, out, err = call(line)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert said in err
+
+
+def test_an_axis_ends_where_it_says():
+    assert axis_values("0.6:1.4:0.05", float)[-1] == 1.4
+    assert len(axis_values("0.6:1.4:0.05", float)) == 17
+    assert axis_values("3,1,2", float) == (3.0, 1.0, 2.0)
