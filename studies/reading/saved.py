@@ -6,11 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from quietarm.metaheuristics.objective.claims import check_figures, check_plan
-from quietarm.ocp import Front, Plan
+from quietarm.ocp import FileFormatError, Front, Plan
 
 
 def load_front(path: Path) -> Front:
     """The front of a file, after some of its motions were evaluated again."""
+    if not path.exists() and (seeds := sorted(path.parent.glob(f"{path.stem}-seed*.json"))):
+        raise FileFormatError(
+            f"{path} is no file; --runs has written a front for each seed: give {seeds[0].name} and "
+            "the others"
+        )
     front = Front.load(path)
     if not front.points:
         raise ValueError(f"{path}: {front.why_empty()}")

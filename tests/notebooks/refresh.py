@@ -24,11 +24,12 @@ def refresh(path):
     with tempfile.TemporaryDirectory() as folder, kernel() as client:
         notebook, shown = execute(path, folder, client)
     waiting = iter(shown)
-    places = slide_types(notebook.cells)
-    for number, (cell, place) in enumerate(zip(notebook.cells, places, strict=True), 1):
-        cell.id = f"cell-{number:02}"
+    for cell in notebook.cells:
         for found in solutions(cell.source) if cell.cell_type == "markdown" else []:
             cell.source = cell.source.replace(found[0], _with_text(found[0], next(waiting)))
+    places = slide_types(notebook.cells)  # by what stands in the cells now
+    for number, (cell, place) in enumerate(zip(notebook.cells, places, strict=True), 1):
+        cell.id = f"cell-{number:02}"
         tags = {"tags": cell.metadata.tags} if cell.metadata.get("tags") else {}
         slide = {"slideshow": {"slide_type": place}} if place != "-" else {}
         cell.metadata = nbformat.from_dict({**slide, **tags})

@@ -145,3 +145,10 @@ def test_one_file_that_cannot_be_written_leaves_the_others(call, files):
     ]
     for name in FILES:
         assert (files / "compared" / name).is_file() == (name != "runs.csv")
+
+
+def test_fronts_of_several_seeds_are_pointed_to(refused, folder):
+    (folder / "n-seed0.json").write_text("{}")
+    assert "has written a front for each seed: give n-seed0.json" in refused(
+        "compare n.json n.json"
+    )

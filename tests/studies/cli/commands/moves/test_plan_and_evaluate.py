@@ -254,7 +254,7 @@ def test_the_shortest_duration_is_found_and_why_no_shorter_one_will_do(call):
 @pytest.mark.parametrize(
     ("words", "remedy"),
     [
-        ("", "nothing limits how fast the move may be; give one of --torque-limit"),
+        ("", "nothing limits how fast the move may be; give a limit of torque"),
         ("--torque-limit 0.2 --profile zv", "--duration fastest is for the gradient and profiles"),
         ("--torque-limit 0.2 --method nsga2", "--duration fastest is for the gradient and"),
     ],
