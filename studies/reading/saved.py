@@ -13,8 +13,8 @@ def load_front(path: Path) -> Front:
     """The front of a file, after some of its motions were evaluated again."""
     if not path.exists() and (seeds := sorted(path.parent.glob(f"{path.stem}-seed*.json"))):
         raise FileFormatError(
-            f"{path} is no file; --runs has written a front for each seed: give {seeds[0].name} and "
-            "the others"
+            f"{path} is no file; --runs has written a front for each seed: give {seeds[0].name} "
+            "and the others"
         )
     front = Front.load(path)
     if not front.points:
