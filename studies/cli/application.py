@@ -27,6 +27,7 @@ COMMANDS = {
     "compare": "Compare fronts of one task.",
     "floor": "Find the least energy over all joint motions.",
     "sweep": "Plan every move of a grid.",
+    "lookup": "Take a move from a grid, between its cells.",
     "robustness": "Show what plans leave when the plant is not the assumed one.",
     "versus": "Hold a plan against shapers and ruckig.",
     "export": "Write a plan as C, csv, for ROS 2 or MATLAB.",

@@ -34,16 +34,17 @@ def plan_file_options(command: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(command)
     def with_files(
         *positional: Any,
-        task: PointToPoint,
+        task: PointToPoint | None = None,
         output: Path | None,
         csv_file: Path | None,
         sample_rate: float,
         figure: Path | None,
         **named: Any,
     ) -> Any:
-        if csv_file is not None:  # refused now rather than after the solve
-            ticks_of_move(task.duration, sample_rate)
-        elif typed("sample_rate"):
+        duration = named["duration"] if task is None else task.duration
+        if csv_file is not None and duration is not None:  # refused now, not after the solve
+            ticks_of_move(duration, sample_rate)
+        elif csv_file is None and typed("sample_rate"):
             raise ValueError("--sample-rate is for --csv: give that too, or leave it out")
 
         def picture(plan: Plan) -> Figure:
@@ -58,6 +59,8 @@ def plan_file_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 (figure, drawing(partial(picture, plan))),
             ]
 
-        return command(*positional, task=task, files_of=files_of, **named)
+        if task is not None:
+            named["task"] = task
+        return command(*positional, files_of=files_of, **named)
 
     return _PLAN_FILES(with_files)

@@ -63,7 +63,7 @@ class Store:
         wanted = asked(grid, profile, settings)
         if not path.exists():
             self._lay_out(wanted, profile)
-        group = _opened(path)
+        group = opened(path)
         _check_same(path, json.loads(str(group.attrs["asked"])), wanted)
         self._arrays: Any = {name: group[name] for name in (*FIGURES, "coefficients", STATUS)}
 
@@ -123,7 +123,8 @@ class Store:
         return np.asarray(self._arrays[name][...])
 
 
-def _opened(path: Path) -> zarr.Group:
+def opened(path: Path) -> zarr.Group:
+    """The Zarr group of a sweep; FileFormatError where it is none."""
     import zarr
 
     try:
