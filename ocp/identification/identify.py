@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from math import pi
 
@@ -167,16 +167,20 @@ def _pieces(recordings: Sequence[Recording], forced: bool) -> tuple[list[Piece],
             "record its angle during a move"
         )
     if not taken:
-        longest = max(one.periods(frequency) for one in recordings)
-        few = longest < LEAST_PERIODS
-        raise ValueError(
-            f"{recordings[0].name} has no ring-down"
-            + (f": it lasts {longest:.2g} periods of {frequency:.3g} Hz" if few else "")
-            + "; record the tip for two periods and more after a push, with the joint held, or "
-            "record the joint's angle, too"
-        )
+        raise _too_short(recordings, frequency)
     names = {piece.recording.name for piece in taken}
     return taken, [one.name for one in recordings if one.name not in names], frequency
+
+
+def _too_short(recordings: Sequence[Recording], frequency: float) -> ValueError:
+    longest = max(one.periods(frequency) for one in recordings)
+    few = (
+        f": it lasts {longest:.2g} periods of {frequency:.3g} Hz" if longest < LEAST_PERIODS else ""
+    )
+    return ValueError(
+        f"{recordings[0].name} has no ring-down{few}; record the tip for two periods and more after "
+        "a push, with the joint held, or record the joint's angle, too"
+    )
 
 
 def _loudest(stills: Sequence[Recording]) -> list[Recording]:
@@ -217,6 +221,12 @@ class _Identification:
         start = np.array([getattr(self.plant, name) for name in names])
         among = fit(response, self.pieces, start, self.scaled)
         self._check(among)
+        swung = self._long_enough(dict(zip(names, map(float, among.p), strict=True)))
+        if len(swung) < len(self.pieces):
+            there = {piece.recording.name for piece in swung}
+            gone = {one.recording.name: None for one in self.pieces}
+            more = [name for name in gone if name not in there]
+            return replace(self, pieces=swung).made([*left_out, *more])
         alone = [fit(response, [one], among.p, self.scaled) for one in among.pieces]
         estimates: list[Estimate] = []
         for k, name in enumerate(names):
@@ -233,6 +243,17 @@ class _Identification:
         return Identified(
             plant, fitted, tuple(estimates), untold, parts, tuple(left_out), versions()
         )
+
+    def _long_enough(self, found: Mapping[str, float]) -> list[Piece]:
+        """The pieces that last two periods of what was found: the spectrum of a short one errs."""
+        rates = [value for name, value in found.items() if _unit(self.plant, name) == _FREQUENCY]
+        if len(rates) != 1:
+            return self.pieces
+        frequency = rates[0] / (2 * pi)
+        long = [one for one in self.pieces if one.recording.periods(frequency) >= LEAST_PERIODS]
+        if not long:
+            raise _too_short([one.recording for one in self.pieces], frequency)
+        return long
 
     def _check(self, among: Fit) -> None:
         misfits = [
