@@ -174,12 +174,12 @@ def _pieces(recordings: Sequence[Recording], forced: bool) -> tuple[list[Piece],
 
 def _too_short(recordings: Sequence[Recording], frequency: float) -> ValueError:
     longest = max(one.periods(frequency) for one in recordings)
-    few = (
-        f": it lasts {longest:.2g} periods of {frequency:.3g} Hz" if longest < LEAST_PERIODS else ""
-    )
+    few = ""
+    if longest < LEAST_PERIODS:
+        few = f": it lasts {longest:.2g} periods of {frequency:.3g} Hz"
     return ValueError(
-        f"{recordings[0].name} has no ring-down{few}; record the tip for two periods and more after "
-        "a push, with the joint held, or record the joint's angle, too"
+        f"{recordings[0].name} has no ring-down{few}; record the tip for two periods and more "
+        "after a push, with the joint held, or record the joint's angle, too"
     )
 
 
@@ -247,7 +247,7 @@ class _Identification:
     def _long_enough(self, found: Mapping[str, float]) -> list[Piece]:
         """The pieces that last two periods of what was found: the spectrum of a short one errs."""
         rates = [value for name, value in found.items() if _unit(self.plant, name) == _FREQUENCY]
-        if len(rates) != 1:
+        if len(rates) != 1 or not self.scaled:
             return self.pieces
         frequency = rates[0] / (2 * pi)
         long = [one for one in self.pieces if one.recording.periods(frequency) >= LEAST_PERIODS]

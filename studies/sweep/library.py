@@ -116,7 +116,9 @@ class MoveLibrary:
         whole = bool(np.isfinite(self._cells).all())
         points = [axis.values for axis in self.grid.axes]
         method = _OF_SMOOTH if whole else _OF_OTHERS
-        exact = {"solver": spsolve} if whole else {}  # the default one stops within 1e-5
+        exact: dict[str, Any] = (
+            {"solver": spsolve} if whole else {}
+        )  # the default one stops within 1e-5
         return RegularGridInterpolator(points, self._cells, method=method, **exact)
 
     def coefficients(self, **at: ArrayLike) -> Array:

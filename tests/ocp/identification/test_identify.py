@@ -181,6 +181,10 @@ def test_a_real_link():
     assert omega.low / (2 * math.pi) < 1.78
     assert omega.high / (2 * math.pi) > 1.87
     assert "zeta" in found.untold
+    assert found.left_out == ("lqg_step_30deg_run01.mat",)
+    # its standstill of 0.67 s has 1.2 periods of those, in which a spectrum finds another frequency
+    with pytest.raises(ValueError, match=r"has no ring-down: it lasts 1\.\d periods"):
+        qa.identify([recordings[2]], qa.FlexibleBeam())
     with pytest.raises(ValueError, match="zeta was not told"):
         found.errors  # noqa: B018
 
