@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -56,6 +56,9 @@ class Moves:
         The same in the solver's words.
     iterations : ndarray, shape (moves,)
         Iterations of the solver.
+    prices : tuple of mapping of str to float
+        By how much each least energy falls if a limit is widened [J by the limit's unit]; of the
+        residual, too, where rest on arrival is asked for.
     by_cvodes : ndarray of bool, shape (moves,)
         Whose figures CVODES computed; the others are by a finer rule that it confirmed.
     complete : bool
@@ -70,6 +73,7 @@ class Moves:
     status: tuple[SolveStatus, ...]
     reasons: tuple[str, ...]
     iterations: NDArray[np.intp]
+    prices: tuple[Mapping[str, float], ...]
     by_cvodes: NDArray[np.bool_]
     complete: bool
 
@@ -185,6 +189,7 @@ def _certified(
         status=tuple(one.status for one in found),
         reasons=tuple(one.reason for one in found),
         iterations=np.array([one.iterations for one in found]),
+        prices=tuple(one.prices for one in found),
         by_cvodes=np.zeros(count, dtype=bool),
         complete=complete,
     )

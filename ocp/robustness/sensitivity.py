@@ -6,12 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.program.batch import batch
 from quietarm.ocp.simulation.errors import DAMPING, FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.simulation.rollout import default_steps
 from quietarm.ocp.task import PointToPoint
 
 _STEP = 1e-4
@@ -71,3 +74,43 @@ def sensitivities(
     known = [name for name, value in task.plant.measured.items() if value]
     names = dict.fromkeys([FREQUENCY, DAMPING, *known])
     return tuple(sorted(map(of, names), key=lambda one: -one.residual))
+
+
+OF_MODES = (FREQUENCY, DAMPING)
+
+
+@one_at_a_time
+def sensitivities_of_moves(
+    tasks: Sequence[PointToPoint], profile: JointProfile, coefficients: NDArray[np.float64]
+) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """What `sensitivities` gives of frequency and damping, for many moves at once by fixed steps.
+
+    Parameters
+    ----------
+    tasks : sequence of PointToPoint
+        Moves of one plant; of an uncertain one the assumed one counts.
+    profile : JointProfile
+        How the joint moves.
+    coefficients : ndarray, shape (moves, profile.size)
+        A row a move.
+
+    Returns
+    -------
+    dict of str to tuple of ndarray, shape (moves,)
+        Of ``"frequency"`` and ``"damping"``: energies [J] and residuals [m] of `Sensitivity`.
+    """
+    tasks = [task.nominal for task in tasks]
+    steps, energy = max(map(default_steps, tasks)), tasks[0].energy
+    wrong = batch(tasks[0].plant, profile, steps, errors=OF_MODES, energy=energy)
+    moves, rows = np.array([task.row for task in tasks]), [residual_rows(task) for task in tasks]
+
+    def slopes(errors: list[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        above, below = (
+            wrong.values(coefficients, moves, np.tile(errors, (len(tasks), 1)) * step)
+            for step in (_STEP, -_STEP)
+        )
+        arrival = (above.arrival - below.arrival) / (2 * _STEP)
+        left = [np.abs(row @ one).max() for row, one in zip(rows, arrival, strict=True)]
+        return (above.energy - below.energy) / (2 * _STEP), np.array(left)
+
+    return {FREQUENCY: slopes([1.0, 0.0]), DAMPING: slopes([0.0, 1.0])}

@@ -178,7 +178,7 @@ def task_grid_options(command: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(command)
     def with_grid(*positional: Any, **named: Any) -> Any:
         moves = {name: named[name] for name in OF_MOVES}
-        named |= {name: values[0] for name, values in moves.items()}
+        named |= {name: max(values, key=abs) for name, values in moves.items()}  # one not at rest
         kind, own, given = (named[name] for name in ("plant", "plant_file", "parameters"))
         several = {name: text for name, text in given if ":" in text or "," in text}
         single = [(name, text) for name, text in given if name not in several]
@@ -199,7 +199,7 @@ def task_grid_options(command: Callable[..., Any]) -> Callable[..., Any]:
             )
         return command(*positional, grid=Grid(_task_of(named), tuple(axes)), **named)
 
-    return _task_options(required=True, axes=True)(with_grid)
+    return _task_options(required=True, axes=True)(robust_option(with_grid))
 
 
 def task_or_path_options(command: Callable[..., Any]) -> Callable[..., Any]:

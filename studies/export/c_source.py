@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import casadi as ca
 from quietarm.ocp import Plan
+from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.display.words import move_of, plant_words
 
 _HEADER = """/* {name}: {move}. By quietarm {version}; {figures}. */
@@ -66,54 +67,63 @@ def c_files(plan: Plan, name: str) -> tuple[str, str]:
     ValueError
         When no function of C can be called so.
     """
-    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-        raise ValueError(
-            f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
-            "of letters, digits and _ that begins with a letter"
-        )
+    name_in_c(name)
     start, target, duration = plan.task.move
-    variables, lines = _statements(plan)
+    given = [*plan.coefficients, *plan.task.move]
+    variables, lines = statements(plan.profile, ["t", *map(number, given)])
     words = {
         "name": name,
         "guard": name.upper(),
         "move": f"{plant_words(plan.task.plant)}, {move_of(plan.task)}".replace("*/", ""),
         "version": plan.provenance.versions.get("quietarm", ""),
         "figures": f"energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
-        "duration": _number(duration),
-        "start": _number(start),
-        "target": _number(target),
+        "duration": number(duration),
+        "start": number(start),
+        "target": number(target),
         "variables": ", ".join(variables),
         "lines": "\n".join(f"    {line}" for line in lines),
     }
     return _HEADER.format(**words), _SOURCE.format(**words)
 
 
-def _statements(plan: Plan) -> tuple[list[str], list[str]]:
-    """The variables, and a statement for each operation of the joint's path."""
-    fraction = ca.SX.sym("t")
-    joint = plan.profile.motion(list(plan.coefficients), fraction, *plan.task.move, jerk=False)
+def name_in_c(name: str) -> None:
+    """Refuse a file's name after which no function can be called."""
+    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+        raise ValueError(
+            f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
+            "of letters, digits and _ that begins with a letter"
+        )
+
+
+def statements(profile: JointProfile, inputs: Sequence[str]) -> tuple[list[str], list[str]]:
+    """The variables, and a statement for each operation of the joint's path.
+
+    Inputs are what C calls the share of the duration, each coefficient, start, target and duration.
+    """
+    fraction, a, move = ca.SX.sym("t"), ca.SX.sym("a", profile.size), ca.SX.sym("move", 3)
+    start, target, duration = ca.vertsplit(move)
+    joint = profile.motion(ca.vertsplit(a), fraction, start, target, duration, jerk=False)
     results = ca.vertcat(joint.angle, joint.speed, joint.acceleration)
-    path = ca.Function("path", [fraction], [ca.densify(results)], {"cse": True})
+    given = ca.vertcat(fraction, a, move)
+    path = ca.Function("path", [given], [ca.densify(results)], {"cse": True})
     lines, variables = list[str](), dict[str, None]()
     for k in range(path.n_instructions()):
         operation, to = path.instruction_id(k), path.instruction_output(k)
-        given = [f"v{i}" for i in path.instruction_input(k)]
+        operands = [f"v{i}" for i in path.instruction_input(k)]
         if operation == ca.OP_OUTPUT:
-            lines.append(f"{_RESULTS[to[1]]} = {given[0]};")
+            lines.append(f"{_RESULTS[to[1]]} = {operands[0]};")
             continue
         variables[f"v{to[0]}"] = None
-        lines.append(f"v{to[0]} = {_value(path, k, operation, given)};")
+        if operation == ca.OP_INPUT:
+            value = inputs[path.instruction_input(k)[1]]
+        elif operation == ca.OP_CONST:
+            value = number(path.instruction_constant(k))
+        else:
+            value = _OPERATIONS[operation].format(*operands)
+        lines.append(f"v{to[0]} = {value};")
     return list(variables), lines
 
 
-def _value(path: ca.Function, k: int, operation: int, given: Sequence[str]) -> str:
-    if operation == ca.OP_INPUT:
-        return "t"
-    if operation == ca.OP_CONST:
-        return _number(path.instruction_constant(k))
-    return _OPERATIONS[operation].format(*given)
-
-
-def _number(value: float) -> str:
+def number(value: float) -> str:
     """A constant of C with every digit."""
     return repr(float(value))

@@ -80,6 +80,39 @@ def format_of(path: Path) -> str:
     raise ValueError(f"{path} does not say in which form it is; end its name in one of {known}")
 
 
+def export_moves(dataset: Path, path: Path, format: str | None = None) -> list[Path]:  # noqa: A002
+    """Write the moves of a sweep's dataset as C: a table, and what interpolates it.
+
+    Parameters
+    ----------
+    dataset : Path
+        Of `quietarm sweep`.
+    path : Path
+        The C source; its header is written beside it.
+    format : {"c"}, optional
+        The only form that there is.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    ValueError
+        When another form is asked for, or no function of C can be called after the file.
+    """
+    from quietarm.studies.export.c_table import c_table_files
+    from quietarm.studies.sweep.library import MoveLibrary
+
+    if (format or format_of(path)) != "c" or path.suffix != ".c":
+        raise ValueError(f"{dataset} has many moves, which are exported as C alone; give a .c file")
+    header, source = c_table_files(MoveLibrary(dataset), path.stem)
+    for file, content in ((path.with_suffix(".h"), header), (path, source)):
+        write_whole(file, content)
+    return [path.with_suffix(".h"), path]
+
+
 def export_plan(
     plan: Plan,
     path: str | Path,

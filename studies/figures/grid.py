@@ -1,63 +1,164 @@
-"""Energies over a grid of moves."""
+"""Figures of moves over a grid."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
-from quietarm.studies.figures.axes import logarithmic, new_figure
+from numpy.typing import NDArray
+from quietarm.studies.figures.axes import logarithmic, name_objectives, new_figure
 from quietarm.studies.figures.looks import look
+from quietarm.studies.sweep.asked import STATES, STATUS
 from quietarm.studies.sweep.grid import Axis
 from quietarm.studies.sweep.store import Store
 
-_MOST_PANELS = 6
+Array = NDArray[np.float64]
+_MOST_SLICES = 4
+_SHOWN = {
+    "energy": ("energy F2 [J]", 1.0, 0.0),
+    "residual": ("residual F1 [mm]", 1e3, 1e-3),
+    "price_residual": ("price of the residual [J/mm]", 1e-3, 1e-9),
+}
+"""Variables with their labels, factors and least values that are told apart."""
+_GREYS = ("0.95", "#4878a8", "#88b0d0", "#c05030", "#e0a030", "#806080", "0.6")
+"""How cells ended, in the order of `STATES`; told apart in print by their lightness as well."""
 
 
 def grid_figure(store: Store) -> Figure:
-    """Energies over the last two axes, a panel for each of the first values of those before.
+    """Energy, residual, price of the residual and how cells ended, over the last two axes.
 
-    Cells without a plan are hatched; along one axis alone it is a line.
+    A row of panels for each of the first values of the axes before; along one axis alone, lines.
     """
-    axes, energy = store.grid.axes, store.read("energy")
+    axes = store.sweep.grid.axes
     if len(axes) == 1:
-        figure = new_figure(5.5, 3.6)
-        ax, look_of = figure.subplots(), look(0)
-        values, unit = _shown(axes[0])
-        ax.plot(values, energy, look_of.mark + "-", color=look_of.colour)
-        logarithmic(ax, float(np.nanmax(energy) / np.nanmin(energy)), "y")
-        ax.set(xlabel=f"{axes[0].name} [{unit}]", ylabel="energy F2 [J]")
-        return figure
-    rows = energy.reshape(-1, *energy.shape[-2:])[:_MOST_PANELS]
-    places = [*np.ndindex(*energy.shape[:-2])][:_MOST_PANELS]
-    figure = new_figure(1.2 + 3.6 * min(len(rows), 3), 3.4 * -(-len(rows) // 3))
-    panels = figure.subplots(-(-len(rows) // 3), min(len(rows), 3), squeeze=False, sharey=True)
-    (x, x_unit), (y, y_unit) = _shown(axes[-1]), _shown(axes[-2])
-    norm = LogNorm(float(np.nanmin(energy)), float(np.nanmax(energy)))
-    for ax, one, place in zip(panels.flat, rows, places, strict=False):
-        ax.patch.set(hatch="///", edgecolor="0.75", facecolor="white")
-        ax.pcolormesh(x, y, one, norm=norm, cmap="viridis", shading="nearest")
-        words = [f"{axis.name} {axis.values[k]:.4g} {axis.unit}"
-                 for axis, k in zip(axes, place, strict=False)]  # fmt: skip
-        ax.set_title(", ".join(words), loc="left", fontsize=9)
-        ax.set_xlabel(f"{axes[-1].name} [{x_unit}]")
-    panels[0, 0].set_ylabel(f"{axes[-2].name} [{y_unit}]")
-    for ax in panels.flat[len(rows) :]:
-        ax.remove()
-    shown = [ax for ax in panels.flat if ax.figure is not None]
-    ticks = LogLocator(subs=(1.0, 2.0, 5.0))
-    bar = figure.colorbar(
-        ScalarMappable(norm, "viridis"),
-        ax=shown,
-        label="energy F2 [J]",
-        ticks=ticks,
-        format="{x:g}",
-    )
-    bar.minorticks_off()
+        return _over_one(store, axes[0])
+    slices, variables = [*_slices(store)], _variables(store)
+    count = len(variables) + 1
+    figure = new_figure(0.6 + 3.6 * count, 0.6 + 3.1 * len(slices))
+    panels = figure.subplots(len(slices), count, squeeze=False, sharex=True, sharey=True)
+    (x, x_name), (y, y_name) = _shown(axes[-1]), _shown(axes[-2])
+    for column, (label, values, least) in enumerate(variables):
+        norm = _norm(values)
+        panels[0, column].set_title(label)
+        for ax, (place, _) in zip(panels[:, column], slices, strict=True):
+            ax.patch.set(hatch="///", edgecolor="0.75", facecolor="white")
+            ax.pcolormesh(x, y, values[place], norm=norm, cmap="viridis", shading="nearest")
+            if not (values > least).any():
+                words = f"at most {least:g}"
+                ax.text(0.5, 0.5, words, transform=ax.transAxes, ha="center", color="white")
+        if (values > least).any():
+            _colour_bar(figure, panels[:, column], norm)
+    _states(figure, panels[:, -1], x, y, store, [place for place, _ in slices])
+    for row, (_, words) in zip(panels, slices, strict=True):
+        row[0].set_ylabel(f"{words}\n{y_name}" if words else y_name)
+    for ax in panels[-1]:
+        ax.set_xlabel(x_name)
     return figure
 
 
-def _shown(axis: Axis) -> tuple[np.ndarray, str]:
+def fronts_figure(store: Store) -> Figure:
+    """Fronts over the last axis, a panel for each of the first values of those before."""
+    axes = store.sweep.grid.axes
+    residual, energy = store.read("front_residual"), store.read("front_energy")
+    places = [*np.ndindex(*residual.shape[:-2])][:_MOST_SLICES]
+    figure = new_figure(1.0 + 4.0 * len(places), 3.8)
+    panels = figure.subplots(1, len(places), squeeze=False, sharey=True)[0]
+    values, name = _shown(axes[-1])
+    norm = Normalize(float(values.min()), float(values.max()))
+    colours = ScalarMappable(norm, "viridis")
+    for ax, place in zip(panels, places, strict=True):
+        for k, value in enumerate(values):
+            ax.plot(1e3 * residual[(*place, k)], energy[(*place, k)], color=colours.to_rgba(value))
+        ax.set_title(_words(axes, place), loc="left", fontsize=9)
+        name_objectives(ax)
+        ax.grid(alpha=0.25)
+        logarithmic(ax, float(np.nanmax(energy) / np.nanmin(energy)), "y")
+    figure.colorbar(colours, ax=list(panels), label=name)
+    return figure
+
+
+def _over_one(store: Store, axis: Axis) -> Figure:
+    figure = new_figure(5.5, 7.5)
+    variables = _variables(store)
+    panels = figure.subplots(len(variables), 1, sharex=True)
+    values, name = _shown(axis)
+    without = np.isnan(store.read("energy"))
+    for number, (ax, (label, shown, _)) in enumerate(zip(panels, variables, strict=True)):
+        own = look(number)
+        ax.plot(values, shown, own.mark + "-", color=own.colour)
+        positive = shown[shown > 0]
+        if positive.size:
+            logarithmic(ax, float(positive.max() / positive.min()), "y")
+        ax.plot(values[without], np.full(without.sum(), 0.02), "x", color="0.4",
+                transform=ax.get_xaxis_transform())  # fmt: skip
+        ax.set_ylabel(label)
+        ax.grid(alpha=0.25)
+    panels[-1].set_xlabel(name + (" (x: no plan)" if without.any() else ""))
+    return figure
+
+
+def _variables(store: Store) -> list[tuple[str, Array, float]]:
+    """What is shown and known: labels, values that are no less than the least, the least."""
+    every = [
+        (label, np.maximum(factor * store.read(name), least), least)
+        for name, (label, factor, least) in _SHOWN.items()
+    ]
+    return [one for one in every if np.isfinite(one[1]).any()] or every[:1]
+
+
+def _slices(store: Store) -> Iterator[tuple[tuple[int, ...], str]]:
+    """Places on the axes before the last two, and what they are, the first ones."""
+    axes = store.sweep.grid.axes
+    for place in [*np.ndindex(*store.sweep.grid.shape[:-2])][:_MOST_SLICES]:
+        yield place, _words(axes, place)
+
+
+def _words(axes: tuple[Axis, ...], place: tuple[int, ...]) -> str:
+    return ", ".join(
+        f"{axis.name} {axis.values[k]:.4g} {axis.unit}"
+        for axis, k in zip(axes, place, strict=False)
+    )
+
+
+def _norm(values: Array) -> Normalize:
+    """Colours by the logarithm of what is known and positive."""
+    known = values[np.isfinite(values) & (values > 0)]
+    if not known.size:
+        return Normalize(0.0, 1.0)
+    least, most = float(known.min()), float(known.max())
+    return LogNorm(least, most) if most > 1.01 * least else LogNorm(least / 2, 2 * most)
+
+
+def _colour_bar(figure: Figure, panels: NDArray[np.object_], norm: Normalize) -> None:
+    few = norm.vmax is not None and norm.vmin is not None and norm.vmax < 1e3 * norm.vmin
+    ticks = LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,))
+    colours = ScalarMappable(norm, "viridis")
+    figure.colorbar(colours, ax=list(panels), ticks=ticks, format="{x:g}").minorticks_off()
+
+
+def _states(
+    figure: Figure, panels: NDArray[np.object_], x: Array, y: Array, store: Store,
+    places: list[tuple[int, ...]],
+) -> None:  # fmt: skip
+    """How cells ended, in colours of their own."""
+    status = store.read(STATUS)
+    present = sorted({*np.unique(status).astype(int).tolist()})
+    cmap = ListedColormap([_GREYS[k] for k in present])
+    numbers = np.searchsorted(present, status)
+    norm = BoundaryNorm(np.arange(len(present) + 1) - 0.5, len(present))
+    panels[0].set_title("how it ended")
+    for ax, place in zip(panels, places, strict=True):
+        ax.pcolormesh(x, y, numbers[place], norm=norm, cmap=cmap, shading="nearest")
+    bar = figure.colorbar(ScalarMappable(norm, cmap), ax=list(panels), ticks=range(len(present)))
+    bar.ax.set_yticklabels([STATES[k] for k in present])
+
+
+def _shown(axis: Axis) -> tuple[Array, str]:
     values = np.array(axis.values)
-    return (np.degrees(values), "deg") if axis.unit == "rad" else (values, axis.unit)
+    if axis.unit == "rad":
+        return np.degrees(values), f"{axis.name} [deg]"
+    return values, f"{axis.name} [{axis.unit}]"

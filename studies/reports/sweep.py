@@ -6,12 +6,14 @@ import numpy as np
 from quietarm.ocp import SolveStatus
 from quietarm.studies.display.words import plant_words
 from quietarm.studies.document.blocks import Document, Facts
-from quietarm.studies.sweep.store import STATES, STATUS, Store
+from quietarm.studies.sweep.asked import JUMP, STATES
+from quietarm.studies.sweep.library import Between
+from quietarm.studies.sweep.store import Store
 
 
-def sweep_document(store: Store) -> Document:
+def sweep_document(store: Store, between: Between | None = None) -> Document:
     """Axes, then how many cells ended how."""
-    grid, status, energy = store.grid, store.read(STATUS), store.read("energy")
+    grid, status, energy = store.sweep.grid, store.status, store.read("energy")
     rows = [("plant", plant_words(grid.task.plant))]
     rows += [
         (
@@ -27,8 +29,15 @@ def sweep_document(store: Store) -> Document:
     others = [each for each in counts if each[0] not in solved_states]
     rows += [(state, f"{count} cells") for state, count in others if count]
     if known.any():
+        excess, jumps = store.read("cold_excess"), int((store.read(JUMP) > 0).sum())
+        checked = np.isfinite(excess)
         rows += [
             ("energy", f"{energy[known].min():.4g} to {energy[known].max():.4g} J"),
             ("residual", f"{1e3 * store.read('residual')[known].max():.3g} mm at most, by CVODES"),
-        ]
+            ("from cold starts", f"at most {max(excess[checked].max(), 0):.1g} of the energy less, "
+             f"in {checked.sum()} cells"),
+        ]  # fmt: skip
+        rows += [("jumps", f"after {jumps} cells, to another motion")] * bool(jumps)
+    if between is not None:
+        rows.append(("between", between.words.partition(": ")[2]))
     return Document("", [Facts(rows)])

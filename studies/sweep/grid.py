@@ -6,14 +6,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from quietarm.ocp import PointToPoint
 
 OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
 """Axes over the move, with their units; all others are parameters of the plant."""
-_AT_ONCE = 256
-"""Cells of a chunk: some seconds of work."""
 _WHOLE_STEPS = 1e-6
 
 
@@ -53,7 +52,7 @@ def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
     values = tuple(parse(one) for one in text.split(","))
     if len(set(values)) < len(values):
         raise ValueError(f"{text!r} has a value twice; give each once")
-    return values
+    return tuple(sorted(values))
 
 
 @dataclass(frozen=True)
@@ -66,6 +65,8 @@ class Grid:
         What the cells have in common, and what is no axis.
     axes : tuple of Axis
         Parameters of the plant before the quantities of the move: chunks then have few plants.
+    at_once : int
+        Most cells of a chunk.
 
     Raises
     ------
@@ -75,6 +76,7 @@ class Grid:
 
     task: PointToPoint
     axes: tuple[Axis, ...]
+    at_once: int = 256
 
     def __post_init__(self) -> None:
         known = {axis.name: axis.values for axis in self.axes}
@@ -98,7 +100,7 @@ class Grid:
     @cached_property
     def chunk(self) -> tuple[int, ...]:
         """Cells of a chunk along each axis."""
-        sizes, room = list[int](), _AT_ONCE
+        sizes, room = list[int](), self.at_once
         for length in reversed(self.shape):
             sizes.append(min(length, max(1, room)))
             room //= sizes[-1]
@@ -125,5 +127,8 @@ class Grid:
     def _task(self, values: Sequence[float]) -> PointToPoint:
         given = {axis.name: value for axis, value in zip(self.axes, values, strict=True)}
         move = {name: given.pop(name) for name in OF_MOVES if name in given}
-        plant = replace(self.task.plant, **given) if given else self.task.plant
+        plant: Any = self.task.plant
+        if given:
+            changed = replace(plant.nominal, **given)
+            plant = replace(plant, assumed=changed) if plant.errors else changed
         return replace(self.task, plant=plant, **move)

@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients, plan_moves
-from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.saved import typed
-from quietarm.studies.sweep.grid import Axis, Grid
-from quietarm.studies.sweep.store import opened
+from quietarm.ocp import (
+    Plan,
+    PointToPoint,
+    QuietarmError,
+    evaluate_coefficients,
+    plan_move,
+    plan_moves,
+)
+from quietarm.studies.sweep.asked import COEFFICIENTS, JUMP
+from quietarm.studies.sweep.grid import Grid
+from quietarm.studies.sweep.interpolation import Interpolation
+from quietarm.studies.sweep.store import Store
 
 Array = NDArray[np.float64]
 _SAMPLES = 100
 """Random moves between the cells, by which a library says how good it is."""
-_JUMP = 4.0
-"""Where coefficients change by so many times what they do on either side, a branch ends."""
-_OF_SMOOTH, _OF_OTHERS = "cubic", "linear"
 
 
 @dataclass(frozen=True)
@@ -44,20 +46,21 @@ class Between:
     excess: float
     samples: int
 
+    @property
+    def words(self) -> str:
+        """All of it in a line."""
+        return (
+            f"between the cells: {1e3 * self.residual:.3g} mm at most and {self.excess:.2%} more "
+            f"energy than plans of their own, of {self.samples} random moves"
+        )
 
-def _stand_out(steps: Array) -> NDArray[np.bool_]:
-    """Steps along the first axis that are much larger than those before and after them."""
-    beside = np.zeros_like(steps)
-    beside[1:] = steps[:-1]
-    beside[:-1] = np.fmax(beside[:-1], steps[1:])
-    return steps > _JUMP * beside
+
+class BeyondError(ValueError):
+    """A move that a library has no coefficients for."""
 
 
 class MoveLibrary:
     """Coefficients of any move within a sweep's grid.
-
-    Where all cells have a plan and no two neighbours are of different branches, the interpolation
-    is cubic, else linear within each box of neighbours.
 
     Parameters
     ----------
@@ -69,57 +72,21 @@ class MoveLibrary:
     FileFormatError
         When it is none.
     ValueError
-        When a cell was not computed, or an axis has fewer than four values.
+        When a cell was not computed.
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.path, self._group = Path(path), opened(Path(path))
-        asked = json.loads(str(self._group.attrs["asked"]))
-        axes = tuple(
-            Axis(name, tuple(values), str(self._array(name).attrs["units"]))
-            for name, values in asked["axes"].items()
-        )
-        self.grid = Grid(typed(asked["task"], PointToPoint), axes)
-        self.profile = typed(asked["profile"], JointProfile)
-        self._settings = asked["settings"]
-        for axis in axes:  # what a cubic takes
-            if len(axis.values) < 4:
-                raise ValueError(
-                    f"axis {axis.name} has {len(axis.values)} values, too few between which to "
-                    "interpolate; sweep four or more"
-                )
-        if (np.asarray(self._array("status")[...]) == 0).any():
+        self.store = Store(Path(path))
+        self.grid, self.profile = self.store.sweep.grid, self.store.sweep.profile
+        if self.store.missing():
             raise ValueError(f"{path} has cells that are not computed; give its line again")
 
-    def _array(self, name: str) -> Any:
-        return self._group[name]
-
     @cached_property
-    def _cells(self) -> Array:
-        """Coefficients; NaN on both sides of a jump from one branch to another."""
-        cells: Array = np.asarray(self._array("coefficients")[...])
-        holed = cells.copy()
-        for axis in range(len(self.grid.axes)):
-            steps = np.linalg.norm(np.diff(cells, axis=axis), axis=-1)
-            jumps = np.moveaxis(_stand_out(np.moveaxis(steps, axis, 0)), 0, axis)
-            for side in (0, 1):
-                place = [slice(None)] * len(self.grid.axes)
-                place[axis] = slice(side, cells.shape[axis] - 1 + side)
-                holed[tuple(place)][jumps] = np.nan
-        return holed
-
-    @cached_property
-    def _interpolate(self) -> Any:
-        from scipy.interpolate import RegularGridInterpolator  # takes long to load
-        from scipy.sparse.linalg import spsolve
-
-        whole = bool(np.isfinite(self._cells).all())
-        points = [axis.values for axis in self.grid.axes]
-        method = _OF_SMOOTH if whole else _OF_OTHERS
-        exact: dict[str, Any] = (
-            {"solver": spsolve} if whole else {}
-        )  # the default one stops within 1e-5
-        return RegularGridInterpolator(points, self._cells, method=method, **exact)
+    def interpolation(self) -> Interpolation:
+        """Between the cells of one branch."""
+        axes = [np.array(axis.values) for axis in self.grid.axes]
+        marks = self.store.read(JUMP).astype(np.int32)
+        return Interpolation(axes, self.store.read(COEFFICIENTS), marks)
 
     def coefficients(self, **at: ArrayLike) -> Array:
         """Coefficients of moves.
@@ -140,65 +107,97 @@ class MoveLibrary:
             When an axis is missing, a move is beyond the grid, or next to a cell without a plan or
             to a jump from one branch to another.
         """
-        names = [axis.name for axis in self.grid.axes]
-        if {*at} != {*names}:
-            raise ValueError(f"give a value of each axis, {', '.join(names)}, and no other")
+        self._check_names(at)
         for axis in self.grid.axes:
             values = np.asarray(at[axis.name], float)
             low, high = min(axis.values), max(axis.values)
             if not ((low <= values) & (values <= high)).all():
                 worst = values.ravel()[np.argmax(np.abs(values - (low + high) / 2))]
-                raise ValueError(
+                raise BeyondError(
                     f"{axis.name} is {worst:g} {axis.unit}, and the grid has {low:g} to {high:g}; "
                     "sweep a wider one, or solve"
                 )
-        places = np.stack(np.broadcast_arrays(*(at[name] for name in names)), axis=-1)
-        found: Array = self._interpolate(places).reshape(*places.shape[:-1], -1)
+        places = np.stack(
+            np.broadcast_arrays(*(np.asarray(at[axis.name], float) for axis in self.grid.axes)),
+            axis=-1,
+        )
+        found = self.interpolation(places.reshape(-1, places.shape[-1]))
         if not np.isfinite(found).all():
-            raise ValueError(
+            raise BeyondError(
                 "the move is next to a cell without a plan, or where the least energy jumps from "
                 "one motion to another; solve it, or sweep a finer grid"
             )
-        return found
+        return found.reshape(*places.shape[:-1], -1)
+
+    def _check_names(self, at: dict[str, ArrayLike]) -> None:
+        names = [axis.name for axis in self.grid.axes]
+        if {*at} != {*names}:
+            raise ValueError(f"give a value of each axis, {', '.join(names)}, and no other")
 
     def task(self, **at: float) -> PointToPoint:
         """The move of some values of the axes."""
+        self._check_names({**at})
         axes = (replace(axis, values=(at[axis.name],)) for axis in self.grid.axes)
         one = Grid(self.grid.task, tuple(axes))
         return one.tasks(one.chunks[0])[0]
 
-    def plan(self, **at: float) -> Plan:
-        """The move that is looked up, with its figures by CVODES."""
-        found = self.coefficients(**at)
-        return evaluate_coefficients(self.task(**at), found, profile=self.profile, method="lookup")
+    def plan(self, *, solve: bool = False, **at: float) -> Plan:
+        """The move that is looked up, with its figures by CVODES.
+
+        One that the library has no coefficients for is planned by `plan_move` where `solve` says
+        so, else refused.
+        """
+        task, settings = self.task(**at), self.store.sweep.settings
+        try:
+            found = self.coefficients(**at)
+        except BeyondError:
+            if not solve:
+                raise
+            limit = settings.residual_limit or (None if task.errors else 0.0)
+            return plan_move(task, self.profile, residual_limit=limit, bound=settings.bound)
+        return evaluate_coefficients(task, found, profile=self.profile, method="lookup")
 
     def between(self, samples: int = _SAMPLES) -> Between:
         """What random moves between the cells leave and cost; kept in the dataset."""
-        known: Mapping[str, Any] = json.loads(str(self._group.attrs.get("between", "{}")))
+        known = self.store.noted("between")
         if known.get("samples") == samples:
             return Between(**known)
-        random, tasks, looked_up = np.random.default_rng(0), [], []
+        random, tasks, plans = np.random.default_rng(0), list[PointToPoint](), list[Plan]()
         for _ in range(20 * samples):
             if len(tasks) == samples:
                 break
             at = {one.name: float(random.uniform(min(one.values), max(one.values)))
                   for one in self.grid.axes}  # fmt: skip
             try:
-                looked_up.append(self.plan(**at))
+                plans.append(self.plan(**at))
             except ValueError:
                 continue
             tasks.append(self.task(**at))
         if not tasks:
-            raise ValueError(f"{self.path} has no move between its cells that can be looked up")
-        least = np.array([self._least(task) for task in tasks])
-        energies = np.array([plan.energy for plan in looked_up])
-        worst = max(plan.residual for plan in looked_up)
+            raise ValueError(
+                f"{self.store.path} has no move between its cells that can be looked up"
+            )
+        least = self._least(tasks)
+        energies = np.array([plan.energy for plan in plans])
+        worst = max(plan.residual for plan in plans)
         found = Between(worst, float(np.nanmax(energies / least - 1)), len(tasks))
-        self._group.attrs["between"] = json.dumps(vars(found))
+        self.store.note("between", vars(found))
         return found
 
-    def _least(self, task: PointToPoint) -> float:
-        """Energy of the plan of a move."""
-        limit, bound = self._settings["residual_limit"], self._settings["bound"]
-        moves = plan_moves([task], self.profile, residual_limit=limit, bound=bound)
-        return float(moves.energy[0]) if moves.status[0].solved else math.nan
+    def _least(self, tasks: Sequence[PointToPoint]) -> Array:
+        """Energies of the plans of moves, NaN where one has none."""
+        settings = self.store.sweep.settings
+
+        def planned(task: PointToPoint) -> float:
+            limit, bound = settings.residual_limit, settings.bound
+            try:
+                if task.errors:
+                    return plan_move(
+                        task, self.profile, residual_limit=limit or None, bound=bound
+                    ).energy
+                moves = plan_moves([task], self.profile, residual_limit=limit, bound=bound)
+                return float(moves.energy[0])
+            except QuietarmError:
+                return math.nan
+
+        return np.array([planned(task) for task in tasks])

@@ -7,37 +7,21 @@ import os
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp import FileFormatError, SolveSettings, SolveStatus
-from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp import FileFormatError
 from quietarm.ocp.record import versions
-from quietarm.ocp.saved import plain
-from quietarm.studies.sweep.grid import Grid
+from quietarm.studies.sweep.asked import COEFFICIENTS, JUMP, STATES, STATUS, Sweep
+from quietarm.studies.sweep.branches import jumps
 
 if TYPE_CHECKING:
     import zarr
 
 Array = NDArray[np.float64]
-STATUS = "status"
-STATES = ("not computed", *(status.value for status in SolveStatus))
-"""What `status` says, by its number."""
-FIGURES = {
-    "energy": "J", "residual": "m", "peak_torque": "N m", "peak_speed": "rad/s",
-    "peak_acceleration": "rad/s^2", "peak_deflection": "m", "iterations": "1",
-}  # fmt: skip
-"""Variables of one number a cell, with their units."""
-
-
-def asked(grid: Grid, profile: JointProfile, settings: SolveSettings) -> dict[str, Any]:
-    """What makes two sweeps the same."""
-    return {
-        "task": plain(grid.task), "profile": plain(profile), "settings": plain(settings),
-        "axes": {axis.name: list(axis.values) for axis in grid.axes},
-    }  # fmt: skip
 
 
 class Store:
@@ -46,87 +30,130 @@ class Store:
     Parameters
     ----------
     path : Path
-        Its folder; made where there is none.
-    grid, profile, settings
-        What is swept.
+        Its folder.
 
     Raises
     ------
     FileFormatError
-        When the folder is something else, or the dataset of another sweep; says what differs.
+        When it is none, or is something else.
     """
 
-    def __init__(
-        self, path: Path, grid: Grid, profile: JointProfile, settings: SolveSettings
-    ) -> None:
-        self.path, self.grid = path, grid
-        wanted = asked(grid, profile, settings)
+    def __init__(self, path: Path) -> None:
+        self.path, self._group = path, _opened(path)
+        self.sweep = Sweep.from_json(self._read("sweep"))
+
+    @classmethod
+    def of(cls, path: Path, sweep: Sweep) -> Store:
+        """The store of a sweep, made where there is none; FileFormatError if it is of another."""
         if not path.exists():
-            self._lay_out(wanted, profile)
-        group = opened(path)
-        _check_same(path, json.loads(str(group.attrs["asked"])), wanted)
-        self._arrays: Any = {name: group[name] for name in (*FIGURES, "coefficients", STATUS)}
+            lay_out(path, sweep, sweep)
+        store = cls(path)
+        _check_same(path, store._read("asked"), _as_json(sweep))
+        return store
 
-    def _lay_out(self, wanted: Mapping[str, Any], profile: JointProfile) -> None:
-        """Make it whole or not at all, also where two begin at once."""
-        import zarr
+    def _read(self, name: str) -> Any:
+        return json.loads(str(self._group.attrs.get(name, "null")))
 
-        with tempfile.TemporaryDirectory(dir=self.path.parent, prefix=".sweep-") as folder:
-            place = Path(folder) / "store"
-            attributes = {"format": "quietarm-sweep", "versions": versions()}
-            group = zarr.create_group(place, attributes={**attributes, "asked": json.dumps(wanted)})
-            dims = [axis.name for axis in self.grid.axes]
+    @cached_property
+    def _arrays(self) -> dict[str, Any]:
+        return {name: self._group[name] for name in (*self.sweep.variables, STATUS, JUMP)}
 
-            def make(name: str, unit: str, size: int, kind: str, empty: float, **more: Any) -> None:
-                shape, chunks = self.grid.shape, self.grid.chunk
-                own = {"units": unit, **more}
-                group.create_array(
-                    name, shape=(*shape, size) if size else shape, dtype=kind, fill_value=empty,
-                    chunks=(*chunks, size) if size else chunks, attributes=own,
-                    dimension_names=[*dims, "coefficient"] if size else dims,
-                )  # fmt: skip
+    @property
+    def status(self) -> NDArray[np.int8]:
+        """The numbers of `STATES` of all cells."""
+        return np.asarray(self._arrays[STATUS][...])
 
-            for axis in self.grid.axes:
-                group.create_array(
-                    axis.name, data=np.array(axis.values), dimension_names=[axis.name],
-                    attributes={"units": axis.unit},
-                )  # fmt: skip
-            for name, unit in FIGURES.items():
-                make(name, unit, 0, "float64", np.nan)
-            make("coefficients", "1", profile.size, "float64", np.nan)
-            meanings = " ".join(state.replace(" ", "_") for state in STATES)
-            make(
-                STATUS, "1", 0, "int8", 0, flag_values=[*range(len(STATES))], flag_meanings=meanings
-            )
-            with suppress(OSError):  # another process was first
-                os.rename(place, self.path)
-
-    def missing(self, part: tuple[int, int]) -> list[int]:
+    def missing(self, part: tuple[int, int] = (1, 1)) -> list[int]:
         """The chunks of a part, i of n, that are not computed."""
-        number, of = part
-        status = self._arrays[STATUS][...]
+        (number, of), status = part, self.status
         return [
-            k for k, chunk in enumerate(self.grid.chunks)
+            k for k, chunk in enumerate(self.sweep.grid.chunks)
             if k % of == number - 1 and (status[chunk] == 0).any()
         ]  # fmt: skip
 
     def keep(self, number: int, found: Mapping[str, Array]) -> None:
         """Write a chunk; its status last, so that a killed run computes it again."""
-        chunk = self.grid.chunks[number]
+        chunk = self.sweep.grid.chunks[number]
         shape = tuple(cut.stop - cut.start for cut in chunk)
-        for name in (*FIGURES, "coefficients", STATUS):
+        for name in (*self.sweep.variables, STATUS):
             values = found[name]
             self._arrays[name][chunk] = values.reshape(*shape, *values.shape[1:])
+
+    def mark_jumps(self) -> None:
+        """Mark where the least energy jumps from one motion to another, once all is computed."""
+        self._arrays[JUMP][...] = jumps(self.read(COEFFICIENTS))
 
     def read(self, name: str) -> Array:
         """All of a variable."""
         return np.asarray(self._arrays[name][...])
 
+    @property
+    def versions(self) -> dict[str, str]:
+        """Of what laid the dataset out."""
+        return dict(self._group.attrs["versions"])
 
-def opened(path: Path) -> zarr.Group:
+    def note(self, name: str, entries: Mapping[str, Any]) -> None:
+        """Keep a few numbers about the dataset as an attribute."""
+        self._group.attrs[name] = json.dumps(entries)
+
+    def noted(self, name: str) -> dict[str, Any]:
+        """What `note` kept; empty where it kept nothing."""
+        return self._read(name) or {}
+
+
+def lay_out(path: Path, asked: Sweep, sweep: Sweep) -> None:
+    """Make a store whole or not at all, also where two begin at once.
+
+    Its grid is that of `sweep`; what is asked may have a coarser one, to be refined.
+    """
+    zarr = _zarr()
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-") as folder:
+        place = Path(folder) / "store"
+        attributes = {"format": "quietarm-sweep", "versions": versions()}
+        texts = {name: json.dumps(one.to_json()) for name, one in
+                 (("asked", asked), ("sweep", sweep))}  # fmt: skip
+        group = zarr.create_group(place, attributes={**attributes, **texts})
+        grid = sweep.grid
+        dims = [axis.name for axis in grid.axes]
+
+        def make(name: str, beside: Any, kind: str, empty: float, **own: Any) -> None:
+            names, sizes = [name for name, _ in beside], [size for _, size in beside]
+            group.create_array(
+                name, shape=(*grid.shape, *sizes), chunks=(*grid.chunk, *sizes), dtype=kind,
+                fill_value=empty, attributes=own, dimension_names=[*dims, *names],
+            )  # fmt: skip
+
+        for axis in grid.axes:
+            group.create_array(
+                axis.name, data=np.array(axis.values), dimension_names=[axis.name],
+                attributes={"units": axis.unit},
+            )  # fmt: skip
+        for name, one in sweep.variables.items():
+            make(name, one.beside, "float64", np.nan, units=one.unit)
+        words = " ".join(state.replace(" ", "_") for state in STATES)
+        make(STATUS, (), "int8", 0, units="1", flag_values=[*range(len(STATES))],
+             flag_meanings=words)  # fmt: skip
+        make(JUMP, (), "int32", 0, units="1", flag_masks=[1 << k for k in range(len(dims))],
+             flag_meanings=" ".join(f"to_the_next_{name}" for name in dims))  # fmt: skip
+        with suppress(OSError):  # another process was first
+            os.rename(place, path)
+
+
+def _as_json(sweep: Sweep) -> dict[str, Any]:
+    return json.loads(json.dumps(sweep.to_json()))
+
+
+def _zarr() -> Any:
+    try:
+        import zarr
+    except ImportError:
+        raise ValueError("the dataset of a sweep needs zarr: install quietarm[sweep]") from None
+    return zarr
+
+
+def _opened(path: Path) -> zarr.Group:
     """The Zarr group of a sweep; FileFormatError where it is none."""
-    import zarr
-
+    zarr = _zarr()
     try:
         group = zarr.open_group(path, mode="r+")
         known = group.attrs.get("format") == "quietarm-sweep"
@@ -140,11 +167,10 @@ def opened(path: Path) -> zarr.Group:
 
 
 def _check_same(path: Path, there: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
-    wanted = json.loads(json.dumps(wanted))
-    for entry in wanted:
-        mine, its = wanted[entry], there.get(entry)
-        if mine != its:
-            names = [n for n in {**mine, **(its or {})} if mine.get(n) != (its or {}).get(n)]
+    for entry, mine in wanted.items():
+        its = there.get(entry) or {}
+        names = [name for name in {**mine, **its} if mine.get(name) != its.get(name)]
+        if names:
             raise FileFormatError(
                 f"{path} is of another sweep: {entry} differ in {', '.join(names)}; give the line "
                 "of that sweep, or another name"

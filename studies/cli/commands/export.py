@@ -10,7 +10,7 @@ from quietarm.studies.cli.options import typed
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import INPUT, OUTPUT, Named
 from quietarm.studies.document.blocks import Document, Lines
-from quietarm.studies.export.formats import FORMATS, Wishes, export_plan, format_of
+from quietarm.studies.export.formats import FORMATS, Wishes, export_moves, export_plan, format_of
 from quietarm.studies.reading.saved import load_plans
 
 
@@ -31,6 +31,9 @@ def export(
 ) -> None:
     """Write a saved PLAN for a controller: csv, C, a ROS 2 JointTrajectory, or MATLAB.
 
+    The PLAN may be the dataset of quietarm sweep, whose moves are written as C with the
+    interpolation between them.
+
     The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
     but math.h.
 
@@ -39,12 +42,16 @@ def export(
       quietarm export plan.json --output move.c
       quietarm export plan.json --output move.csv --columns time:ms,angle:deg,torque --rate 500
       quietarm export plan.json --output move.yaml --joint shoulder_pan_joint --rate 100
+      quietarm export moves.zarr --output moves.c
     """  # noqa: D301  # \b is click's: do not rewrap
     form = form or format_of(output)
     for name in ("columns", "rate", "joint"):
         if typed(name) and name not in FORMATS[form].takes:
             takers = " and ".join(one for one, each in FORMATS.items() if name in each.takes)
             raise ValueError(f"--{name} is for {takers}, not for {form}; leave it out")
-    (saved,) = load_plans([plan]).values()
-    written = export_plan(saved, output, form, columns=columns, rate=rate, joint=joint)
+    if plan.is_dir():
+        written = export_moves(plan, output, form)
+    else:
+        (saved,) = load_plans([plan]).values()
+        written = export_plan(saved, output, form, columns=columns, rate=rate, joint=joint)
     finish([], Document("", [Lines([f"wrote {path}" for path in written])]))

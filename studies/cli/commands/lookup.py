@@ -28,6 +28,8 @@ from rich.console import Console
 @click.option("--duration", type=TIME, help="Travelling time.")
 @click.option("--set", "parameters", type=SETTING, multiple=True,
               help="A parameter of the plant that is an axis, as tip_mass=150g.")  # fmt: skip
+@click.option("--solve", is_flag=True,
+              help="Plan the move where the dataset does not have it.")  # fmt: skip
 @quiet_option
 @plan_file_options
 def lookup(
@@ -36,6 +38,7 @@ def lookup(
     target: float | None,
     duration: float | None,
     parameters: tuple[tuple[str, str], ...],
+    solve: bool,
     quiet: bool,
     files_of: Callable[[Plan], list[File]],
 ) -> None:
@@ -56,9 +59,7 @@ def lookup(
         at = {name: parse_in(units[name], text, name) for name, text in given.items()}
         asked = {"start": start, "target": target, "duration": duration}
         at |= {name: value for name, value in asked.items() if value is not None}
-        found, between = library.plan(**at), library.between()
-    notes = [
-        f"between the cells: {1e3 * between.residual:.3g} mm at most and {between.excess:.2%} more "
-        f"energy than plans of their own, of {between.samples} random moves"
-    ]
+        found = library.plan(solve=solve, **at)
+        between = None if found.status.solved else library.between()
+    notes = ["planned: the dataset does not have it"] if between is None else [between.words]
     finish(files_of(found), plan_document(found, notes))

@@ -17,7 +17,7 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.task import task_grid_options
 from quietarm.studies.cli.types import FOLDER, LENGTH, PICTURE, WHOLE, Parsed
-from quietarm.studies.display.progress import progress
+from quietarm.studies.display.progress import progress, working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.sweep.grid import Grid
@@ -25,9 +25,11 @@ from rich.console import Console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from quietarm.studies.sweep.store import Store
 
 _MANY = 1_000_000
 _HOURS_OF_MANY = 3
+_MOST_POINTS = 1000
 
 
 def _part(text: str) -> tuple[int, int]:
@@ -37,13 +39,27 @@ def _part(text: str) -> tuple[int, int]:
     return int(number), int(of)
 
 
+def _check_size(grid: Grid, yes: bool) -> None:
+    if grid.cells > _MANY and not yes:
+        hours = _HOURS_OF_MANY * grid.cells / _MANY
+        raise ValueError(
+            f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
+            "or --yes"
+        )
+
+
 @click.command()
 @task_grid_options
 @family_option
 @terms_option
 @click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
 @click.option("--residual-limit", type=LENGTH, default="0", show_default=True,
-              help="Largest tip displacement after arrival; 0 is at rest.")  # fmt: skip
+              help="Largest tip displacement after arrival; 0 is at rest, and with --robust 5 % of "
+              "how far the plain cycloid bends the tip.")  # fmt: skip
+@click.option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
+              help="Find a front of so many points for every move as well.")  # fmt: skip
+@click.option("--refine", type=LENGTH,
+              help="Halve axes until moves between the cells leave no more than this.")  # fmt: skip
 @click.option("--starts", type=WHOLE, default=1, show_default=True, help="Starts of each cell.")
 @click.option("--part", type=Parsed("i/n", _part), default="1/1",
               help="Do every n-th chunk alone, as 2/8 in a queue's array job.")  # fmt: skip
@@ -51,7 +67,8 @@ def _part(text: str) -> tuple[int, int]:
 @click.option("--output", type=FOLDER, required=True,
               help="The dataset, a folder as moves.zarr: the same line goes on where one was "
               "stopped.")  # fmt: skip
-@click.option("--figure", type=PICTURE, help="Draw energies over the last two axes.")
+@click.option("--figure", type=PICTURE, help="Draw energy, residual, price and feasibility over "
+              "the last two axes; with --front the fronts.")  # fmt: skip
 @workers_options
 @quiet_option
 def sweep(
@@ -60,6 +77,8 @@ def sweep(
     terms: int | None,
     bound: float | None,
     residual_limit: float,
+    front: int | None,
+    refine: float | None,
     starts: int,
     part: tuple[int, int],
     yes: bool,
@@ -81,37 +100,48 @@ def sweep(
       quietarm sweep flexible-beam --set tip_mass=0,100g,200g --target 60deg \\
           --duration 600ms:1s:20ms --torque-limit 1.5 --output payload.zarr --figure payload.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    try:
-        from quietarm.studies.sweep.store import Store
-    except ImportError:
-        raise ValueError("a sweep needs zarr: install quietarm[sweep]") from None
     from quietarm.metaheuristics.sharing.workers import Workers
     from quietarm.studies.reports.sweep import sweep_document
+    from quietarm.studies.sweep.asked import Sweep
+    from quietarm.studies.sweep.library import MoveLibrary
+    from quietarm.studies.sweep.refine import begun_or_laid_out, halved, refine_once
     from quietarm.studies.sweep.work import run_sweep
 
-    if grid.cells > _MANY and not yes:
-        hours = _HOURS_OF_MANY * grid.cells / _MANY
-        raise ValueError(
-            f"the grid has {grid.cells} cells, some {hours:.0f} hours on a core; give wider steps, "
-            "or --yes"
-        )
+    _check_size(grid, yes)
+    if refine is not None and part != (1, 1):
+        raise ValueError("--refine is for a whole grid; leave --part out, or refine afterwards")
     motions, errors = profile_of(profile, grid.task, terms), Console(stderr=True)
-    settings = SolveSettings(residual_limit, bound, starts)
-    store = Store(output, grid, motions, settings)
-    missing = len(store.missing(part))
-    warn_of_workers(errors, workers, missing)
-    with progress(missing, errors, quiet=quiet) as begin:
-        done = run_sweep(store, motions, settings, part, Workers(workers, scheduler), begin)
-    trouble = next(iter(done.failures.values()), None)
-    if done.stopped:
-        trouble = QuietarmError(
-            f"{done.stopped}: {len(done.answers)} of {missing} chunks are done; give the same line "
-            "again to go on"
-        )
+    asked = Sweep(grid, motions, SolveSettings(residual_limit, bound, starts), front or 0, refine)
+    troubles = list[Exception]()
+
+    def run(store: Store) -> bool:
+        missing = len(store.missing(part))
+        warn_of_workers(errors, workers, missing)
+        with progress(missing, errors, quiet=quiet) as begin:
+            done = run_sweep(store, part, Workers(workers, scheduler), begin)
+        if done.stopped:
+            troubles.append(QuietarmError(
+                f"{done.stopped}: {len(done.answers)} of {missing} chunks are done; give the same "
+                "line again to go on"
+            ))  # fmt: skip
+        return not done.stopped
+
+    store, between = begun_or_laid_out(output, asked), None
+    whole = run(store)
+    while refine is not None and whole:
+        with working("looking between the cells", errors, quiet=quiet):
+            between = MoveLibrary(output).between()
+        if between.residual <= refine:
+            break
+        finer = halved(store)
+        _check_size(finer, yes)
+        store, whole = refine_once(output, store, asked, finer, run)
 
     def picture() -> Figure:
-        from quietarm.studies.figures.grid import grid_figure
+        from quietarm.studies.figures.grid import fronts_figure, grid_figure
 
-        return grid_figure(store)
+        return fronts_figure(store) if front else grid_figure(store)
 
-    finish([(figure, drawing(picture))], sweep_document(store), trouble=trouble, quiet=quiet)
+    document = sweep_document(store, between)
+    trouble = troubles[0] if troubles else None
+    finish([(figure, drawing(picture))], document, trouble=trouble, quiet=quiet)

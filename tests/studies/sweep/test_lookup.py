@@ -1,14 +1,36 @@
 """Moves between the cells of a sweep."""
 
 import math
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
+import xarray as xr
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, plan_move
 from quietarm.studies.cli import main
+from quietarm.studies.sweep.branches import jumps
+from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.library import MoveLibrary
 
+MAIN = """
+#include <stdio.h>
+#include "moves.h"
+int main(void)
+{
+    double a[MOVES_COEFFICIENTS], angle, speed, acceleration;
+    int i;
+    printf("%d ", moves_plan(0.65, 0.93, a));
+    printf("%d ", moves_plan(3.0, 0.93, a));
+    moves_plan(0.65, 0.93, a);
+    for (i = 0; i < MOVES_COEFFICIENTS; i++)
+        printf("%.17g ", a[i]);
+    moves_at(a, 0.65, 0.93, 0.4, &angle, &speed, &acceleration);
+    printf("%.17g %.17g %.17g", angle, speed, acceleration);
+    return 0;
+}
+"""
 LINE = (
     "sweep single-link --target 20deg:60deg:5deg --duration 800ms:1.1s:50ms --quiet "
     "--output moves.zarr"
@@ -32,7 +54,8 @@ def _standing_there(folder, monkeypatch):
 def test_a_cell_is_what_it_was_and_between_it_is_as_still_as_stated():
     library = MoveLibrary("moves.zarr")
     cell = library.coefficients(target=math.radians(30), duration=0.9)
-    assert cell == pytest.approx(library._cells[2, 2], abs=1e-12)
+    kept = xr.open_zarr("moves.zarr", consolidated=False).coefficients.values[2, 2]
+    assert cell == pytest.approx(kept, abs=1e-12)
     stated = library.between()
     assert stated.samples == 100
     assert stated.residual < 0.2e-3
@@ -53,14 +76,58 @@ def test_many_moves_are_looked_up_at_once():
     assert found[7] == pytest.approx(one, rel=1e-9)
 
 
-def test_next_to_a_cell_without_a_plan_and_across_a_jump_nothing_is_looked_up():
-    library = MoveLibrary("moves.zarr")
-    cells = library._cells.copy()
-    cells[4, 3] = np.nan
-    library.__dict__["_cells"] = cells
-    with pytest.raises(ValueError, match="next to a cell without a plan"):
-        library.coefficients(target=math.radians(41), duration=0.96)
-    library.coefficients(target=math.radians(25), duration=0.85)
+def test_between_cells_it_is_the_polynomial_through_the_nearest_six():
+    axes = [np.linspace(0, 1, 9), np.array([0.0, 0.3, 0.4, 1.0, 1.7, 2.0, 2.2])]
+    x, y = np.meshgrid(*axes, indexing="ij")
+
+    def quintic(x, y):
+        return np.stack([x**5 - 2 * x * y**3, 1 + y**5], axis=-1)
+
+    cells, marks = quintic(x, y), np.zeros(x.shape, np.int32)
+    places = np.random.default_rng(0).uniform((0, 0), (1, 2.2), (50, 2))
+    found = Interpolation(axes, cells, marks)(places)
+    assert found == pytest.approx(quintic(*places.T), abs=1e-12)  # exact up to degree five
+
+
+def test_no_polynomial_goes_through_a_cell_without_a_plan_or_across_a_jump():
+    axes, cells = [np.arange(9.0)], np.arange(9.0)[:, None]
+    cells[5:] += 100.0  # another motion
+    cells[8] = np.nan
+    marks = jumps(cells)
+    assert marks.tolist() == [0, 0, 0, 0, 1, 0, 0, 0, 0]
+    between = Interpolation(axes, cells, marks)
+    assert between.orders.tolist() == [4, 4, 4, 2, 0, 2, 2, 0]
+    found = between(np.array([[1.5], [4.0], [4.5], [7.0], [7.5]]))[:, 0]
+    assert found == pytest.approx([1.5, 4.0, np.nan, 107.0, np.nan], nan_ok=True)
+
+
+def test_what_is_not_in_the_dataset_is_planned_where_that_is_asked_for(call):
+    code, out, err = call("lookup moves.zarr --target 70deg --duration 0.9 --quiet --solve")
+    assert (code, err) == (0, "")
+    assert "planned: the dataset does not have it" in out
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no compiler of C")
+def test_a_controller_gets_the_same_coefficients_and_path(call, tmp_path):
+    assert call(f"export moves.zarr --output {tmp_path / 'moves.c'}")[0] == 0
+    (tmp_path / "main.c").write_text(MAIN)
+    parts = [str(tmp_path / name) for name in ("main.c", "moves.c")]
+    program = str(tmp_path / "main")
+    strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
+    subprocess.run(["cc", *strict, *parts, "-lm", "-o", program], check=True)
+    printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
+    library, at = MoveLibrary("moves.zarr"), {"target": 0.65, "duration": 0.93}
+    assert printed[:2] == ["0", "1"]  # the second move is beyond the grid
+    assert [float(one) for one in printed[2:8]] == pytest.approx(library.coefficients(**at))
+    path = library.plan(**at).path
+    expected = [float(path(0.4, order)) for order in range(3)]
+    assert [float(one) for one in printed[8:]] == pytest.approx(expected)
+
+
+def test_many_moves_are_no_table(call, tmp_path):
+    code, out, err = call(f"export moves.zarr --output {tmp_path / 'moves.csv'}")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "exported as C alone" in err
 
 
 def test_the_command_writes_the_move(call):
