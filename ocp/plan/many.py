@@ -15,6 +15,7 @@ from quietarm.ocp.plan.verification import (
     CHECK_EVERY,
     FINER_AGREEMENT,
     OF_A_PLAN,
+    finer_peaks,
     finer_values,
     verified,
 )
@@ -27,7 +28,7 @@ from quietarm.ocp.program.solving import STOPPED, Row, Solved, Solver, solve
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.residual import residuals_at_rest, state_matrices
 from quietarm.ocp.simulation.resimulation import resimulate
-from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.task import QUANTITIES, PointToPoint
 
 Array = NDArray[np.float64]
 _PILOTS, _SAME_MOVE = 8, 1e-9
@@ -50,6 +51,8 @@ class Moves:
         Coefficients; NaN where there is no plan.
     energy, residual : ndarray, shape (moves,)
         F2 [J] and F1 [m]; NaN where there is no plan.
+    peaks : dict of str to ndarray, shape (moves,)
+        Largest absolute values on the way by quantity [SI units]; NaN where there is no plan.
     status : tuple of SolveStatus
         How each ended.
     reasons : tuple of str
@@ -70,6 +73,7 @@ class Moves:
     coefficients: Array
     energy: Array
     residual: Array
+    peaks: dict[str, Array]
     status: tuple[SolveStatus, ...]
     reasons: tuple[str, ...]
     iterations: NDArray[np.intp]
@@ -186,6 +190,7 @@ def _certified(
         coefficients=np.full((count, profile.size), np.nan),
         energy=np.full(count, np.nan),
         residual=np.full(count, np.nan),
+        peaks={name: np.full(count, np.nan) for name in QUANTITIES},
         status=tuple(one.status for one in found),
         reasons=tuple(one.reason for one in found),
         iterations=np.array([one.iterations for one in found]),
@@ -207,6 +212,8 @@ def _certified(
             continue
         moves.coefficients[i], moves.by_cvodes[i] = best.coefficients, True
         moves.energy[i], moves.residual[i] = checked.energy, checked.residual
+        for name, values in moves.peaks.items():
+            values[i] = checked.motion.peak(name)
     return moves
 
 
@@ -243,6 +250,8 @@ def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int =
     places = [row.place for row in rows]
     moves.coefficients[places], moves.energy[places] = table, values.energy
     moves.residual[places] = residual
+    for name, largest in finer_peaks([row.program for row in rows], table).items():
+        moves.peaks[name][places] = largest
     doubtful |= {places[k] for k in np.flatnonzero(residual > STILL)}
     for k in range(0, len(rows), CHECK_EVERY):
         exact = resimulate(rows[k].program.task, one.profile, table[k])

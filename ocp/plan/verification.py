@@ -18,6 +18,7 @@ from quietarm.ocp.simulation.objective import Motion, WithPeaks
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.task import QUANTITIES
 
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
@@ -181,11 +182,25 @@ FINER_AGREEMENT = 1e-6
 _FINER = 3
 
 
-def finer_values(programs: Sequence[Program], coefficients: NDArray[np.float64]) -> Values:
+def finer_values(
+    programs: Sequence[Program], coefficients: NDArray[np.float64], quantities: tuple[str, ...] = ()
+) -> Values:
     """Figures of one motion of each program, on three times the solver's steps or more."""
     one = programs[0]
     steps = max(default_steps(one.task), _FINER * one.steps)
     move = np.array([program.row for program in programs])
     no_errors = np.zeros((len(programs), 0))
-    finer = batch(one.plant, one.profile, steps, energy=one.task.energy)
+    finer = batch(one.plant, one.profile, steps, quantities, energy=one.task.energy)
     return finer.values(coefficients, move, no_errors)
+
+
+def finer_peaks(
+    programs: Sequence[Program], coefficients: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]:
+    """Peaks of every quantity of one motion of each program, at the nodes of these steps."""
+    values = finer_values(programs, coefficients, tuple(QUANTITIES)).limited
+    counts = [QUANTITIES[name].rows(programs[0].plant) for name in QUANTITIES]
+    ends = np.cumsum([0, *counts]) * (values.shape[1] // sum(counts))
+    parts = map(slice, ends[:-1].tolist(), ends[1:].tolist())
+    return {name: np.abs(values[:, part]).max(axis=1)
+            for name, part in zip(QUANTITIES, parts, strict=True)}  # fmt: skip

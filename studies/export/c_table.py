@@ -168,7 +168,7 @@ def c_table_files(library: MoveLibrary, name: str) -> tuple[str, str]:
 
 def _rising(between: Interpolation) -> Interpolation:
     """The same with every axis rising."""
-    falling = [k for k, axis in enumerate(between.axes) if axis[-1] < axis[0]]
+    falling = tuple(k for k, axis in enumerate(between.axes) if axis[-1] < axis[0])
     axes = [np.flip(axis) if k in falling else axis for k, axis in enumerate(between.axes)]
     turned = Interpolation(axes, np.flip(between.cells, falling), np.zeros((), np.int32))
     turned.lengths = between.lengths

@@ -53,13 +53,13 @@ class Interpolation:
 
     def _whole(self, sizes: Index) -> NDArray[np.bool_]:
         """Whether windows of cells have plans and no jumps, by the place of their first cell."""
-        good = np.isfinite(self.cells).all(axis=-1)
-        whole = sliding_window_view(good, sizes).all(axis=tuple(range(len(sizes), 2 * len(sizes))))
+        good: NDArray[np.bool_] = np.isfinite(self.cells).all(axis=-1)
+        inner = tuple(range(len(sizes), 2 * len(sizes)))
+        whole = np.asarray(sliding_window_view(good, sizes).all(axis=inner))
         for axis in range(len(sizes)):
             edges = np.delete((self._marks >> axis) & 1, -1, axis) == 0
             window = [size - (k == axis) for k, size in enumerate(sizes)]
-            along = sliding_window_view(edges, window)
-            whole = whole & along.all(axis=tuple(range(len(sizes), 2 * len(sizes))))
+            whole &= sliding_window_view(edges, window).all(axis=inner)
         return whole
 
     def _first(self, box: Index, order: int, axis: int) -> Index:
@@ -91,14 +91,13 @@ class Interpolation:
         return np.clip(np.searchsorted(rising, signed, side="right") - 1, 0, len(axis) - 2)
 
     def _through(self, order: int, places: Array, boxes: list[Index]) -> Array:
-        found: Array | None = None
         firsts = [self._first(box, order, k) for k, box in enumerate(boxes)]
         sizes = np.minimum(order, self.lengths)
         index = tuple(
             (first[:, None] + np.arange(size)).reshape(-1, *self._spread(size, k))
             for k, (first, size) in enumerate(zip(firsts, sizes, strict=True))
         )
-        found = self.cells[index]
+        found: Array = self.cells[index]
         for k in reversed(range(len(sizes))):
             nodes = self.axes[k][firsts[k][:, None] + np.arange(sizes[k])]
             weights = _lagrange(nodes, places[:, k])

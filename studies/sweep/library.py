@@ -169,7 +169,7 @@ class MoveLibrary:
             at = {one.name: float(random.uniform(min(one.values), max(one.values)))
                   for one in self.grid.axes}  # fmt: skip
             try:
-                plans.append(self.plan(**at))
+                plans.append(self.plan(solve=False, **at))
             except ValueError:
                 continue
             tasks.append(self.task(**at))

@@ -90,7 +90,7 @@ class Store:
     @property
     def versions(self) -> dict[str, str]:
         """Of what laid the dataset out."""
-        return dict(self._group.attrs["versions"])
+        return self._read("versions")
 
     def note(self, name: str, entries: Mapping[str, Any]) -> None:
         """Keep a few numbers about the dataset as an attribute."""
@@ -109,10 +109,9 @@ def lay_out(path: Path, asked: Sweep, sweep: Sweep) -> None:
     zarr = _zarr()
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".sweep-") as folder:
         place = Path(folder) / "store"
-        attributes = {"format": "quietarm-sweep", "versions": versions()}
-        texts = {name: json.dumps(one.to_json()) for name, one in
-                 (("asked", asked), ("sweep", sweep))}  # fmt: skip
-        group = zarr.create_group(place, attributes={**attributes, **texts})
+        texts = {"asked": asked.to_json(), "sweep": sweep.to_json(), "versions": versions()}
+        attributes = {name: json.dumps(one) for name, one in texts.items()}
+        group = zarr.create_group(place, attributes={"format": "quietarm-sweep", **attributes})
         grid = sweep.grid
         dims = [axis.name for axis in grid.axes]
 

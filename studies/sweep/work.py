@@ -29,8 +29,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.robustness.sensitivity import sensitivities_of_moves
-from quietarm.ocp.simulation.objective import Motion
-from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.sweep.asked import COEFFICIENTS, STATES, STATUS, Sweep
 from quietarm.studies.sweep.store import Store
 
@@ -43,17 +42,15 @@ _ABOVE = 1e-4
 
 
 class _Cell(NamedTuple):
-    """The plan of a move, and where there is none why."""
+    """The plan of a move; where there is none its status says why."""
 
     status: SolveStatus
+    figures: Mapping[str, float] = {}
     coefficients: Array | None = None
-    motion: Motion | None = None
-    iterations: float = np.nan
-    prices: Mapping[str, float] = {}
 
     @property
     def energy(self) -> float:
-        return np.inf if self.motion is None else self.motion.energy
+        return self.figures.get("energy", np.inf)
 
 
 def run_sweep(
@@ -63,7 +60,7 @@ def run_sweep(
     sweep, kept = store.sweep, set[object]()
     of = len(sweep.grid.chunks)
     pieces = [
-        Piece(number, f"chunk {number + 1} of {of}", partial(_planned, sweep, number))
+        Piece(number, f"chunk {number + 1} of {of}", partial(planned, sweep, number))
         for number in store.missing(part)
     ]
 
@@ -82,7 +79,7 @@ def run_sweep(
     return done
 
 
-def _planned(sweep: Sweep, number: int, done: Done, say: Say) -> Found:
+def planned(sweep: Sweep, number: int, done: Done, say: Say) -> Found:
     """The variables of a chunk; its moves are planned together as far as they have one plant."""
     tasks = sweep.grid.tasks(sweep.grid.chunks[number])
     groups = [list(each) for _, each in groupby(tasks, key=lambda task: task.plant)]
@@ -95,16 +92,11 @@ def _variables(sweep: Sweep, tasks: list[PointToPoint], seed: int) -> Found:
     sizes = {name: [size for _, size in one.beside] for name, one in sweep.variables.items()}
     found = {name: np.full([len(tasks), *beside], np.nan) for name, beside in sizes.items()}
     found[STATUS] = np.array([STATES.index(cell.status.value) for cell in cells], np.int8)
-    found["iterations"] = np.array([cell.iterations for cell in cells])
     found["cold_excess"] = excess
-    solved = [k for k, cell in enumerate(cells) if cell.motion]
+    solved = [k for k, cell in enumerate(cells) if cell.coefficients is not None]
     for k in solved:
-        cell = cells[k]
-        found[COEFFICIENTS][k] = cell.coefficients
-        figures = {"energy": cell.energy, "residual": cell.motion.residual}
-        figures |= {name: getattr(cell.motion, name) for name in found if name.startswith("peak_")}
-        figures |= {f"price_{name}": price for name, price in cell.prices.items()}
-        for name, value in figures.items():
+        found[COEFFICIENTS][k] = cells[k].coefficients
+        for name, value in cells[k].figures.items():
             found[name][k] = value
         if sweep.front:
             _add_front(sweep, tasks[k], {name: found[f"front_{name}"][k] for name in _OF_FRONT})
@@ -124,7 +116,7 @@ def _not_above_cold(
     """Cells, started from their neighbours, and of a tenth the excess over cold plans."""
     plans = _robust_plans if tasks[0].errors else _plans
     cells, excess = plans(sweep, tasks, sweep.settings.starts), np.full(len(tasks), np.nan)
-    solved = [k for k, cell in enumerate(cells) if cell.motion]
+    solved = [k for k, cell in enumerate(cells) if cell.coefficients is not None]
     count, random = -(-len(solved) // _CHECKED), np.random.default_rng(seed)
     checked = random.choice(solved, count, replace=False).tolist() if solved else []
     cold = plans(sweep, [tasks[k] for k in checked], _COLD_STARTS) if checked else []
@@ -145,13 +137,17 @@ def _plans(sweep: Sweep, tasks: list[PointToPoint], starts: int) -> list[_Cell]:
         tasks, sweep.profile, residual_limit=settings.residual_limit, bound=settings.bound,
         starts=starts, seed=settings.seed, solver=settings.solver,
     ))  # fmt: skip
-    return [
-        _Cell(status, a, resimulate(task, sweep.profile, a), float(count), prices)
-        if np.isfinite(energy) else _Cell(status, iterations=float(count))
-        for task, a, energy, status, count, prices in zip(
-            tasks, moves.coefficients, moves.energy, moves.status, moves.iterations, moves.prices,
-            strict=True)
-    ]  # fmt: skip
+    columns = {"energy": moves.energy, "residual": moves.residual, "iterations": moves.iterations}
+    columns |= {f"peak_{name}": values for name, values in moves.peaks.items()}
+
+    def cell(k: int, prices: Mapping[str, float]) -> _Cell:
+        if not np.isfinite(moves.energy[k]):
+            return _Cell(moves.status[k])
+        figures = {name: float(values[k]) for name, values in columns.items()}
+        figures |= {f"price_{name}": price for name, price in prices.items()}
+        return _Cell(moves.status[k], figures, moves.coefficients[k])
+
+    return [cell(k, prices) for k, prices in enumerate(moves.prices)]
 
 
 def _robust_plans(sweep: Sweep, tasks: Sequence[PointToPoint], starts: int) -> list[_Cell]:
@@ -171,7 +167,9 @@ def _robust_plans(sweep: Sweep, tasks: Sequence[PointToPoint], starts: int) -> l
             )
             continue
         guess = np.array(plan.coefficients)
-        cells.append(_Cell(plan.status, guess, plan.motion))
+        figures = {"energy": plan.energy, "residual": plan.residual}
+        figures |= {one.peak: plan.motion.peak(name) for name, one in QUANTITIES.items()}
+        cells.append(_Cell(plan.status, figures, guess))
     return cells
 
 

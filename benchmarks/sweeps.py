@@ -1,0 +1,156 @@
+"""Grids of moves: speed against a loop of plans, memory, workers, and what kills leave.
+
+    python benchmarks/sweeps.py [speed] [workers] [memory] [killed]
+
+- speed: 289 moves of each plant, 10 to 90 deg in 0.6 to 1.4 s, six terms, as `quietarm sweep` does
+  its chunks, and without their checks by cold starts; against `plan_move` with its defaults for
+  every twelfth of them. Processor times, functions built before.
+- workers: 7,209 moves by one worker and by two, wall time without the start of the workers.
+- memory: peak of a process that sweeps 100,000 cells with two terms, as it goes on.
+- killed: 2,061 moves by two workers, one of them and then the client killed with SIGKILL; the same
+  line again, and two parts at once, against an undisturbed run.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+import xarray as xr
+from quietarm.metaheuristics.sharing.pieces import Done, Say
+from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
+from quietarm.ocp import CycloidPolynomial, PointToPoint, SolveSettings, plan_move, plan_moves
+from quietarm.studies.sweep.asked import Sweep
+from quietarm.studies.sweep.grid import Axis, Grid
+from quietarm.studies.sweep.work import planned
+
+QUIETARM = str(Path(sys.executable).parent / "quietarm")
+TARGETS = tuple(np.radians(np.linspace(10, 90, 17)).tolist())
+DURATIONS = tuple(np.linspace(0.6, 1.4, 17).tolist())
+
+
+def speed() -> None:
+    """Processor time of a move, in a grid and by itself."""
+    for plant in (SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()):
+        task = PointToPoint(plant, 1.0, 1.0)
+        axes = Axis("target", TARGETS, "rad"), Axis("duration", DURATIONS, "s")
+        sweep = Sweep(Grid(task, axes), CycloidPolynomial(), SolveSettings(starts=1))
+        tasks = sweep.grid.tasks([slice(None), slice(None)])[::12]
+        every = sweep.grid.tasks([slice(None), slice(None)])
+        in_grid, unchecked, alone = list[float](), list[float](), list[float]()
+        for _ in range(4):  # the first builds functions
+            began = time.process_time()
+            for number in range(len(sweep.grid.chunks)):
+                planned(sweep, number, Done(), Say(lambda progress: None))
+            in_grid.append((time.process_time() - began) / sweep.grid.cells)
+            began = time.process_time()
+            plan_moves(every)
+            unchecked.append((time.process_time() - began) / sweep.grid.cells)
+            began = time.process_time()
+            for one in tasks:
+                plan_move(one)
+            alone.append((time.process_time() - began) / len(tasks))
+        grid, plans, loop = (median(times[1:]) for times in (in_grid, unchecked, alone))
+        print(
+            f"{plant.name}: {1e3 * grid:.1f} ms a move, {1 / grid:.0f} moves a second and core; "
+            f"unchecked {1e3 * plans:.1f} ms; plan_move {1e3 * loop:.0f} ms, {loop / grid:.1f} and "
+            f"{loop / plans:.1f} times",
+            flush=True,
+        )
+
+
+def line(folder: Path, name: str, durations: str, *more: str) -> list[str]:
+    """The command of a sweep over nine targets of the link."""
+    task = f"sweep single-link --target 10deg:90deg:10deg --duration {durations}"
+    return [QUIETARM, *task.split(), *more, "--output", str(folder / name)]
+
+
+def workers(folder: Path) -> None:
+    """Wall times between the first and the last chunk."""
+    took = dict[int, float]()
+    for number in (1, 2):
+        times = list[float]()
+        asked = line(folder, f"by{number}.zarr", "0.6:1.4:0.001", "--workers", str(number))
+        shown = subprocess.Popen(
+            asked, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
+        )
+        assert shown.stderr is not None
+        for said in shown.stderr:
+            if re.match(r"\[\d+/", said):
+                times.append(time.monotonic())
+        shown.wait()
+        took[number] = (times[-1] - times[number]) / (len(times) - 1 - number)
+    print(f"a chunk takes {took[1]:.2f} s by one worker, {took[2]:.2f} s by two: "
+          f"{took[1] / took[2]:.2f} times", flush=True)  # fmt: skip
+
+
+def memory(folder: Path) -> None:
+    """Memory of the process every 30 s."""
+    asked = line(folder, "large.zarr", "0.6:1.4:0.00008", "--terms", "2", "--quiet")
+    process, began = subprocess.Popen(asked, stdout=subprocess.DEVNULL), time.monotonic()
+    while process.poll() is None:
+        time.sleep(30)
+        try:
+            status = Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8")
+        except OSError:
+            break
+        found = re.search(r"VmRSS:\s+(\d+)", status)
+        if found:
+            print(f"{time.monotonic() - began:.0f} s: {int(found[1]) / 1e3:.0f} MB", flush=True)
+    moves = xr.open_zarr(folder / "large.zarr", consolidated=False)
+    print(f"{moves.energy.size} cells, {time.monotonic() - began:.0f} s", flush=True)
+
+
+def killed(folder: Path) -> None:
+    """The same dataset whatever is killed."""
+
+    def asked(name: str, *more: str) -> list[str]:
+        return line(folder, name, "0.6:1.4:0.0035087719298245615", "--quiet", *more)
+
+    subprocess.run(asked("whole.zarr"), check=True)
+    whole = xr.open_zarr(folder / "whole.zarr", consolidated=False).load()
+    print(f"{whole.energy.size} moves", flush=True)
+    two = asked("killed.zarr", "--workers", "2")
+    process = subprocess.Popen(two, start_new_session=True)
+    wait_for_chunks(folder / "killed.zarr", 1, process)
+    workers_of = subprocess.run(["pgrep", "-f", "-s", str(process.pid), "multiprocessing"],
+                                capture_output=True, text=True).stdout.split()  # fmt: skip
+    os.kill(int(workers_of[-1]), signal.SIGKILL)
+    wait_for_chunks(folder / "killed.zarr", 3, process)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    subprocess.run(two, check=True)
+    parts = [subprocess.Popen(asked("parts.zarr", "--part", f"{k}/2")) for k in (1, 2)]
+    for part in parts:
+        part.wait()
+    for name in ("killed.zarr", "parts.zarr"):
+        other = xr.open_zarr(folder / name, consolidated=False).load()
+        same = all(np.array_equal(other[v], whole[v], equal_nan=True) for v in whole.data_vars)
+        print(f"{name} is {'the same' if same else 'ANOTHER'}", flush=True)
+
+
+def wait_for_chunks(path: Path, count: int, process: subprocess.Popen[bytes]) -> None:
+    """Wait until so many chunks are written, or the process has ended."""
+    while process.poll() is None and len([*path.glob("status/c/*/*")]) < count:
+        time.sleep(0.05)
+
+
+if __name__ == "__main__":
+    chosen, place = sys.argv[1:] or ["speed", "workers", "killed"], Path(tempfile.mkdtemp())
+    try:
+        if "speed" in chosen:
+            speed()
+        for one in (workers, memory, killed):
+            if one.__name__ in chosen:
+                one(place)
+    finally:
+        shutil.rmtree(place)
