@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem, problem_of
     from quietarm.metaheuristics.problems.function import MoveFunction
     from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem
+    from quietarm.metaheuristics.problems.recorded import RecordedFunction, RecordedRun
     from quietarm.metaheuristics.runs.progress import SearchProgress
 
 __all__ = [
@@ -46,6 +47,8 @@ __all__ = [
     "PopulationObjective",
     "PopulationValues",
     "Preset",
+    "RecordedFunction",
+    "RecordedRun",
     "SearchProgress",
     "Spread",
     "VelocityRule",
@@ -65,6 +68,8 @@ _LATER = {
     "PaperNSGA2": "algorithms.nsga2",
     "PopulationObjective": "objective.population",
     "PopulationValues": "objective.population",
+    "RecordedFunction": "problems.recorded",
+    "RecordedRun": "problems.recorded",
     "SearchProgress": "runs.progress",
     "Spread": "ensemble",
     "problem_of": "problems.catalogue",

@@ -5,8 +5,9 @@
     task = qa.PointToPoint(qa.SingleLinkManipulator(), target=0.5236, duration=0.8)
     plan = qa.plan_move(task)
 
-Every public name of `quietarm.models`, `quietarm.ocp`, `quietarm.metaheuristics` and
-`quietarm.studies.figures`; each package is imported with the first of its names that is asked for.
+Every public name of `quietarm.models`, `quietarm.ocp`, `quietarm.metaheuristics`,
+`quietarm.studies.figures` and `quietarm.studies.contest`; each package is imported with the first
+of its names that is asked for.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ if TYPE_CHECKING:
     from quietarm.metaheuristics import *  # noqa: F403
     from quietarm.models import *  # noqa: F403
     from quietarm.ocp import *  # noqa: F403
+    from quietarm.studies.contest import *  # noqa: F403
     from quietarm.studies.figures import *  # noqa: F403
 
-_PACKAGES = "models", "ocp", "metaheuristics", "studies.figures"
+_PACKAGES = "models", "ocp", "metaheuristics", "studies.figures", "studies.contest"
 
 
 def __getattr__(name: str) -> Any:

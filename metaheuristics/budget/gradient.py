@@ -67,7 +67,7 @@ class Gradient:
 
         The motions are taken as far from each other as they can be: ends, middle, quarters, ...
         """
-        X, F = self._problem.non_dominated()
+        X, F = self._problem.record.non_dominated()
         for i in _spread_out(np.argsort(F[:, 0]).tolist()):
             self.solve(X[i], float(F[i, 0]))
 

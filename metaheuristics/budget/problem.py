@@ -5,14 +5,11 @@ from __future__ import annotations
 import time
 from typing import Any
 
-import moocore
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.budget.record import Mark, Scale, Visits, marks_of
+from quietarm.metaheuristics.budget.record import Record, Scale
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.objective.problem import UNUSABLE, MoveProblem
-
-Array = NDArray[np.float64]
 
 
 class BudgetSpentError(Exception):
@@ -30,11 +27,7 @@ class BudgetProblem(MoveProblem):
         self, objective: PopulationObjective, bound: float, budget: int, scale: Scale
     ) -> None:
         super().__init__(objective, bound)
-        self.budget, self.scale = budget, scale
-        self.spent, self.marks, self.visits = 0, list[Mark](), Visits()
-        self._ahead = list(marks_of(budget))[::-1]
-        self._X, self._F = np.empty((0, self.n_var)), np.empty((0, 2))
-        self._waiting: list[tuple[Array, Array]] = []
+        self.record = Record(budget, scale, self.n_var)
         self._began, self._recording = time.thread_time(), 0.0
 
     @property
@@ -43,55 +36,33 @@ class BudgetProblem(MoveProblem):
         return time.thread_time() - self._began - self._recording
 
     @property
+    def spent(self) -> int:
+        """Evaluations until now."""
+        return self.record.spent
+
+    @property
     def left(self) -> int:
         """Evaluations that are left."""
-        return self.budget - self.spent
+        return self.record.budget - self.record.spent
 
     def spend(self, evaluations: int) -> None:
         """Count work that is no candidate of this problem, as iterations of a solver."""
-        nothing = np.empty((0, self.n_var)), np.empty((0, 2))
-        while self._ahead and self.spent + evaluations >= self._ahead[-1]:
-            evaluations -= self._ahead[-1] - self.spent
-            self._move_on(*nothing, self._ahead[-1] - self.spent, self.seconds)
-        self.spent += min(evaluations, self.left)
-        if evaluations > 0 and self.left == 0:
+        seconds, until = self.seconds, self.spent + evaluations
+        while self.left and self.spent < until:
+            self.record.move_on(min(self.record.until_mark, until - self.spent), seconds)
+        if self.spent < until:
             raise BudgetSpentError
-
-    def non_dominated(self) -> tuple[Array, Array]:
-        """Coefficients and objectives of all feasible candidates that no other dominates."""
-        if self._waiting:
-            X = np.vstack([self._X, *(part for part, _ in self._waiting)])
-            F = np.vstack([self._F, *(part for _, part in self._waiting)])
-            kept = np.flatnonzero(moocore.is_nondominated(F)) if len(F) else slice(0)
-            self._X, self._F, self._waiting = X[kept], F[kept], []
-        return self._X, self._F
 
     def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
         afforded = x[: self.left]
         if len(afforded):
             super()._evaluate(afforded, out, *args, **kwargs)
-            seconds, first = self.seconds, 0
+            seconds = self.seconds
             usable = (out["F"] < UNUSABLE).all(axis=1)
             if self.n_ieq_constr:
                 usable &= (out["G"] <= 0).all(axis=1)
-            while first < len(afforded):
-                until_mark = self._ahead[-1] - self.spent
-                part = slice(first, first + until_mark)
-                kept = usable[part]
-                count = len(afforded[part])
-                self._move_on(afforded[part][kept], out["F"][part][kept], count, seconds)
-                first += count
+            began = time.thread_time()
+            self.record.add(afforded, out["F"], usable, seconds)
+            self._recording += time.thread_time() - began
         if len(afforded) < len(x):
             raise BudgetSpentError
-
-    def _move_on(self, X: Array, F: Array, evaluations: int, seconds: float) -> None:
-        """Count evaluations, up to the next mark at most, with what they gave."""
-        began = time.thread_time()
-        self.spent += evaluations
-        if len(X):
-            self._waiting.append((X.copy(), F.copy()))
-            self.visits += Visits.of(self.scale.scaled(F))
-        if self.spent == self._ahead[-1]:
-            volume = self.scale.hypervolume(self.non_dominated()[1])
-            self.marks.append(Mark(self._ahead.pop(), seconds, volume))
-        self._recording += time.thread_time() - began

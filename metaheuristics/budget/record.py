@@ -98,3 +98,59 @@ def marks_of(budget: int) -> tuple[int, ...]:
     first = min(_FIRST_MARK, budget)
     number = 1 + round(_A_DECADE * np.log10(budget / first))
     return tuple(np.unique(np.geomspace(first, budget, number).round().astype(int)).tolist())
+
+
+class Record:
+    """What a search has found, measured at the marks of its budget.
+
+    Parameters
+    ----------
+    budget : int
+        Evaluations of the whole search.
+    scale : Scale
+        The exact front's extent.
+    variables : int
+        Coefficients of a candidate.
+    """
+
+    def __init__(self, budget: int, scale: Scale, variables: int) -> None:
+        self.budget, self.scale = budget, scale
+        self.spent, self.marks, self.visits = 0, list[Mark](), Visits()
+        self._ahead = list(marks_of(budget))[::-1]
+        self._X, self._F = np.empty((0, variables)), np.empty((0, 2))
+        self._waiting: list[tuple[Array, Array]] = []
+
+    @property
+    def until_mark(self) -> int:
+        """Evaluations until the next mark; 0 once all are spent."""
+        return self._ahead[-1] - self.spent if self._ahead else 0
+
+    def non_dominated(self) -> tuple[Array, Array]:
+        """Coefficients and objectives of all feasible candidates that no other dominates."""
+        if self._waiting:
+            X = np.vstack([self._X, *(part for part, _ in self._waiting)])
+            F = np.vstack([self._F, *(part for _, part in self._waiting)])
+            kept = np.flatnonzero(moocore.is_nondominated(F))
+            self._X, self._F, self._waiting = X[kept], F[kept], []
+        return self._X, self._F
+
+    def add(self, X: Array, F: Array, usable: NDArray[np.bool_], seconds: float) -> None:
+        """Take evaluated candidates, of which those that are usable count as found."""
+        first = 0
+        while first < len(X):
+            part = slice(first, first + self.until_mark)
+            kept, count = usable[part], len(X[part])
+            self.move_on(count, seconds, X[part][kept], F[part][kept])
+            first += count
+
+    def move_on(
+        self, evaluations: int, seconds: float, X: Array | None = None, F: Array | None = None
+    ) -> None:
+        """Count evaluations, up to the next mark at most, with what they gave."""
+        self.spent += evaluations
+        if X is not None and F is not None and len(X):
+            self._waiting.append((X.copy(), F.copy()))
+            self.visits += Visits.of(self.scale.scaled(F))
+        if self.until_mark == 0:
+            volume = self.scale.hypervolume(self.non_dominated()[1])
+            self.marks.append(Mark(self._ahead.pop(), seconds, volume))

@@ -117,7 +117,7 @@ def search_within(
     front = Front(
         task=task,
         profile=profile,
-        points=verified_points(task, profile, problem.non_dominated()[0]),
+        points=verified_points(task, profile, problem.record.non_dominated()[0]),
         method=method,
         settings=stated,
         seed=seed,
@@ -129,7 +129,7 @@ def search_within(
         versions=search_versions(),
         seconds=seconds,
     )
-    return BudgetRun(front, tuple(problem.marks), problem.visits)
+    return BudgetRun(front, tuple(problem.record.marks), problem.record.visits)
 
 
 def check_method(

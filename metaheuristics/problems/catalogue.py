@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.metaheuristics.problems.finding import exact_front
+from quietarm.metaheuristics.problems.finding import exact_front, swept_front
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, UncertainPlant
@@ -23,6 +23,7 @@ from quietarm.ocp.checks import unknown
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem
+    from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
 FRONTS = Path(__file__).parent / "fronts"
 """The exact fronts, in a folder for each plant, where a problem with several has one of its own."""
@@ -30,7 +31,7 @@ FRONTS = Path(__file__).parent / "fronts"
 
 @dataclass(frozen=True)
 class NamedProblem:
-    """A move, a profile and a box, by name.
+    """A move, a profile and a box, by name: one of `PROBLEMS`, or one of your own.
 
     Attributes
     ----------
@@ -78,8 +79,26 @@ class NamedProblem:
         return {f"{self.name}-{most:g}": replace(self.task, **given) for most, given in limited}
 
     def fronts(self) -> tuple[Front, ...]:
-        """The exact fronts from their files: one, or for a third objective one for each limit."""
-        return tuple(_loaded(self._folder / f"{name}.json") for name in self.tasks())
+        """The exact fronts: one, or for a third objective one for each limit.
+
+        Of a named problem from their files; else found by the gradient's sweep, some seconds.
+        """
+        return tuple(
+            _loaded(self._folder / f"{name}.json") if self.named
+            else _swept(task, self.profile, self.bound)
+            for name, task in self.tasks().items()
+        )  # fmt: skip
+
+    @property
+    def named(self) -> bool:
+        """Whether it is one of `PROBLEMS`."""
+        return PROBLEMS.get(self.name) == self
+
+    def recorded(self, **settings: Any) -> RecordedFunction:
+        """It as a function of arrays that keeps what it is asked; settings as for `function`."""
+        from quietarm.metaheuristics.problems.recorded import RecordedFunction
+
+        return RecordedFunction(self, **settings)
 
     @property
     def _folder(self) -> Path:
@@ -132,6 +151,9 @@ class NamedProblem:
 @cache
 def _loaded(path: Path) -> Front:
     return Front.load(path)
+
+
+_swept = lru_cache(maxsize=64)(swept_front)
 
 
 def problem_of(name: str) -> NamedProblem:

@@ -10,7 +10,7 @@ from click.core import ParameterSource
 from quietarm.ocp.profiles.shapers import SHAPERS
 from quietarm.ocp.program.solving import SOLVERS
 from quietarm.studies.cli.quantities import literal, once
-from quietarm.studies.cli.types import METHOD_SETTING, WHOLE, Named
+from quietarm.studies.cli.types import METHOD_SETTING, WHOLE, Named, Parsed
 from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL, PROFILES
 from rich.console import Console
 
@@ -137,6 +137,21 @@ def warn_of_workers(console: Console, workers: int, pieces: int) -> None:
     if workers > cores:
         words = f"{workers} workers will share {cores} core{'s' * (cores > 1)}"
         console.print(words, highlight=False)
+
+
+def _part(text: str) -> tuple[int, int]:
+    number, slash, of = text.partition("/")
+    if not (slash and number.isdigit() and of.isdigit() and 1 <= int(number) <= int(of)):
+        raise ValueError(f"{text!r} is no part; give the second of eight as 2/8")
+    return int(number), int(of)
+
+
+def part_option(pieces: str) -> Callable[[F], F]:
+    """The option for a share of the work, as in a queue's array job."""
+    return click.option(
+        "--part", type=Parsed("i/n", _part), default="1/1",
+        help=f"Do every n-th {pieces} alone, as 2/8 in a queue's array job.",
+    )  # fmt: skip
 
 
 solver_option = click.option(

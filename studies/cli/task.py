@@ -84,7 +84,11 @@ _TIME_OR_RANGE = Parsed("time", _range)
 
 
 def _task_options(
-    required: bool, fastest: bool = False, ranged: bool = False, axes: bool = False
+    required: bool,
+    fastest: bool = False,
+    ranged: bool = False,
+    axes: bool = False,
+    argument: str = "plant",
 ) -> Callable[[F], F]:
     time, words = TIME, "Travelling time."
     angle = _axis_of(parse_joint_angle) if axes else ANGLE
@@ -96,8 +100,9 @@ def _task_options(
     if fastest:
         time, words = _TIME_OR_FASTEST, "Travelling time, or `fastest`: the least in the limits."
         wait, until = _TIME_OR_BEST, f"{until}, or `best`: of least energy, up to a period"
+    plant = click.argument("plant", type=PLANT, required=False, metavar="PLANT")
     return options(
-        click.argument("plant", type=PLANT, required=False, metavar="PLANT"),
+        *([plant] if argument == "plant" else []),
         plant_file_option(),
         click.option("--set", "parameters", type=SETTING, multiple=True,
                      help="Set a parameter of the plant, as omega=9 (SI units); may be repeated."),
@@ -177,29 +182,54 @@ def task_grid_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(command)
     def with_grid(*positional: Any, **named: Any) -> Any:
-        moves = {name: named[name] for name in OF_MOVES}
-        named |= {name: max(values, key=abs) for name, values in moves.items()}  # one not at rest
-        kind, own, given = (named[name] for name in ("plant", "plant_file", "parameters"))
-        several = {name: text for name, text in given if ":" in text or "," in text}
-        single = [(name, text) for name, text in given if name not in several]
-        plant = chosen_plant(kind, own, single)
-        units = units_of_plant(plant, several)
-        axes = [
-            Axis(name, axis_values(text, partial(parse_in, units[name], name=name)), units[name])
-            for name, text in several.items()
-        ]
-        axes += [
-            Axis(name, values, OF_MOVES[name]) for name, values in moves.items() if len(values) > 1
-        ]
-        firsts = [(axis.name, repr(axis.values[0])) for axis in axes if axis.name in several]
-        named["parameters"] = (*single, *firsts)
-        if not axes:
+        grid = _grid_of(named)
+        if not grid.axes:
             raise click.UsageError(
                 "no axis is given; give one as --target 10deg:90deg:5deg, or quietarm plan"
             )
-        return command(*positional, grid=Grid(_task_of(named), tuple(axes)), **named)
+        return command(*positional, grid=grid, **named)
 
     return _task_options(required=True, axes=True)(robust_option(with_grid))
+
+
+def own_grid_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same where the first of `problems` may be a plant: else the `grid` is None."""
+
+    @wraps(command)
+    def with_grid(*positional: Any, problems: tuple[str, ...], **named: Any) -> Any:
+        own = ("plant_file", "parameters", "robust", *_OF_A_MOVE, *_EARLIER)
+        if not any(map(typed, own)):
+            kept = {name: value for name, value in named.items() if name not in own}
+            return command(*positional, problems=problems, grid=None, **kept)
+        for name in ("target", "duration"):
+            if named[name] is None:
+                raise click.UsageError(f"give --{name} for conditions of a plant, or PROBLEM alone")
+        if len(problems) > 1:
+            raise click.UsageError("conditions are of one PLANT; give its name alone")
+        named["plant"] = PLANT.convert(problems[0], None, None) if problems else None
+        return command(*positional, problems=(), grid=_grid_of(named), **named)
+
+    return _task_options(required=False, axes=True, argument="problems")(robust_option(with_grid))
+
+
+def _grid_of(named: dict[str, Any]) -> Grid:
+    moves = {name: named[name] for name in OF_MOVES}
+    named |= {name: max(values, key=abs) for name, values in moves.items()}  # one not at rest
+    kind, own, given = (named[name] for name in ("plant", "plant_file", "parameters"))
+    several = {name: text for name, text in given if ":" in text or "," in text}
+    single = [(name, text) for name, text in given if name not in several]
+    plant = chosen_plant(kind, own, single)
+    units = units_of_plant(plant, several)
+    axes = [
+        Axis(name, axis_values(text, partial(parse_in, units[name], name=name)), units[name])
+        for name, text in several.items()
+    ]
+    axes += [
+        Axis(name, values, OF_MOVES[name]) for name, values in moves.items() if len(values) > 1
+    ]
+    firsts = [(axis.name, repr(axis.values[0])) for axis in axes if axis.name in several]
+    named["parameters"] = (*single, *firsts)
+    return Grid(_task_of(named), tuple(axes))
 
 
 def task_or_path_options(command: Callable[..., Any]) -> Callable[..., Any]:

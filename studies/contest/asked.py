@@ -84,6 +84,7 @@ class Contest:
     population: int | None = None
     settings: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
     explain: bool = False
+    part: tuple[int, int] = (1, 1)
     workers: Workers = HERE
 
     def __post_init__(self) -> None:
@@ -116,9 +117,16 @@ class Contest:
         ]
         return {run.place: run for run in runs}
 
+    @cached_property
+    def mine(self) -> dict[str, Planned]:
+        """Those of this part, i of n: every n-th."""
+        number, of = self.part
+        return {place: run for k, (place, run) in enumerate(self.planned.items())
+                if k % of == number - 1}  # fmt: skip
+
     def how_far(self, store: Store) -> str:
         """How many of the runs are there, in words."""
-        total, left = len(self.planned), len(self.planned.keys() - store.kept)
+        total, left = len(self.mine), len(self.mine.keys() - store.kept)
         more = f"; {left} are to be done" if left else ""
         return f"{total - left} of {counted(total, 'run')} are in {store.path}{more}"
 

@@ -26,7 +26,7 @@ _THIRDS = (np.arange(3000) + 0.5) / 3000
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """All runs of one method on one problem; of another tool's only the ends are known."""
+    """All runs of one method on one problem; of some other tools' only the ends are known."""
 
     method: str
     yardstick: Yardstick
@@ -39,8 +39,13 @@ class Field:
 
     @property
     def own(self) -> bool:
-        """Whether they were run here, so that what they had found on the way is known."""
-        return all(run.file is None for run in self.runs)
+        """Whether what they had found on the way is known: they were run here, or recorded."""
+        return all(run.marks for run in self.runs)
+
+    @property
+    def here(self) -> bool:
+        """Whether they were run here."""
+        return all(run.here for run in self.runs)
 
     @cached_property
     def final(self) -> Array:
@@ -162,19 +167,20 @@ class Arena:
 
     @property
     def own(self) -> list[Field]:
-        """Those that were run here."""
+        """Those of which the way is known."""
         return [field for field in self.fields if field.own]
 
     @property
     def imports(self) -> list[Field]:
-        """Results from elsewhere."""
+        """Results from elsewhere of which the end alone is known."""
         return [field for field in self.fields if not field.own]
 
     @property
     def alike(self) -> list[Field]:
         """Those that are compared by tests: of runs with one number of evaluations, known here."""
-        budgets = {budget for field in self.own for budget in field.budgets}
-        return [field for field in self.fields if field.own or field.budgets == budgets]
+        first = [field for field in self.fields if field.here] or self.own[:1]
+        budgets = {budget for field in first for budget in field.budgets}
+        return [field for field in self.fields if field.here or field.budgets == budgets]
 
     @property
     def best(self) -> Field:

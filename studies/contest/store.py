@@ -41,6 +41,14 @@ def problems_of(names: Sequence[str]) -> tuple[NamedProblem, ...]:
     return problems
 
 
+_EXACT = "exact/{}.json"
+
+
+def exact_of(problem: NamedProblem) -> str:
+    """The place of a problem's yardstick."""
+    return _EXACT.format(problem.name)
+
+
 @dataclass(frozen=True)
 class Yardstick(Saved):
     """What the methods are measured against on a problem."""
@@ -65,7 +73,7 @@ class Yardstick(Saved):
     @property
     def place(self) -> str:
         """Its file in the folder of a contest."""
-        return f"exact/{self.problem}.json"
+        return _EXACT.format(self.problem)
 
     @cached_property
     def filled(self) -> NDArray[np.float64]:
@@ -77,7 +85,8 @@ class Yardstick(Saved):
 class Run(Saved):
     """One method on one problem: from a seed, or what a file of another tool holds.
 
-    Of another tool's run only what it ended with is known: it has no marks and no visits.
+    Of another tool's run that was not recorded only what it ended with is known: it has no marks
+    and no visits.
     """
 
     kind: ClassVar[str] = "contest-run"
@@ -100,6 +109,11 @@ class Run(Saved):
         """Its file in the folder of a contest."""
         folder, name = ("imports", self.file) if self.file else ("runs", f"seed{self.front.seed}")
         return f"{folder}/{self.problem}/{folder_of(self.method)}/{name}.json"
+
+    @property
+    def here(self) -> bool:
+        """Whether it was run here, not imported."""
+        return self.file is None
 
     @property
     def words(self) -> str:

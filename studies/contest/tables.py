@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import astuple
 from math import isfinite
 
+import numpy as np
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp.front.points import LEVELS
-from quietarm.studies.contest.measures import TARGETS, Arena, Field, quartiles
+from quietarm.studies.contest.measures import TARGETS, Arena, Field, methods_in, quartiles
+from quietarm.studies.contest.names import label_of
 from quietarm.studies.contest.statistics import ALPHA, Pair, Ranking
 from quietarm.studies.display.words import millimetres
 from quietarm.studies.document.table import Cell, Column, Line, Table, table_of
@@ -39,6 +41,26 @@ def runs_table(arenas: Sequence[Arena]) -> Table:
             rows.append([*row, *field.energies[i].tolist()])
     columns = zip(names, zip(*rows, strict=True), strict=True)
     return table_of("Runs", [(name, "", cells) for name, cells in columns])
+
+
+def over_table(arenas: Sequence[Arena]) -> Table:
+    """What each method ended with over several problems: quartiles of the middle runs, ranks."""
+    known = {
+        method: np.array([field.middle for arena in arenas for field in arena.fields
+                          if field.method == method])
+        for method in methods_in(arenas)
+    }  # fmt: skip
+    whole = [method for method, ends in known.items() if len(ends) == len(arenas)]
+    placed = np.argsort(np.argsort([known[method] for method in whole], axis=0), axis=0) + 1.0
+    ranks = dict(zip(whole, placed.mean(axis=1).tolist(), strict=True)) if whole else {}
+    rows: list[list[Cell]] = [
+        [label_of(method), len(ends), *(100 * quartiles(ends)).tolist(), ranks.get(method)]
+        for method, ends in known.items()
+    ]
+    names = "lower quartile [%]", "median [%]", "upper quartile [%]"
+    columns = [Column("method"), Column("problems"), *(Column(n, _PERCENT.format) for n in names)]
+    title = "Hypervolume missing in the middle run, over problems"
+    return Table(title, [*columns, Column("mean rank", "{:.2f}".format)], rows)
 
 
 def anytime_table(arenas: Sequence[Arena]) -> Table:

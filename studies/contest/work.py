@@ -7,10 +7,10 @@ from functools import partial
 from hashlib import sha256
 from pathlib import Path
 
-from quietarm.metaheuristics import NamedProblem
-from quietarm.metaheuristics.budget.record import Scale
+from quietarm.metaheuristics import NamedProblem, RecordedRun
 from quietarm.metaheuristics.budget.run import number_of_evaluations, search_within
-from quietarm.metaheuristics.sharing.pieces import Done, Listener, Piece, Say
+from quietarm.metaheuristics.objective.claims import check_figures
+from quietarm.metaheuristics.sharing.pieces import Done, Listener, NotTriedError, Piece, Say
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.ocp import QuietarmError, SolverFailedError
@@ -20,7 +20,7 @@ from quietarm.ocp.record import Setting
 from quietarm.studies.contest.asked import Contest, Planned, check_alike
 from quietarm.studies.contest.landscape import Landscape, landscape_of
 from quietarm.studies.contest.names import name_given
-from quietarm.studies.contest.store import Run, Store, Yardstick
+from quietarm.studies.contest.store import Run, Store, Yardstick, exact_of
 from quietarm.studies.reading.foreign import read_found
 from quietarm.studies.reading.importing import import_front
 
@@ -54,7 +54,10 @@ def named_files(texts: Sequence[str]) -> dict[str, list[Path]]:
 def imported_run(
     problem: NamedProblem, yardstick: Yardstick, method: str, path: Path, evaluations: int | None
 ) -> Run:
-    """Evaluate a file."""
+    """Evaluate a file of coefficients, or take a recorded run as it is."""
+    digest = sha256(read_bytes(path)).hexdigest()
+    if path.suffix == ".json":
+        return _recorded_run(problem, yardstick, method, path, digest)
     found = read_found(path)
     settings: dict[str, Setting] = {"imported": path.name, "bound": problem.bound}
     try:
@@ -68,9 +71,27 @@ def imported_run(
         scale=yardstick.scale,
         front=front,
         file=path.name,
-        digest=sha256(read_bytes(path)).hexdigest(),
+        digest=digest,
         claims=tuple(claim.line() for claim in claims if claim.differ),
     )
+
+
+def _recorded_run(
+    problem: NamedProblem, yardstick: Yardstick, method: str, path: Path, digest: str
+) -> Run:
+    found = RecordedRun.load(path)
+    front, its = found.front, yardstick.front
+    of = found.scale, front.settings.get("bound"), front.task, front.profile
+    if of != (yardstick.scale, problem.bound, its.task, its.profile):
+        raise ValueError(
+            f"{path} was recorded on {found.problem}, another move, box or exact front than "
+            f"{problem.name}; give that problem"
+        )
+    check_figures(front, str(path), "record it again")
+    return Run(
+        problem.name, method, front.evaluations, found.scale, front,
+        marks=found.marks, visits=found.visits, file=path.name, digest=digest,
+    )  # fmt: skip
 
 
 def set_up(
@@ -79,7 +100,7 @@ def set_up(
     imports: Mapping[str, Sequence[Path]],
     evaluations: int | None = None,
 ) -> None:
-    """Put exact fronts and results of other tools into the folder, where they are not yet."""
+    """Put exact fronts that are at hand, and results of other tools, into the folder."""
     check_alike(store, contest)
     if evaluations is not None:
         number_of_evaluations(evaluations)
@@ -90,16 +111,20 @@ def set_up(
             "one PROBLEM with --import, then the next into the same folder"
         )
     known = store.yardsticks
-    exact = [known.get(one.name) or Yardstick.of(one) for one in contest.problems]
+    exact = {
+        one.name: known.get(one.name) or Yardstick.of(one)
+        for one in contest.problems
+        if one.named or imports
+    }
     there = [run for run in store.of(Run) if run.problem == problem.name]
     given = [
-        imported_run(problem, exact[0], method, path, evaluations)
+        imported_run(problem, exact[problem.name], method, path, evaluations)
         for method, paths in imports.items()
         for path in paths
     ]
     for place, run in enumerate(given):
         _check_new(run, [*there, *given[:place]], store)
-    for what in (*exact, *given):
+    for what in (*exact.values(), *given):
         if what.place not in store.kept:
             store.keep(what)
 
@@ -121,16 +146,27 @@ def _check_new(run: Run, others: Sequence[Run], store: Store) -> None:
 
 
 def pieces_of(contest: Contest, store: Store) -> list[Piece]:
-    """The work that is still to be done, by the place of what it gives."""
+    """The work that is still to be done, by the place of what it gives.
+
+    Runs on a problem without an exact front in the folder come after that.
+    """
     pieces, known = list[Piece](), store.yardsticks
+    left = {place: run for place, run in contest.mine.items() if place not in store.kept}
+    asked = {run.problem.name for run in left.values()}
+    for problem in contest.problems:
+        if problem.name in asked and problem.name not in known:
+            work = partial(_yardstick, problem)
+            pieces.append(Piece(exact_of(problem), f"{problem.name}: exact front", work))
     for problem in contest.problems if contest.explain else ():
         place, work = f"landscape/{problem.name}.json", partial(_landscape, problem, contest.seed)
-        pieces.append(Piece(place, f"{problem.name}: local minima", work))
-    for place, run in contest.planned.items():
+        if place not in store.kept:
+            pieces.append(Piece(place, f"{problem.name}: local minima", work))
+    for place, run in left.items():
         name = f"{run.problem.name}: {run.entry.name}, seed {run.seed}"
-        work = partial(_run, run, contest.evaluations, known[run.problem.name].scale)
-        pieces.append(Piece(place, name, work))
-    return [piece for piece in pieces if piece.key not in store.kept]
+        exact = known.get(run.problem.name)
+        after = () if exact else (exact_of(run.problem),)
+        pieces.append(Piece(place, name, partial(_run, run, contest.evaluations, exact), after))
+    return pieces
 
 
 def run_contest(
@@ -146,12 +182,25 @@ def run_contest(
     return done
 
 
+def _yardstick(problem: NamedProblem, earlier: Done, say: Say) -> Yardstick:
+    try:
+        return Yardstick.of(problem)
+    except ValueError as error:  # a single motion
+        raise SolverFailedError(str(error)) from None
+
+
 def _landscape(problem: NamedProblem, seed: int, earlier: Done, say: Say) -> Landscape:
     return landscape_of(problem, seed)
 
 
-def _run(planned: Planned, evaluations: int, scale: Scale, earlier: Done, say: Say) -> Run:
+def _run(
+    planned: Planned, evaluations: int, exact: Yardstick | None, earlier: Done, say: Say
+) -> Run:
     problem, entry, seed = planned
+    exact = exact or earlier.answers.get(exact_of(problem))
+    if exact is None:
+        raise NotTriedError(f"{problem.name} has no exact front to be held against")
+    scale = exact.scale
     found = search_within(
         problem.task,
         entry.method,

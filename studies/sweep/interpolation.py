@@ -53,7 +53,7 @@ class Interpolation:
 
     def _whole(self, sizes: Index) -> NDArray[np.bool_]:
         """Whether windows of cells have plans and no jumps, by the place of their first cell."""
-        good: NDArray[np.bool_] = np.isfinite(self.cells).all(axis=-1)
+        good = np.asarray(np.isfinite(self.cells).all(axis=-1))
         inner = tuple(range(len(sizes), 2 * len(sizes)))
         whole = np.asarray(sliding_window_view(good, sizes).all(axis=inner))
         for axis in range(len(sizes)):

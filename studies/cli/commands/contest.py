@@ -6,22 +6,39 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from quietarm.metaheuristics.sharing.pieces import NotTriedError
 from quietarm.studies.cli.options import (
+    family_option,
     method_settings_option,
+    part_option,
     quiet_option,
     settings_by_method,
+    terms_option,
+    typed,
     warn_of_workers,
     workers_options,
 )
+from quietarm.studies.cli.task import own_grid_options
 from quietarm.studies.cli.types import FOLDER, WHOLE
+from quietarm.studies.registry.profiles import profile_of
+from quietarm.studies.sweep.grid import Grid
 from rich.console import Console
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.sharing.pieces import Done
 
+_FEW = 6
+"""Problems of which each has its table on the screen."""
+
 
 @click.command()
-@click.argument("problems", nargs=-1, metavar="[PROBLEM]...")
+@click.argument("problems", nargs=-1, metavar="[PROBLEM]... | PLANT")
+@own_grid_options
+@family_option
+@terms_option
+@click.option("--bound", type=float,
+              help="Largest coefficient on conditions of a PLANT: the box that is searched."
+              )  # fmt: skip
 @click.option(
     "--methods", default="nsga2,vepso", show_default=True, metavar="NAME,NAME,...",
     help="Methods, with commas between them: those of quietarm front, as they are or with the "
@@ -56,10 +73,15 @@ if TYPE_CHECKING:
     "--output", type=FOLDER, required=True,
     help="Folder for the runs and what they say; runs that are there are not done again.",
 )  # fmt: skip
+@part_option("run")
 @workers_options
 @quiet_option
 def contest(
     problems: tuple[str, ...],
+    grid: Grid | None,
+    profile: str,
+    terms: int | None,
+    bound: float | None,
     methods: str,
     runs: int,
     evaluations: int,
@@ -70,13 +92,16 @@ def contest(
     import_evaluations: int | None,
     explain: bool,
     output: Path,
+    part: tuple[int, int],
     workers: int,
     scheduler: str | None,
     quiet: bool,
 ) -> None:
     """Hold methods with equal evaluations against the exact front of each PROBLEM.
 
-    Without PROBLEM, on the six conditions of the paper. Every run is a file in the folder as soon
+    Without PROBLEM, on the six conditions of the paper; on conditions of your own where a PLANT
+    with --target and --duration is given: these, --start and --set may be axes, from:to:step or a
+    list with commas. Every run is a file in the folder as soon
     as it is done. The same line again goes on after any stop; one with another method adds that
     one's runs. The page, tables and pictures show all that is in the folder.
 
@@ -84,6 +109,8 @@ def contest(
     Examples:
       quietarm contest --methods nsga2,vepso --runs 31 --output contest
       quietarm contest single-link-30deg-0.8s --runs 5 --evaluations 5000 --output small
+      quietarm contest single-link --target 20deg:60deg:10deg --duration 0.8,1 --bound 0.2 \\
+          --runs 5 --evaluations 5000 --output conditions
       quietarm contest single-link-30deg-0.8s --runs 5 --import "my swarm=results" --output small
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics.sharing.workers import Workers
@@ -91,21 +118,29 @@ def contest(
     from quietarm.ocp.files import check_inside
     from quietarm.studies.cli.ending import Together, finish
     from quietarm.studies.contest.asked import Contest
+    from quietarm.studies.contest.conditions import conditions
     from quietarm.studies.contest.measures import arenas_of
     from quietarm.studies.contest.page import PLACES, report_files
     from quietarm.studies.contest.sentences import not_alike, wrong_claims
     from quietarm.studies.contest.statistics import why_none
     from quietarm.studies.contest.store import FOLDERS, Store, problems_of
-    from quietarm.studies.contest.tables import summary_table
+    from quietarm.studies.contest.tables import over_table, summary_table
     from quietarm.studies.contest.work import named_files, pieces_of, run_contest, set_up
     from quietarm.studies.display.progress import progress, working
     from quietarm.studies.display.words import print_lines
     from quietarm.studies.document.blocks import Document, Lines
 
     names = tuple(name.strip() for name in methods.split(","))
+    for name in ("profile", "terms", "bound"):
+        if grid is None and typed(name):
+            raise ValueError(f"--{name} is for conditions of a PLANT; leave it out")
+    chosen = (
+        problems_of(problems) if grid is None
+        else conditions(grid, profile_of(profile, grid.task, terms), bound)
+    )  # fmt: skip
     asked = Contest(
-        problems_of(problems), names, runs, evaluations, seed, population,
-        settings_by_method(setting, names), explain, Workers(workers, scheduler),
+        chosen, names, runs, evaluations, seed, population,
+        settings_by_method(setting, names), explain, part, Workers(workers, scheduler),
     )  # fmt: skip
     if import_evaluations is not None and not given:
         raise ValueError("--import-evaluations says how long imported runs are; give --import too")
@@ -128,19 +163,36 @@ def contest(
     if not arenas:
         raise QuietarmError(trouble or "no run was done")
 
-    tables = [part for one in arenas for part in (Lines([one.problem]), summary_table(one))]
-    notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *asked.left_out]
-    document = Document("", [*tables, Lines([*filter(None, notes)])])
-    page, *others = report_files(arenas, output, asked.left_out)
+    shown = arenas if len(arenas) <= _FEW else ()
+    tables = [block for one in shown for block in (Lines([one.problem]), summary_table(one))]
+    over = [over_table(arenas)] if len(arenas) > 1 else []
+    left_out = [*asked.left_out, *_without_front(done)]
+    notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *left_out]
+    document = Document("", [*tables, *over, Lines([*filter(None, notes)])])
+    page, *others = report_files(arenas, output, left_out)
     finish(
         [page], document, trouble=QuietarmError(trouble) if trouble else None, quiet=quiet,
         together=Together("tables and pictures", output, others),
     )  # fmt: skip
 
 
+def _without_front(done: Done) -> list[str]:
+    """Conditions that have no exact front, and why."""
+    failures = {str(place): error for place, error in done.failures.items()}
+    return [
+        f"{Path(place).stem} is left out: {error}"
+        for place, error in failures.items()
+        if place.startswith("exact/")
+    ]
+
+
 def _why_not_whole(done: Done, pieces: int) -> str:
-    """What was not done, and why; empty where all was."""
-    failures = [f"{piece}: {error}" for piece, error in done.failures.items()]
+    """What was not done, and why; empty where all was that can be."""
+    failures = [
+        f"{piece}: {error}"
+        for piece, error in done.failures.items()
+        if not str(piece).startswith("exact/") and not isinstance(error, NotTriedError)
+    ]
     words = [f"{done.stopped}: {len(done.answers)} of {pieces} pieces of work are done; give the "
              "same line again to go on"] if done.stopped else []  # fmt: skip
     if failures:

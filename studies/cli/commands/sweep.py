@@ -10,13 +10,14 @@ from quietarm.ocp import QuietarmError, SolveSettings
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import (
     family_option,
+    part_option,
     quiet_option,
     terms_option,
     warn_of_workers,
     workers_options,
 )
 from quietarm.studies.cli.task import task_grid_options
-from quietarm.studies.cli.types import FOLDER, LENGTH, PICTURE, WHOLE, Parsed
+from quietarm.studies.cli.types import FOLDER, LENGTH, PICTURE, WHOLE
 from quietarm.studies.display.progress import progress, working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import profile_of
@@ -30,13 +31,6 @@ if TYPE_CHECKING:
 _MANY = 1_000_000
 _HOURS_OF_MANY = 3
 _MOST_POINTS = 1000
-
-
-def _part(text: str) -> tuple[int, int]:
-    number, slash, of = text.partition("/")
-    if not (slash and number.isdigit() and of.isdigit() and 1 <= int(number) <= int(of)):
-        raise ValueError(f"{text!r} is no part; give the second of eight as 2/8")
-    return int(number), int(of)
 
 
 def _check_size(grid: Grid, yes: bool) -> None:
@@ -61,8 +55,7 @@ def _check_size(grid: Grid, yes: bool) -> None:
 @click.option("--refine", type=LENGTH,
               help="Halve axes until moves between the cells leave no more than this.")  # fmt: skip
 @click.option("--starts", type=WHOLE, default=1, show_default=True, help="Starts of each cell.")
-@click.option("--part", type=Parsed("i/n", _part), default="1/1",
-              help="Do every n-th chunk alone, as 2/8 in a queue's array job.")  # fmt: skip
+@part_option("chunk")
 @click.option("--yes", is_flag=True, help="Do more than a million cells.")
 @click.option("--output", type=FOLDER, required=True,
               help="The dataset, a folder as moves.zarr: the same line goes on where one was "

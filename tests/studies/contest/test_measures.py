@@ -20,7 +20,7 @@ class Hand(Field):
         object.__setattr__(self, "evaluations", np.array(evaluations))
         object.__setattr__(self, "missing", np.array(missing))
         spent = type("Front", (), {"evaluations": evaluations[-1]})
-        run = type("Run", (), {"front": spent, "file": None})
+        run = type("Run", (), {"front": spent, "marks": evaluations})
         object.__setattr__(self, "runs", (run,) * len(missing))
 
 
@@ -91,7 +91,7 @@ def test_a_run_that_found_nothing_misses_everything(arena):
     # as under limits that no candidate keeps
     field = arena.fields[0]
     empty = replace(field.runs[0], front=replace(field.runs[0].front, points=()))
-    nothing = Field("nothing", field.yardstick, (replace(empty, file="nothing.csv"),))
+    nothing = Field("nothing", field.yardstick, (replace(empty, file="nothing.csv", marks=()),))
     assert nothing.final.tolist() == [1.0]
     assert nothing.energies.tolist() == [[math.inf] * len(LEVELS)]
     assert nothing.missing_by_thirds.tolist() == [[1.0] * 3]

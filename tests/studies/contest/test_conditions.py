@@ -1,0 +1,123 @@
+"""Contests on conditions of one's own, and with the recorded runs of another library."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from quietarm.studies.contest.store import Run, Store, problems_of
+
+import quietarm as qa
+
+QUIETARM = str(Path(sys.executable).parent / "quietarm")
+LINE = (
+    "contest single-link --target 20deg,40deg --duration 0.8 --bound 0.2 --terms 3 "
+    "--methods nsga2,multistart --runs 2 --evaluations 300 --quiet --output folder"
+)
+
+
+def runs_of(folder):
+    return {one.place: one.front.points for one in Store(Path(folder)).of(Run)}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole")
+    subprocess.run([QUIETARM, *LINE.split()], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    return folder / "folder"
+
+
+def test_every_condition_has_its_exact_front_and_runs(whole):
+    store = Store(whole)
+    assert {*store.yardsticks} == {"single-link-20deg-0.8s", "single-link-40deg-0.8s"}
+    assert len(store.of(Run)) == 2 * 2 * 2
+    task = store.yardsticks["single-link-40deg-0.8s"].front.task
+    assert (task.target, task.duration) == (pytest.approx(np.radians(40)), 0.8)
+
+
+def test_two_parts_with_a_kill_between_end_with_the_same_runs(whole, tmp_path):
+    first = [QUIETARM, *LINE.split(), "--part", "1/2"]
+    killed = subprocess.Popen(first, cwd=tmp_path, stdout=subprocess.DEVNULL)
+    while killed.poll() is None and not [*tmp_path.glob("folder/runs/*/*/*.json")]:
+        pass
+    os.kill(killed.pid, signal.SIGKILL)
+    killed.wait()
+    for part in ("1/2", "2/2"):
+        again = [QUIETARM, *LINE.split(), "--part", part]
+        subprocess.run(again, cwd=tmp_path, check=True, stdout=subprocess.DEVNULL)
+    assert runs_of(tmp_path / "folder") == runs_of(whole)
+
+
+def test_a_condition_that_cannot_be_is_left_out_and_it_is_said(call, folder):
+    code, out, err = call(
+        "contest single-link --target 30deg --duration 0.3,1 --bound 0.2 --terms 2 --quiet "
+        "--torque-limit 0.2 --methods nsga2 --runs 1 --evaluations 200 --output some"
+    )
+    assert (code, err) == (0, "")
+    assert "single-link-30deg-0.3s is left out: " in " ".join(out.split())
+    assert {run.problem for run in Store(Path("some")).of(Run)} == {"single-link-30deg-1s"}
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("single-link --target 30deg", "give --duration for conditions of a plant"),
+        ("single-link --target 30deg --duration 1", "give --bound"),
+        ("dual-link single-link --target 1 --duration 1", "conditions are of one PLANT"),
+        ("single-lnk --target 1 --duration 1", "did you mean 'single-link'"),
+        ("single-link-90deg-1s --bound 0.2", "--bound is for conditions of a PLANT"),
+        ("single-link --target 10deg:90deg:0.01deg --duration 1 --bound 0.2", "8001 conditions"),
+    ],
+)
+def test_conditions_that_do_not_fit_are_refused(call, folder, line, said):
+    code, out, err = call(f"contest {line} --output some")
+    assert (code, out, err.strip().count("\n")) == (2, "", 0)
+    assert said in err
+
+
+def random_search(problem, seed, evaluations):
+    recorded = problem.recorded()
+    random = np.random.default_rng(seed)
+    for _ in range(evaluations // 50):
+        recorded(random.uniform(recorded.lower, recorded.upper, (50, 3)))
+    return recorded
+
+
+def test_a_recorded_run_is_measured_as_those_that_are_run_here(whole, tmp_path):
+    link = qa.SingleLinkManipulator()
+    task = qa.PointToPoint(link, float(np.radians(20.0)).__round__(12), 0.8)
+    problem = qa.NamedProblem("single-link-20deg-0.8s", task, qa.CycloidPolynomial(3), 0.2)
+    for seed in range(2):
+        recorded = random_search(problem, seed, 300)
+        assert recorded.evaluations == 300
+        (tmp_path / "results").mkdir(exist_ok=True)
+        recorded.save(tmp_path / "results" / f"seed{seed}.json", "sampling", seed)
+    (arena,) = qa.contest(
+        [problem], ["nsga2"], tmp_path / "folder", runs=2, evaluations=300,
+        imports=[f"sampling={tmp_path / 'results'}"],
+    )  # fmt: skip
+    fields = {field.method: field for field in arena.fields}
+    assert fields["sampling"].own
+    assert fields["sampling"] in arena.alike
+    assert fields["sampling"].evaluations.tolist() == fields["nsga2"].evaluations.tolist()
+    assert (np.diff(fields["sampling"].missing, axis=1) <= 0).all()
+    (own,) = [one for one in Store(whole).of(Run) if one.front.seed == 1
+              and one.method == "nsga2" and one.problem == problem.name]  # fmt: skip
+    assert fields["nsga2"].runs[1].front.points == own.front.points
+
+
+def test_what_was_recorded_elsewhere_is_refused(tmp_path):
+    (problem,) = problems_of(["single-link-30deg-0.8s-2-terms"])
+    recorded = problem.recorded()
+    with pytest.raises(ValueError, match="no candidate was asked for"):
+        recorded.run("nothing")
+    recorded(np.zeros((1, 2)))
+    recorded.save(tmp_path / "one.json", "one")
+    (other,) = problems_of(["single-link-30deg-0.8s-4-terms"])
+    with pytest.raises(
+        ValueError, match=r"one\.json was recorded on single-link-30deg-0\.8s-2-terms"
+    ):
+        qa.contest([other], ["nsga2"], tmp_path / "folder", imports=[str(tmp_path / "one.json")])
