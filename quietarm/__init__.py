@@ -6,8 +6,8 @@
     plan = qa.plan_move(task)
 
 Every public name of `quietarm.models`, `quietarm.ocp`, `quietarm.metaheuristics`,
-`quietarm.studies.figures` and `quietarm.studies.contest`; each package is imported with the first
-of its names that is asked for.
+`quietarm.studies.figures`, `quietarm.studies.contest` and `quietarm.studies.sweep`; each package is
+imported with the first of its names that is asked for.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from quietarm.ocp import *  # noqa: F403
     from quietarm.studies.contest import *  # noqa: F403
     from quietarm.studies.figures import *  # noqa: F403
+    from quietarm.studies.sweep import *  # noqa: F403
 
-_PACKAGES = "models", "ocp", "metaheuristics", "studies.figures", "studies.contest"
+_PACKAGES = "models", "ocp", "metaheuristics", "studies.figures", "studies.contest", "studies.sweep"
 
 
 def __getattr__(name: str) -> Any:

@@ -14,6 +14,7 @@ from quietarm.studies.sweep.asked import COEFFICIENTS, Sweep
 from quietarm.studies.sweep.branches import jumps
 from quietarm.studies.sweep.grid import Axis, Grid
 from quietarm.studies.sweep.interpolation import Interpolation
+from quietarm.studies.sweep.library import Between, MoveLibrary
 from quietarm.studies.sweep.store import Store, lay_out
 
 
@@ -22,12 +23,39 @@ def finer_beside(path: Path) -> Path:
     return path.with_name(f"{path.name}.finer")
 
 
-def begun_or_laid_out(path: Path, asked: Sweep) -> Store:
-    """The dataset of a sweep; a finer one that is whole takes its place."""
+def swept(
+    path: Path,
+    asked: Sweep,
+    run: Callable[[Store], bool],
+    allow: Callable[[Grid], None] = lambda grid: None,
+) -> tuple[Store, Between | None]:
+    """The dataset of a sweep, refined where that is asked for, and what is left between its cells.
+
+    `run` plans what a store lacks and says whether that is all of it, and `allow` refuses a finer
+    grid by a ValueError. A finer dataset stands beside the coarser one until it is whole; a run
+    that was stopped goes on with it.
+    """
     finer = finer_beside(path)
     if finer.exists() and not path.exists():  # it was killed between two renames
         os.rename(finer, path)
-    return Store.of(path, asked)
+    store = Store.of(path, asked)
+    whole, between = run(store), None
+    while asked.refine is not None and whole:
+        between = MoveLibrary(path).between()
+        if between.residual <= asked.refine:
+            break
+        if not finer.exists():
+            grid = halved(store)
+            allow(grid)
+            lay_out(finer, asked, replace(store.sweep, grid=grid))
+        whole = run(Store.of(finer, asked))
+        if whole:
+            coarse = path.with_name(f"{path.name}.coarse")
+            os.rename(path, coarse)
+            os.rename(finer, path)
+            shutil.rmtree(coarse)
+            store = Store(path)
+    return store, between
 
 
 def halved(store: Store) -> Grid:
@@ -62,23 +90,3 @@ def _errors(axes: tuple[Axis, ...], cells: NDArray[np.float64]) -> list[float]:
         known = missed[np.isfinite(missed)]
         errors.append(float(np.median(known)) if known.size else np.inf)
     return errors
-
-
-def refine_once(
-    path: Path, store: Store, asked: Sweep, grid: Grid, run: Callable[[Store], bool]
-) -> tuple[Store, bool]:
-    """The dataset on a finer grid, in the place of the coarser one as soon as it is whole.
-
-    Where `run` says that it did not get to the end, the finer one stays beside it to go on with,
-    and the coarser one is returned, and False.
-    """
-    finer = finer_beside(path)
-    if not finer.exists():
-        lay_out(finer, asked, replace(store.sweep, grid=grid))
-    if not run(Store.of(finer, asked)):
-        return store, False
-    coarse = path.with_name(f"{path.name}.coarse")
-    os.rename(path, coarse)
-    os.rename(finer, path)
-    shutil.rmtree(coarse)
-    return Store(path), True

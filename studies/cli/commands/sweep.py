@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,7 @@ from quietarm.studies.cli.options import (
 )
 from quietarm.studies.cli.task import task_grid_options
 from quietarm.studies.cli.types import FOLDER, LENGTH, PICTURE, WHOLE
-from quietarm.studies.display.progress import progress, working
+from quietarm.studies.display.progress import progress
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.sweep.grid import Grid
@@ -96,8 +97,7 @@ def sweep(
     from quietarm.metaheuristics.sharing.workers import Workers
     from quietarm.studies.reports.sweep import sweep_document
     from quietarm.studies.sweep.asked import Sweep
-    from quietarm.studies.sweep.library import MoveLibrary
-    from quietarm.studies.sweep.refine import begun_or_laid_out, halved, refine_once
+    from quietarm.studies.sweep.refine import swept
     from quietarm.studies.sweep.work import run_sweep
 
     _check_size(grid, yes)
@@ -119,16 +119,7 @@ def sweep(
             ))  # fmt: skip
         return not done.stopped
 
-    store, between = begun_or_laid_out(output, asked), None
-    whole = run(store)
-    while refine is not None and whole:
-        with working("looking between the cells", errors, quiet=quiet):
-            between = MoveLibrary(output).between()
-        if between.residual <= refine:
-            break
-        finer = halved(store)
-        _check_size(finer, yes)
-        store, whole = refine_once(output, store, asked, finer, run)
+    store, between = swept(output, asked, run, partial(_check_size, yes=yes))
 
     def picture() -> Figure:
         from quietarm.studies.figures.grid import fronts_figure, grid_figure

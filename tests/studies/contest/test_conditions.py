@@ -1,5 +1,6 @@
 """Contests on conditions of one's own, and with the recorded runs of another library."""
 
+import math
 import os
 import signal
 import subprocess
@@ -88,7 +89,7 @@ def random_search(problem, seed, evaluations):
 
 def test_a_recorded_run_is_measured_as_those_that_are_run_here(whole, tmp_path):
     link = qa.SingleLinkManipulator()
-    task = qa.PointToPoint(link, float(np.radians(20.0)).__round__(12), 0.8)
+    task = qa.PointToPoint(link, math.radians(20), 0.8)
     problem = qa.NamedProblem("single-link-20deg-0.8s", task, qa.CycloidPolynomial(3), 0.2)
     for seed in range(2):
         recorded = random_search(problem, seed, 300)

@@ -16,6 +16,8 @@ from quietarm.ocp import PointToPoint, UncertainPlant, epsilon_front, plan_move
 from quietarm.studies.sweep.grid import axis_values
 from quietarm.studies.sweep.library import MoveLibrary
 
+import quietarm as qa
+
 QUIETARM = [str(Path(sys.executable).parent / "quietarm")]
 MOVES = "sweep single-link --target 10deg:40deg:10deg --duration 600ms:1.4s:10ms --quiet"
 FEW = "sweep single-link --target 30deg,60deg --duration 0.8,1.2 --quiet --output few.zarr"
@@ -131,6 +133,15 @@ def test_a_grid_is_refined_until_its_moves_are_still_enough(call, folder):
     assert not list(folder.glob("fine.zarr.*"))
     assert call(f"{line} --output fine.zarr")[0] == 0  # nothing is left to do
     assert MoveLibrary("fine.zarr").grid.cells == library.grid.cells
+
+
+def test_python_makes_the_same_dataset(call, folder):
+    assert call(FEW)[0] == 0
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), target=math.radians(60), duration=1.0)
+    axes = {"target": [math.radians(30), math.radians(60)], "duration": [0.8, 1.2]}
+    assert same(qa.sweep(task, axes, folder / "made.zarr").load(), dataset("few.zarr"))
+    with pytest.raises(ValueError, match="did you mean 'omega'"):
+        qa.sweep(task, {"omga": [9.0, 10.0]}, folder / "other.zarr")
 
 
 @pytest.mark.parametrize(
