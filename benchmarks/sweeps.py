@@ -2,9 +2,9 @@
 
     python benchmarks/sweeps.py [speed] [workers] [memory] [killed]
 
-- speed: 289 moves of each plant, 10 to 90 deg in 0.6 to 1.4 s, six terms, as `quietarm sweep` does
-  its chunks, and without their checks by cold starts; against `plan_move` with its defaults for
-  every twelfth of them. Processor times, functions built before.
+- speed: a chunk in the middle of grids of each plant, 10 to 90 deg in 0.6 to 1.4 s, six terms, with
+  and without its check by cold starts; against `plan_move` with its defaults for every twelfth of
+  these moves. Processor times, functions built before.
 - workers: 7,209 moves by one worker and by two, wall time without the start of the workers.
 - memory: peak of a process that sweeps 100,000 cells with two terms, as it goes on.
 - killed: 2,061 moves by two workers, one of them and then the client killed with SIGKILL; the same
@@ -21,6 +21,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from itertools import pairwise
 from pathlib import Path
 from statistics import median
 
@@ -34,38 +35,42 @@ from quietarm.studies.sweep.grid import Axis, Grid
 from quietarm.studies.sweep.work import planned
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
-TARGETS = tuple(np.radians(np.linspace(10, 90, 17)).tolist())
-DURATIONS = tuple(np.linspace(0.6, 1.4, 17).tolist())
 
 
 def speed() -> None:
     """Processor time of a move, in a grid and by itself."""
+    say, repetitions = Say(lambda progress: None), 4  # of which the first builds functions
     for plant in (SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()):
-        task = PointToPoint(plant, 1.0, 1.0)
-        axes = Axis("target", TARGETS, "rad"), Axis("duration", DURATIONS, "s")
-        sweep = Sweep(Grid(task, axes), CycloidPolynomial(), SolveSettings(starts=1))
-        tasks = sweep.grid.tasks([slice(None), slice(None)])[::12]
-        every = sweep.grid.tasks([slice(None), slice(None)])
-        in_grid, unchecked, alone = list[float](), list[float](), list[float]()
-        for _ in range(4):  # the first builds functions
-            began = time.process_time()
-            for number in range(len(sweep.grid.chunks)):
-                planned(sweep, number, Done(), Say(lambda progress: None))
-            in_grid.append((time.process_time() - began) / sweep.grid.cells)
-            began = time.process_time()
-            plan_moves(every)
-            unchecked.append((time.process_time() - began) / sweep.grid.cells)
-            began = time.process_time()
-            for one in tasks:
-                plan_move(one)
-            alone.append((time.process_time() - began) / len(tasks))
-        grid, plans, loop = (median(times[1:]) for times in (in_grid, unchecked, alone))
-        print(
-            f"{plant.name}: {1e3 * grid:.1f} ms a move, {1 / grid:.0f} moves a second and core; "
-            f"unchecked {1e3 * plans:.1f} ms; plan_move {1e3 * loop:.0f} ms, {loop / grid:.1f} and "
-            f"{loop / plans:.1f} times",
-            flush=True,
-        )
+        for steps in (16, 80):
+            targets = np.radians(np.linspace(10, 90, steps + 1)).tolist()
+            durations = np.linspace(0.6, 1.4, steps + 1).tolist()
+            axes = Axis("target", tuple(targets), "rad"), Axis("duration", tuple(durations), "s")
+            grid = Grid(PointToPoint(plant, 1.0, 1.0), axes)
+            sweep = Sweep(grid, CycloidPolynomial(), SolveSettings(starts=1))
+            middle = len(sweep.grid.chunks) // 2
+            tasks = sweep.grid.tasks(sweep.grid.chunks[middle])
+            in_grid, unchecked, alone = list[float](), list[float](), list[float]()
+            for _ in range(repetitions):
+                marks = [time.process_time()]
+                planned(sweep, middle, Done(), say)
+                marks.append(time.process_time())
+                plan_moves(tasks)
+                marks.append(time.process_time())
+                for one in tasks[::12]:
+                    plan_move(one)
+                marks.append(time.process_time())
+                counts = len(tasks), len(tasks), len(tasks[::12])
+                spans = zip(pairwise(marks), counts, strict=True)
+                took = [(end - begin) / count for (begin, end), count in spans]
+                for times, seconds in zip((in_grid, unchecked, alone), took, strict=True):
+                    times.append(seconds)
+            each, plans, loop = (median(times[1:]) for times in (in_grid, unchecked, alone))
+            print(
+                f"{plant.name}, {80 / steps:g} deg, {800 / steps:g} ms: {1e3 * each:.1f} ms a "
+                f"move, {1 / each:.0f} a second and core; unchecked {1e3 * plans:.1f} ms; plan_move "
+                f"{1e3 * loop:.0f} ms, {loop / each:.1f} and {loop / plans:.1f} times",
+                flush=True,
+            )
 
 
 def line(folder: Path, name: str, durations: str, *more: str) -> list[str]:

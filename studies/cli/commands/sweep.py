@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from quietarm.studies.sweep.store import Store
 
 _MANY = 1_000_000
-_HOURS_OF_MANY = 3
+_HOURS_OF_MANY = 1.4
 _MOST_POINTS = 1000
 
 

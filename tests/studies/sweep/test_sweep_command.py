@@ -155,7 +155,7 @@ def test_python_makes_the_same_dataset(call, folder):
         (FEW.replace("30deg,60deg", "1,1"), "has a value twice"),
         (FEW.replace("30deg,60deg", "0.5,0"), "start and target are both 0 rad"),
         (FEW.replace("30deg,60deg", "1").replace("0.8,1.2", "1"), "no axis is given"),
-        (FEW.replace("0.8,1.2", "1:2:0.0000001"), "cells, some 60 hours on a core"),
+        (FEW.replace("0.8,1.2", "1:2:0.0000001"), "cells, some 28 hours on a core"),
         (f"{FEW} --set omga=1,2", "did you mean 'omega'"),
         (f"{FEW} --part 3/2", "'3/2' is no part"),
         (f"{FEW} --part 1/2 --refine 1mm", "--refine is for a whole grid"),
