@@ -67,8 +67,8 @@ def speed() -> None:
             each, plans, loop = (median(times[1:]) for times in (in_grid, unchecked, alone))
             print(
                 f"{plant.name}, {80 / steps:g} deg, {800 / steps:g} ms: {1e3 * each:.1f} ms a "
-                f"move, {1 / each:.0f} a second and core; unchecked {1e3 * plans:.1f} ms; plan_move "
-                f"{1e3 * loop:.0f} ms, {loop / each:.1f} and {loop / plans:.1f} times",
+                f"move, {1 / each:.0f} a second and core; unchecked {1e3 * plans:.1f} ms; "
+                f"plan_move {1e3 * loop:.0f} ms, {loop / each:.1f} and {loop / plans:.1f} times",
                 flush=True,
             )
 

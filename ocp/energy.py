@@ -16,7 +16,7 @@ def power_of(torque: Any, speed: Any) -> Any:
 
 
 class Energy(ABC):
-    """F2 of a move [J]: the integral of `absolute` * |torque * speed| + `smooth`.
+    """F2 of a move [J]: the integral of `absolute` * abs(torque * speed) + `smooth`.
 
     A new energy is one subclass: a frozen dataclass whose fields are numbers, with a name. Energies
     are added, and multiplied by weights.
@@ -77,7 +77,7 @@ def known_energies() -> dict[str, type[Energy]]:
 
 @dataclass(frozen=True)
 class AbsolutePower(Energy):
-    """Integral of |torque * speed|, eqs (11) and (16): braking costs as much as driving."""
+    """Integral of abs(torque * speed), eqs (11) and (16): braking costs as much as driving."""
 
     name = "absolute"
 

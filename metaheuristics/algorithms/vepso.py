@@ -7,7 +7,7 @@ middle is thin, because the swarms gather at the minima of the single objectives
 References
 ----------
 .. [1] Parsopoulos and Vrahatis, ACM Symposium on Applied Computing, 2002, pp. 603-607.
-.. [3] Eberhart and Shi, Congress on Evolutionary Computation, 2000, pp. 84-88.
+.. [2] Eberhart and Shi, Congress on Evolutionary Computation, 2000, pp. 84-88.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class VEPSO(Algorithm):
     boundary : {"clip", "reflect"}
         What happens to a particle that leaves the box.
     velocity_limit : float
-        Largest velocity of a coordinate as a fraction of its box; [3]_ advises 1.
+        Largest velocity of a coordinate as a fraction of its box; Eberhart and Shi (2000) advise 1.
     archive_size : int, optional
         Most points in the archive; beyond it the most crowded are dropped. Unbounded by default.
     iterations : int, optional

@@ -160,7 +160,7 @@ class Motion(WithPeaks):
         F1: largest absolute tip displacement in the residual window after arrival [m], from the
         free vibration of the state that the task asks for; of none where that is rest.
     energy : float
-        F2: the task's energy, by default the integral of |torque * speed| over the move [J].
+        F2: the task's energy, by default the integral of abs(torque * speed) over the move [J].
     net_work : float
         Integral of torque * speed over the move [J]: what a lossless drive would need.
     peak_torque, peak_speed, peak_acceleration : float

@@ -27,6 +27,8 @@ BIN = Path(sys.executable).parent
 MOVE, SEQUENCE, ENERGY = blocks("moves", "python")
 (MACHINE,) = blocks("machine", "python")
 (CELL,) = blocks("sweeps", "python")
+(BEGUN,) = blocks("start", "python")
+(PROFILE,) = blocks("extend", "python")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
@@ -174,9 +176,21 @@ print(plan.status.value, plan.residual < 1e-8, plan.task.plant.name)
     assert run_python(crane + use, tmp_path) == "optimal True crane\n"
 
 
+def test_the_first_lines_of_python_plan_a_move(tmp_path):
+    assert run_python(BEGUN, tmp_path) == "0.0237 J, residual 0.000 mm\n"  # the page's command
+
+
+def test_a_profile_of_your_own_is_planned_with(tmp_path):
+    energy, at_rest = re.fullmatch(
+        r"(\S+) J, residual (\S+) mm\n", run_python(PROFILE, tmp_path)
+    ).groups()
+    assert at_rest == "0.000"
+    assert 0.0165 < float(energy) < 0.0912  # the floor's, and the plain cycloid's, of docs/moves.md
+
+
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 13
+    assert sum(len(blocks(page, "python")) for page in others) == 15
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "text"}
 

@@ -1,0 +1,123 @@
+"""The site: docs, notebooks, every public name and every command, without a network.
+
+    python -m pip install -c constraints.txt ".[site]"
+    sphinx-build -W --keep-going -c docs . build/site
+
+It is strict: a broken link or a name that cannot be documented fails. Notebooks are shown as they
+were executed and committed; ``-D nb_execution_mode=force`` executes them anew, and fails with one
+of their cells.
+"""
+
+import re
+import sys
+from importlib import import_module
+from keyword import iskeyword
+from pathlib import Path
+
+from docutils import nodes
+from latex2mathml.converter import convert
+from quietarm.models.version import __version__
+from quietarm.studies.cli.application import COMMANDS
+
+project, author, release = "quietarm", "The quietarm developers", __version__
+copyright = f"2026, {author}"  # noqa: A001  # as Sphinx calls it
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_click"]
+root_doc = "docs/index"
+include_patterns = [
+    "docs/**",
+    "notebooks/*.ipynb",
+    "notebooks/README.md",
+    "README.md",
+    "CHANGELOG.md",
+]
+exclude_patterns = ["docs/_*"]
+html_theme, html_title = "furo", "quietarm"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sphinx, html_copy_source, smartquotes = False, False, False
+html_theme_options = {"top_of_page_buttons": []}
+myst_enable_extensions = ["dollarmath", "amsmath"]
+myst_heading_anchors = 4
+nb_execution_mode, nb_execution_raise_on_error, nb_execution_timeout = "off", True, 600
+nb_ipywidgets_js = {}  # sliders move where a kernel runs; here a picture stands for each
+html_math_renderer = "mathml"
+default_role = "code"
+autodoc_member_order = "groupwise"
+autodoc_typehints = "none"
+napoleon_numpy_docstring, napoleon_google_docstring = True, False
+suppress_warnings = ["ref.python"]  # a shape as (points, 2) looks like a name
+_PACKAGES = {
+    "models": "Plants",
+    "ocp": "Tasks, plans and fronts",
+    "metaheuristics": "Searches and problems",
+    "studies.figures": "Pictures",
+    "studies.sweep": "Grids of moves",
+    "studies.contest": "Contests",
+}
+_TAG = re.compile(r"\\tag\{(.*?)\}")
+
+
+def _inline(self, node):
+    self.body.append(convert(node.astext()))
+    raise nodes.SkipNode
+
+
+def _display(self, node):
+    text = node.astext()
+    tag = _TAG.search(text)
+    number = f'<span class="number">({tag[1]})</span>' if tag else ""
+    equation = convert(_TAG.sub("", text), display="block")
+    self.body.append(f'<div class="equation">{equation}{number}</div>')
+    raise nodes.SkipNode
+
+
+def _described(package, name, value):
+    """What autodoc is asked for a public name."""
+    if isinstance(value, type):
+        kind = "exception" if issubclass(value, BaseException) else "class"
+        members = "" if issubclass(value, (BaseException, tuple)) else "   :members:\n"
+        return f".. auto{kind}:: quietarm.{package}.{name}\n{members}"
+    if callable(value):
+        return f".. autofunction:: quietarm.{package}.{name}\n"
+    return f".. autodata:: {_home(name)}.{name}\n   :no-value:\n"
+
+
+def _home(name):
+    """The module that defines a constant, whose text is there."""
+    for module, loaded in sorted(sys.modules.items()):
+        file = getattr(loaded, "__file__", None)
+        if (
+            module.startswith("quietarm.")
+            and file
+            and re.search(
+                rf"^(\w+, )*{name}(:| =|, )", Path(file).read_text(encoding="utf-8"), re.MULTILINE
+            )
+        ):
+            return module
+    raise ValueError(f"{name} is defined nowhere")
+
+
+def _fill(app, docname, source):
+    """Put every command, or every public name, on its page."""
+    if docname == "docs/commands":
+        for name in COMMANDS:
+            own = f"{name}_" if iskeyword(name) else name
+            command = f"quietarm.studies.cli.commands.{own}:{own}"
+            directive = f".. click:: {command}\n   :prog: quietarm {name}"
+            source[0] += f"\n```{{eval-rst}}\n{directive}\n```\n"
+    if docname == "docs/reference":
+        for package, title in _PACKAGES.items():
+            source[0] += f"\n## {title}\n\n```{{eval-rst}}\n"
+            module = import_module(f"quietarm.{package}")
+            for name in sorted({*module.__all__} - {"__version__"}, key=str.lower):
+                value = getattr(module, name)
+                source[0] += _described(package, name, value)
+            source[0] += "```\n"
+
+
+def setup(app):
+    """Equations as MathML, and the two pages that are made here."""
+    app.add_html_math_renderer(
+        "mathml", inline_renderers=(_inline, None), block_renderers=(_display, None)
+    )
+    app.connect("source-read", _fill)
