@@ -1,0 +1,135 @@
+"""What the page draws of a move, as arrays: lines of every panel, and the structure frame by frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import degrees
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.models import Body
+from quietarm.ocp import Plan
+from quietarm.ocp.task import QUANTITIES
+from quietarm.studies.animation.cast import cast_of
+from quietarm.studies.explore.state import Explored
+from quietarm.studies.figures import Line
+from quietarm.studies.figures.looks import BLUE, RED
+
+Array = NDArray[np.float32]
+GREY, INK = "#9e9e9e", "#404040"
+FRAMES = 25
+"""A second."""
+_POINTS = 400
+"""Of a curve: on a panel a third of a screen wide their corners cannot be seen."""
+_IN_SIGHT = 0.4
+"""A limit is drawn where the motion comes to this share of it; else it would flatten the motion."""
+TITLES = {"angle": "joint angle [deg]"} | {
+    name: f"{quantity.label} [{'mm' if quantity.unit == 'm' else quantity.unit}]"
+    for name, quantity in QUANTITIES.items()
+}
+"""The panels, by the names of their quantities."""
+
+
+class Curve(NamedTuple):
+    """A line of a panel."""
+
+    x: Array
+    y: Array
+    colour: str
+    dash: str = "solid"
+
+
+def panels(explored: Explored) -> dict[str, list[Curve]]:
+    """Each quantity over time: the plain cycloid in grey, the motion in hand, its limits."""
+    found: dict[str, list[Curve]] = {name: [] for name in TITLES}
+    for plan, colour in ((explored.cycloid, GREY), (explored.plan, BLUE)):
+        at = plan.trajectory
+        every = slice(None, None, max(1, len(at.time) // _POINTS))
+        columns = {"angle": [degrees(1.0) * at.joint[:, 0]]} | {
+            name: quantity.of(at.motion, list(at.tips.T), at.torque)
+            for name, quantity in QUANTITIES.items()
+        }
+        for name, values in columns.items():
+            found[name] += [
+                Curve(_single(at.time[every]), _single(_factor(name) * one[every]), colour)
+                for one in values
+            ]
+    ends = _single(np.array([0.0, explored.task.duration]))
+    for name, limit in explored.task.limits.items():
+        if explored.plan.motion.peak(name) >= _IN_SIGHT * limit:
+            level = _factor(name) * limit * np.ones(2)
+            found[name] += [Curve(ends, _single(side * level), RED, "dashed") for side in (1, -1)]
+    return found
+
+
+def robustness_curves(explored: Explored) -> list[Curve]:
+    """The residual [mm] over the error of the frequency [%], and what is tolerated."""
+    found = explored.robustness
+    (sweep,) = found.sweeps
+    errors = _single(100 * sweep.errors)
+    tolerated = np.full(2, 1e3 * found.tolerated)
+    return [
+        Curve(errors, _single(1e3 * sweep.figures.residual), BLUE),
+        Curve(errors[[0, -1]], _single(tolerated), GREY, "dashed"),
+    ]
+
+
+@dataclass(frozen=True)
+class Film:
+    """The structure in motion.
+
+    Attributes
+    ----------
+    frames : dict of str to ndarray, shape (frames, points)
+        Coordinates x0, y0, x1, ... of every body [m].
+    looks : dict of str to list
+        Colour and width of every body.
+    paths : list of ndarray, shape (frames, 2)
+        Where the tips go [m].
+    corners : ndarray, shape (2, 2)
+        Least and largest coordinates [m].
+    scale : float
+        How many times larger deflections are drawn than they are.
+    """
+
+    frames: dict[str, Array]
+    looks: dict[str, list[Any]]
+    paths: list[Array]
+    corners: Array
+    scale: float
+
+
+def film(plan: Plan) -> Film:
+    """The structure of a plan from its start to the end of the residual window."""
+    end = plan.task.duration + plan.task.residual_window
+    (actor,) = cast_of([Line(plan, "")], np.arange(0.0, end, 1 / FRAMES), end)
+    frames: dict[str, Array] = {}
+    for number, of_body in enumerate(zip(*actor.bodies, strict=True)):
+        points = np.array([_drawable(body) for body in of_body])
+        frames[f"x{number}"], frames[f"y{number}"] = _single(points[..., 0]), _single(points[..., 1])
+    colours, widths = zip(*map(_look, actor.bodies[0]), strict=True)
+    looks = {"colour": list(colours), "width": list(widths)}
+    return Film(frames, looks, list(map(_single, actor.paths)), _single(actor.corners), actor.scale)
+
+
+def _single(values: NDArray[np.float64]) -> Array:
+    """In single precision: half the way to the browser."""
+    return values.astype(np.float32)
+
+
+def _factor(name: str) -> float:
+    return 1e3 if name in QUANTITIES and QUANTITIES[name].unit == "m" else 1.0
+
+
+def _drawable(body: Body) -> NDArray[np.float64]:
+    """The line of a body; a disc is one without length and with round ends."""
+    return body.points if len(body.points) > 1 else np.repeat(body.points, 2, axis=0)
+
+
+def _look(body: Body) -> tuple[str, float]:
+    """A disc, a thick line or a thin one, as `quietarm animate` draws them."""
+    if len(body.points) == 1:
+        return INK, 16.0
+    dark = body.rigid and not body.tip
+    return (INK if dark else BLUE), (9.0 if body.rigid else 5.0)

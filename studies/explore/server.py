@@ -1,0 +1,45 @@
+"""The page's server: this machine alone reaches it, at a port that is free."""
+
+from __future__ import annotations
+
+import webbrowser
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+
+from bokeh.application import Application
+from bokeh.application.handlers.function import FunctionHandler
+from bokeh.server.server import Server
+from quietarm.models import Plant
+from quietarm.studies.explore.page import Page
+from quietarm.studies.explore.state import Explored
+
+
+def serve(
+    explored: Explored,
+    plants: Mapping[str, Plant],
+    tell: Callable[[str], object],
+    browser: bool = True,
+) -> None:
+    """Show the page until Ctrl-C.
+
+    Parameters
+    ----------
+    explored : Explored
+        What every visitor begins with.
+    plants : mapping of str to Plant
+        Plants that can be chosen.
+    tell : callable
+        Is told the page's address.
+    browser : bool
+        Whether a browser is opened on it.
+    """
+    page = Application(FunctionHandler(lambda document: (Page(document, explored, plants), None)[1]))
+    server = Server({"/": page}, port=0, address="127.0.0.1")
+    server.start()
+    address = f"http://localhost:{server.port}/"
+    tell(address)
+    if browser:
+        server.io_loop.add_callback(webbrowser.open, address)
+    with suppress(KeyboardInterrupt):
+        server.io_loop.start()
+    server.stop()
