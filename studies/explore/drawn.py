@@ -1,4 +1,4 @@
-"""What the page draws of a move, as arrays: lines of every panel, and the structure frame by frame."""
+"""What the page draws of a motion, as arrays: curves, and the structure frame by frame."""
 
 from __future__ import annotations
 
@@ -81,11 +81,13 @@ class Film:
 
     Attributes
     ----------
-    frames : dict of str to ndarray, shape (frames, points)
-        Coordinates x0, y0, x1, ... of every body [m].
+    frames : int
+        How many there are.
+    xs, ys : list of ndarray
+        Coordinates of every body [m], frame after frame.
     looks : dict of str to list
         Colour and width of every body.
-    paths : list of ndarray, shape (frames, 2)
+    paths : list of ndarray, each of shape (frames, 2)
         Where the tips go [m].
     corners : ndarray, shape (2, 2)
         Least and largest coordinates [m].
@@ -93,7 +95,9 @@ class Film:
         How many times larger deflections are drawn than they are.
     """
 
-    frames: dict[str, Array]
+    frames: int
+    xs: list[Array]
+    ys: list[Array]
     looks: dict[str, list[Any]]
     paths: list[Array]
     corners: Array
@@ -103,14 +107,16 @@ class Film:
 def film(plan: Plan) -> Film:
     """The structure of a plan from its start to the end of the residual window."""
     end = plan.task.duration + plan.task.residual_window
-    (actor,) = cast_of([Line(plan, "")], np.arange(0.0, end, 1 / FRAMES), end)
-    frames: dict[str, Array] = {}
-    for number, of_body in enumerate(zip(*actor.bodies, strict=True)):
-        points = np.array([_drawable(body) for body in of_body])
-        frames[f"x{number}"], frames[f"y{number}"] = _single(points[..., 0]), _single(points[..., 1])
+    times = np.arange(0.0, end, 1 / FRAMES)
+    (actor,) = cast_of([Line(plan, "")], times, end)
+    of_bodies = [
+        np.array([_drawable(body) for body in frames]) for frames in zip(*actor.bodies, strict=True)
+    ]
+    xs, ys = ([_single(points[..., axis].ravel()) for points in of_bodies] for axis in (0, 1))
     colours, widths = zip(*map(_look, actor.bodies[0]), strict=True)
     looks = {"colour": list(colours), "width": list(widths)}
-    return Film(frames, looks, list(map(_single, actor.paths)), _single(actor.corners), actor.scale)
+    paths = [_single(path) for path in actor.paths]
+    return Film(len(times), xs, ys, looks, paths, _single(actor.corners), actor.scale)
 
 
 def _single(values: NDArray[np.float64]) -> Array:

@@ -1,4 +1,4 @@
-"""What the page begins with: a plant, or a plan, a front or the moves of a sweep from their files."""
+"""What the page begins with: a plant, or what a file of a plan, a front or a sweep holds."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _kind(path: Path) -> object:
 
 
 def menu(plant: Plant, kinds: Mapping[str, type[Plant]]) -> dict[str, Plant]:
-    """This plant, and those that have a value for every parameter, by their words."""
+    """A plant, and those of other kinds that have a value for every parameter, by their words."""
     found = {plant_words(plant): plant}
     for kind in kinds.values():
         try:

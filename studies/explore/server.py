@@ -6,8 +6,7 @@ import webbrowser
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 
-from bokeh.application import Application
-from bokeh.application.handlers.function import FunctionHandler
+from bokeh.document import Document
 from bokeh.server.server import Server
 from quietarm.models import Plant
 from quietarm.studies.explore.page import Page
@@ -33,8 +32,11 @@ def serve(
     browser : bool
         Whether a browser is opened on it.
     """
-    page = Application(FunctionHandler(lambda document: (Page(document, explored, plants), None)[1]))
-    server = Server({"/": page}, port=0, address="127.0.0.1")
+
+    def fill(document: Document) -> None:
+        Page(document, explored, plants)
+
+    server = Server({"/": fill}, port=0, address="127.0.0.1")
     server.start()
     address = f"http://localhost:{server.port}/"
     tell(address)

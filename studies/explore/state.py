@@ -137,7 +137,7 @@ class Explored:
             limit = Dial.of(name, quantity.unit, _LEAST, _MOST, optional=True)
             dials[quantity.limit] = limit
         dials["residual_limit"] = Dial.of("residual", "m", 0.0, _MOST, optional=True)
-        dials["bound"] = Dial.of("coefficients", "-", _LEAST, _MOST, optional=True)
+        dials["bound"] = Dial.of("coefficient", "-", _LEAST, _MOST, optional=True)
         return dials | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
 
     @cached_property
@@ -150,9 +150,9 @@ class Explored:
     @property
     def shown(self) -> dict[str, float | None]:
         """Values of the dials in the units that are shown."""
-        values = self._values.items()
         return {
-            name: None if one is None else one * self.dials[name].factor for name, one in values
+            name: None if value is None else float(f"{value * self.dials[name].factor:.12g}")
+            for name, value in self._values.items()
         }
 
     def changed(self, shown: Mapping[str, float | None]) -> Explored:
@@ -192,34 +192,28 @@ class Explored:
         plan = evaluate_coefficients(task, self.plan.coefficients, profile=self.plan.profile)
         return replace(self, plan=plan, library=None, front=None)
 
-    def with_plan(self, plan: Plan) -> Explored:
-        """The same with another motion of this move."""
-        return replace(self, plan=plan)
-
-    def with_front(self, front: Front) -> Explored:
-        """The same with a front of this move."""
-        return replace(self, front=front)
-
-    def solved(self) -> Plan:
-        """The gradient's answer for this move; it raises what `plan_move` does."""
-        return plan_move(
+    def solved(self) -> Explored:
+        """The same with the gradient's motion; it raises what `plan_move` does."""
+        plan = plan_move(
             self.task, self.plan.profile, residual_limit=self.residual_limit, bound=self.bound
         )
+        return replace(self, plan=plan)
 
-    def found_front(self, report: Report = no_report) -> Front:
-        """The front of this move by the gradient; it raises what `epsilon_front` does."""
-        return epsilon_front(
+    def with_front(self, report: Report = no_report) -> Explored:
+        """The same with the front of this move; it raises what `epsilon_front` does."""
+        front = epsilon_front(
             self.task, self.plan.profile, bound=self.bound, points=OF_A_FRONT, report=report
         )
+        return replace(self, front=front)
 
     def picked(self, number: int) -> Explored:
-        """The motion of a point of the front, by its number from 0."""
+        """The same with the motion of a point of the front, by its number from 0."""
         assert self.front is not None
-        front = self.front
-        found = front.points[number].coefficients
+        found = self.front.points[number].coefficients
         plan = evaluate_coefficients(
-            front.task, found, profile=front.profile, method=front.method, settings=front.settings
-        )
+            self.task, found, profile=self.front.profile, method=self.front.method,
+            settings=self.front.settings,
+        )  # fmt: skip
         return replace(self, plan=plan)
 
     @property

@@ -19,7 +19,7 @@ _USUAL = "single-link"
 @click.argument("what", required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]")
 @plant_file_option()
 @click.option("--set", "parameters", type=SETTING, multiple=True,
-              help="Set a parameter of the PLANT, as omega=9 (SI units); may be repeated.")  # fmt: skip
+              help="Set a parameter of the PLANT, as omega=9; may be repeated.")  # fmt: skip
 @click.option("--no-browser", is_flag=True, help="Print the page's address alone.")
 def explore(
     what: str | None,
