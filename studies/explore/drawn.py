@@ -22,6 +22,8 @@ FRAMES = 25
 """A second."""
 _POINTS = 400
 """Of a curve: on a panel a third of a screen wide their corners cannot be seen."""
+_DOT = 1e-6
+"""Length of a line that shows as a dot [m]; without any length it would not show."""
 _IN_SIGHT = 0.4
 """A limit is drawn where the motion comes to this share of it; else it would flatten the motion."""
 TITLES = {"angle": "joint angle [deg]"} | {
@@ -129,8 +131,8 @@ def _factor(name: str) -> float:
 
 
 def _drawable(body: Body) -> NDArray[np.float64]:
-    """The line of a body; a disc is one without length and with round ends."""
-    return body.points if len(body.points) > 1 else np.repeat(body.points, 2, axis=0)
+    """The line of a body; a disc is hardly one, with round ends."""
+    return body.points if len(body.points) > 1 else body.points + [[0.0, 0.0], [_DOT, 0.0]]
 
 
 def _look(body: Body) -> tuple[str, float]:

@@ -58,13 +58,14 @@ class Page:
         self._pending: dict[str, float | None] = {}
         self._filling = False
         self._fields: dict[str, list[Any]] = {name: [] for name in explored.dials}
-        self._said = Div(name="said", **_WIDE)
         self._figures = Div(name="figures", **_WIDE)
         self._stage, self._tradeoff = Stage(document), Tradeoff(self._on_pick)
         self._panels = {name: Panel(name, title, "time [s]") for name, title in TITLES.items()}
         self._robustness = Panel("robustness", "residual [mm]", "error of the frequency [%]")
         self._file = ColumnDataSource({"name": [], "text": []})
         self._file.js_on_change("data", CustomJS(args={"file": self._file}, code=_SAVE))
+        # as a tag it is part of the document
+        self._said = Div(name="said", tags=[self._file], **_WIDE)
         self._plant = Select(title="plant", options=list(plants), **_WIDE)
         self._plant.on_change("value", self._on_plant)
         self._buttons = [
@@ -207,12 +208,9 @@ class Page:
         self._filling = True
         dials, shown = self._explored.dials, self._explored.shown
         for name, fields in self._fields.items():
-            least, most = dials[name].least, dials[name].most
             for field in fields:
                 if isinstance(field, Slider):
-                    field.update(start=least, end=most)
-                else:
-                    field.update(low=least, high=most)
+                    field.update(start=dials[name].least, end=dials[name].most)
                 if field.value != shown[name]:
                     field.value = shown[name]
         self._plant.value = plant_words(self._explored.task.plant)

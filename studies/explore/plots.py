@@ -9,6 +9,7 @@ from bokeh.document import Document
 from bokeh.models import ColumnDataSource, CustomJS, DataRange1d
 from bokeh.plotting import figure
 from quietarm.ocp import Front
+from quietarm.studies.display.words import residual_words
 from quietarm.studies.explore.drawn import FRAMES, GREY, Curve, film
 from quietarm.studies.explore.state import Explored
 from quietarm.studies.figures.looks import BLUE, RED
@@ -59,6 +60,7 @@ class Stage:
         self.plot = _plot("stage", " ", height=_HIGHER, match_aspect=True)
         self.plot.grid.visible = False
         self._film = ColumnDataSource()
+        self.plot.tags = [self._film]  # else it would be no part of the document
         self._paths = ColumnDataSource({"xs": [], "ys": []})
         self._corners = ColumnDataSource({"x": [], "y": []})
         room = self.plot.scatter("x", "y", source=self._corners, alpha=0)
@@ -77,7 +79,9 @@ class Stage:
     def show(self, explored: Explored) -> None:
         """Show another motion."""
         seen = film(explored.plan)
-        words = "to scale" if seen.scale == 1 else f"deflection x {seen.scale:g}"
+        scale = "to scale" if seen.scale == 1 else f"deflection x {seen.scale:g}"
+        plan = explored.plan
+        words = f"{plan.energy:.4g} J, {residual_words(plan.residual)}; {scale}"
         alike = {"frames": [seen.frames] * len(seen.xs), "words": [words] * len(seen.xs)}
         self._film.data = {"xs": seen.xs, "ys": seen.ys, **seen.looks, **alike}
         xs, ys = ([path[:, axis] for path in seen.paths] for axis in (0, 1))
