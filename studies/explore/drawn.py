@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from math import degrees
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,11 +16,11 @@ from quietarm.studies.explore.state import Explored
 from quietarm.studies.figures import Line
 from quietarm.studies.figures.looks import BLUE, RED
 
-Array = NDArray[np.float32]
+Numbers = list[float]
 GREY, INK = "#9e9e9e", "#404040"
 FRAMES = 25
 """A second."""
-_POINTS = 400
+_POINTS = 200
 """Of a curve: on a panel a third of a screen wide their corners cannot be seen."""
 _DOT = 1e-6
 """Length of a line that shows as a dot [m]; without any length it would not show."""
@@ -36,8 +36,8 @@ TITLES = {"angle": "joint angle [deg]"} | {
 class Curve(NamedTuple):
     """A line of a panel."""
 
-    x: Array
-    y: Array
+    x: Numbers
+    y: Numbers
     colour: str
     dash: str = "solid"
 
@@ -48,20 +48,20 @@ def panels(explored: Explored) -> dict[str, list[Curve]]:
     for plan, colour in ((explored.cycloid, GREY), (explored.plan, BLUE)):
         at = plan.trajectory
         every = slice(None, None, max(1, len(at.time) // _POINTS))
-        columns = {"angle": [degrees(1.0) * at.joint[:, 0]]} | {
+        columns = {"angle": [math.degrees(1.0) * at.joint[:, 0]]} | {
             name: quantity.of(at.motion, list(at.tips.T), at.torque)
             for name, quantity in QUANTITIES.items()
         }
         for name, values in columns.items():
             found[name] += [
-                Curve(_single(at.time[every]), _single(_factor(name) * one[every]), colour)
+                Curve(_plain(at.time[every]), _plain(_factor(name) * one[every]), colour)
                 for one in values
             ]
-    ends = _single(np.array([0.0, explored.task.duration]))
+    ends = _plain(np.array([0.0, explored.task.duration]))
     for name, limit in explored.task.limits.items():
         if explored.plan.motion.peak(name) >= _IN_SIGHT * limit:
             level = _factor(name) * limit * np.ones(2)
-            found[name] += [Curve(ends, _single(side * level), RED, "dashed") for side in (1, -1)]
+            found[name] += [Curve(ends, _plain(side * level), RED, "dashed") for side in (1, -1)]
     return found
 
 
@@ -69,11 +69,11 @@ def robustness_curves(explored: Explored) -> list[Curve]:
     """The residual [mm] over the error of the frequency [%], and what is tolerated."""
     found = explored.robustness
     (sweep,) = found.sweeps
-    errors = _single(100 * sweep.errors)
+    errors = _plain(100 * sweep.errors)
     tolerated = np.full(2, 1e3 * found.tolerated)
     return [
-        Curve(errors, _single(1e3 * sweep.figures.residual), BLUE),
-        Curve(errors[[0, -1]], _single(tolerated), GREY, "dashed"),
+        Curve(errors, _plain(1e3 * sweep.figures.residual), BLUE),
+        Curve([errors[0], errors[-1]], _plain(tolerated), GREY, "dashed"),
     ]
 
 
@@ -85,24 +85,22 @@ class Film:
     ----------
     frames : int
         How many there are.
-    xs, ys : list of ndarray
+    xs, ys : list of list of float
         Coordinates of every body [m], frame after frame.
     looks : dict of str to list
         Colour and width of every body.
-    paths : list of ndarray, each of shape (frames, 2)
-        Where the tips go [m].
-    corners : ndarray, shape (2, 2)
-        Least and largest coordinates [m].
+    paths, corners : tuple of list
+        Coordinates x and y of where each tip goes, and the least and largest of all [m].
     scale : float
         How many times larger deflections are drawn than they are.
     """
 
     frames: int
-    xs: list[Array]
-    ys: list[Array]
+    xs: list[Numbers]
+    ys: list[Numbers]
     looks: dict[str, list[Any]]
-    paths: list[Array]
-    corners: Array
+    paths: tuple[list[Numbers], list[Numbers]]
+    corners: tuple[Numbers, Numbers]
     scale: float
 
 
@@ -114,16 +112,19 @@ def film(plan: Plan) -> Film:
     of_bodies = [
         np.array([_drawable(body) for body in frames]) for frames in zip(*actor.bodies, strict=True)
     ]
-    xs, ys = ([_single(points[..., axis].ravel()) for points in of_bodies] for axis in (0, 1))
+    xs, ys = ([_plain(points[..., axis].ravel()) for points in of_bodies] for axis in (0, 1))
     colours, widths = zip(*map(_look, actor.bodies[0]), strict=True)
     looks = {"colour": list(colours), "width": list(widths)}
-    paths = [_single(path) for path in actor.paths]
-    return Film(len(times), xs, ys, looks, paths, _single(actor.corners), actor.scale)
+    paths = tuple([_plain(path[:, axis]) for path in actor.paths] for axis in (0, 1))
+    corners = tuple(map(_plain, actor.corners.T))
+    return Film(len(times), xs, ys, looks, paths, corners, actor.scale)
 
 
-def _single(values: NDArray[np.float64]) -> Array:
-    """In single precision: half the way to the browser."""
-    return values.astype(np.float32)
+def _plain(values: NDArray[np.float64]) -> Numbers:
+    """Numbers to five digits of the largest: lists are in the browser sooner than many arrays."""
+    largest = float(np.abs(values).max(initial=0.0))
+    digits = 0 if largest == 0 else 4 - math.floor(math.log10(largest))
+    return np.round(values, digits).tolist()
 
 
 def _factor(name: str) -> float:
@@ -132,7 +133,9 @@ def _factor(name: str) -> float:
 
 def _drawable(body: Body) -> NDArray[np.float64]:
     """The line of a body; a disc is hardly one, with round ends."""
-    return body.points if len(body.points) > 1 else body.points + [[0.0, 0.0], [_DOT, 0.0]]
+    return (
+        body.points if len(body.points) > 1 else body.points + np.array([[0.0, 0.0], [_DOT, 0.0]])
+    )
 
 
 def _look(body: Body) -> tuple[str, float]:

@@ -18,13 +18,13 @@ from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
 from quietarm.studies.display.words import plant_words
 from quietarm.studies.document.blocks import Facts
-from quietarm.studies.explore.drawn import GREY, TITLES, panels, robustness_curves
-from quietarm.studies.explore.plots import Panel, Stage, Tradeoff
+from quietarm.studies.explore.drawn import GREY, TITLES
+from quietarm.studies.explore.plots import Plots
 from quietarm.studies.explore.state import FILES, Dial, Explored
 from quietarm.studies.figures.looks import RED
 from quietarm.studies.reports.plan import plan_document
 
-_WAIT = 10
+_WAIT = 5
 """Milliseconds in which changes are gathered: a slider sends more of them than are drawn."""
 _WORK = ThreadPoolExecutor(1, "explore")
 """Where plans and fronts are computed, while the page goes on."""
@@ -59,9 +59,7 @@ class Page:
         self._filling = False
         self._fields: dict[str, list[Any]] = {name: [] for name in explored.dials}
         self._figures = Div(name="figures", **_WIDE)
-        self._stage, self._tradeoff = Stage(document), Tradeoff(self._on_pick)
-        self._panels = {name: Panel(name, title, "time [s]") for name, title in TITLES.items()}
-        self._robustness = Panel("robustness", "residual [mm]", "error of the frequency [%]")
+        self._plots = Plots(document, self._on_pick)
         self._file = ColumnDataSource({"name": [], "text": []})
         self._file.js_on_change("data", CustomJS(args={"file": self._file}, code=_SAVE))
         # as a tag it is part of the document
@@ -76,7 +74,7 @@ class Page:
         document.title = "quietarm explore"
         templates = Environment(loader=PackageLoader(__package__, ""), autoescape=True)
         document.template = templates.get_template("page.html")
-        document.template_variables["panels"] = list(self._panels)
+        document.template_variables["panels"] = list(TITLES)
         self._disable(False)
         self._show()
 
@@ -92,8 +90,7 @@ class Page:
         shape = [sliders.pop(name) for name in explored.coefficients]
         files = [_button(name, partial(self._on_file, name)) for name in FILES]
         return [
-            self._said, self._figures, self._stage.plot, self._tradeoff.plot,
-            self._robustness.plot, *(panel.plot for panel in self._panels.values()),
+            self._said, self._figures, *self._plots.roots,
             column(self._plant, row(*self._buttons, **_WIDE), name="answers", **_WIDE),
             column(*sliders.values(), name="move", **_WIDE),
             column(*shape, name="shape", **_WIDE),
@@ -197,11 +194,7 @@ class Page:
         self._figures.text = "".join(
             f"<div><b>{escape(name)}</b> {escape(value)}</div>" for name, value in facts.rows
         )
-        self._stage.show(explored)
-        self._tradeoff.show(explored)
-        self._robustness.show(robustness_curves(explored))
-        for name, curves in panels(explored).items():
-            self._panels[name].show(curves)
+        self._plots.show(explored)
 
     def _fill(self) -> None:
         """Show in every field what is held."""

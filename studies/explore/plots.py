@@ -1,20 +1,32 @@
-"""The plots of the page, each with how it comes to show another motion. Bokeh draws them."""
+"""The plots of the page, and how all of them come to show another motion at once. Bokeh draws."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from bokeh.document import Document
 from bokeh.models import ColumnDataSource, CustomJS, DataRange1d
 from bokeh.plotting import figure
-from quietarm.ocp import Front
 from quietarm.studies.display.words import residual_words
-from quietarm.studies.explore.drawn import FRAMES, GREY, Curve, film
+from quietarm.studies.explore.drawn import (
+    FRAMES,
+    GREY,
+    TITLES,
+    Curve,
+    film,
+    panels,
+    robustness_curves,
+)
 from quietarm.studies.explore.state import Explored
 from quietarm.studies.figures.looks import BLUE, RED
 
 _HIGH, _HIGHER = 200, 280
+_CURVE = "xs", "ys", "colour", "dash"
+_BODY = "xs", "ys", "colour", "width"
+_POINT = "residual", "energy"
+_HAND_OUT = "news.data.columns.forEach((columns, i) => { sources[i].data = columns; });"
+"""One message for all plots, so that the browser draws once."""
 _PLAY = """
 const play = () => {
     const {xs, ys, colour, width, frames, words} = film.data;
@@ -22,7 +34,7 @@ const play = () => {
     const at = Math.min(now, frames[0] - 1);
     const current = (all) => {
         const points = all.length / frames[0];
-        return Array.from({length: points}, (_, k) => all[at * points + k]);
+        return all.slice(at * points, (at + 1) * points);
     };
     shown.data = {xs: xs.map(current), ys: ys.map(current), colour, width};
     title.text = `${words[0]}, t = ${(at / rate).toFixed(2)} s`;
@@ -32,92 +44,110 @@ setInterval(play, 1000 / rate);
 """The frame of the moment, and the last one for a second."""
 
 
-class Panel:
-    """Curves over one axis."""
+class Plots:
+    """The structure in motion, the front, the robustness, and the quantities over time.
 
-    def __init__(self, name: str, title: str, below: str) -> None:
-        self.plot = _plot(name, title)
-        self.plot.xaxis.axis_label = below
-        self._source = ColumnDataSource(_columns([]))
-        self.plot.multi_line(
-            "xs", "ys", source=self._source, line_color="colour", line_dash="dash", line_width=1.6
-        )
+    Parameters
+    ----------
+    document : Document
+        In whose browser they are.
+    pick : callable
+        Is told the number of a point of the front that is clicked.
+    """
 
-    def show(self, curves: Sequence[Curve]) -> None:
-        """Show other curves."""
-        self._source.data = _columns(curves)
+    def __init__(self, document: Document, pick: Callable[[int], None]) -> None:
+        self._sources: list[ColumnDataSource] = []
+        self.roots = [self._stage(), self._tradeoff(pick)]
+        self.roots.append(self._panel("robustness", "residual [mm]", "error of the frequency [%]"))
+        self.roots += [self._panel(name, title, "time [s]") for name, title in TITLES.items()]
+        self._news = ColumnDataSource({"columns": []})
+        self.roots[0].tags = [self._news]  # else it would be no part of the document
+        hand_out = CustomJS(args={"news": self._news, "sources": self._sources}, code=_HAND_OUT)
+        self._news.js_on_change("data", hand_out)
+        document.js_on_event("document_ready", hand_out, self._play)
 
+    def show(self, explored: Explored) -> None:
+        """Show another motion in all plots."""
+        self._points.selected.indices = []  # so that the same point can be clicked again
+        curves = [robustness_curves(explored), *panels(explored).values()]
+        self._news.data = {
+            "columns": [*_of_stage(explored), *_of_front(explored), *map(_of_curves, curves)]
+        }
 
-def _columns(curves: Sequence[Curve]) -> dict[str, list[Any]]:
-    names = "xs", "ys", "colour", "dash"
-    return {name: [curve[i] for curve in curves] for i, name in enumerate(names)}
-
-
-class Stage:
-    """The structure in motion, which the browser plays by itself."""
-
-    def __init__(self, document: Document) -> None:
-        self.plot = _plot("stage", " ", height=_HIGHER, match_aspect=True)
-        self.plot.grid.visible = False
-        self._film = ColumnDataSource()
-        self.plot.tags = [self._film]  # else it would be no part of the document
-        self._paths = ColumnDataSource({"xs": [], "ys": []})
-        self._corners = ColumnDataSource({"x": [], "y": []})
-        room = self.plot.scatter("x", "y", source=self._corners, alpha=0)
-        self.plot.x_range, self.plot.y_range = (DataRange1d(renderers=[room]) for _ in "xy")
-        self.plot.multi_line("xs", "ys", source=self._paths, color=GREY, line_width=1.5)
-        # what plays is no news for the server
-        shown = ColumnDataSource({"xs": [], "ys": [], "colour": [], "width": []}, syncable=False)
-        self.plot.title.syncable = False
-        self.plot.multi_line(
+    def _stage(self) -> Any:
+        """The structure, which the browser plays by itself."""
+        plot = _plot("stage", " ", height=_HIGHER, match_aspect=True)
+        plot.grid.visible = False
+        film, paths, corners = self._source(), self._source("xs", "ys"), self._source("x", "y")
+        room = plot.scatter("x", "y", source=corners, alpha=0)
+        plot.x_range, plot.y_range = (DataRange1d(renderers=[room]) for _ in "xy")
+        plot.multi_line("xs", "ys", source=paths, color=GREY, line_width=1.5)
+        shown = _empty(*_BODY)
+        plot.multi_line(
             "xs", "ys", source=shown, color="colour", line_width="width", line_cap="round",
             line_join="round",
         )  # fmt: skip
-        seen = {"film": self._film, "shown": shown, "title": self.plot.title, "rate": FRAMES}
-        document.js_on_event("document_ready", CustomJS(args=seen, code=_PLAY))
+        plot.title.syncable = False
+        seen = {"film": film, "shown": shown, "title": plot.title, "rate": FRAMES}
+        self._play = CustomJS(args=seen, code=_PLAY)
+        return plot
 
-    def show(self, explored: Explored) -> None:
-        """Show another motion."""
-        seen = film(explored.plan)
-        scale = "to scale" if seen.scale == 1 else f"deflection x {seen.scale:g}"
-        plan = explored.plan
-        words = f"{plan.energy:.4g} J, {residual_words(plan.residual)}; {scale}"
-        alike = {"frames": [seen.frames] * len(seen.xs), "words": [words] * len(seen.xs)}
-        self._film.data = {"xs": seen.xs, "ys": seen.ys, **seen.looks, **alike}
-        xs, ys = ([path[:, axis] for path in seen.paths] for axis in (0, 1))
-        self._paths.data = {"xs": xs, "ys": ys}
-        self._corners.data = {"x": seen.corners[:, 0], "y": seen.corners[:, 1]}
-
-
-class Tradeoff:
-    """The front, and where the motion in hand lies."""
-
-    def __init__(self, pick: Callable[[int], None]) -> None:
-        self.plot = _plot("front", "front: energy [J] over residual [mm]", tools="tap")
-        self._points, self._here = (
-            ColumnDataSource({"residual": [], "energy": []}) for _ in range(2)
-        )
-        self._drawn: Front | None = None
+    def _tradeoff(self, pick: Callable[[int], None]) -> Any:
+        """The front, and where the motion in hand lies."""
+        plot = _plot("front", "front: energy [J] over residual [mm]", tools="tap")
+        self._points, here = self._source(*_POINT), self._source(*_POINT)
 
         def picked(attribute: str, old: Sequence[int], new: Sequence[int]) -> None:
             if new:
                 pick(new[0])
 
         self._points.selected.on_change("indices", picked)
-        at = {"x": "residual", "y": "energy"}
-        self.plot.line(**at, source=self._points, color=BLUE)
-        self.plot.scatter(**at, source=self._points, color=BLUE, size=9, nonselection_alpha=1)
-        self.plot.scatter(**at, source=self._here, color=RED, marker="x", size=12, line_width=2)
+        plot.line(*_POINT, source=self._points, color=BLUE)
+        plot.scatter(*_POINT, source=self._points, color=BLUE, size=9, nonselection_alpha=1)
+        plot.scatter(*_POINT, source=here, color=RED, marker="x", size=12, line_width=2)
+        return plot
 
-    def show(self, explored: Explored) -> None:
-        """Show another front, or where another motion lies."""
-        front, plan = explored.front, explored.plan
-        if front is not self._drawn:
-            self._drawn = front
-            columns = ([], []) if front is None else (1e3 * front.residuals, front.energies)
-            self._points.data = dict(zip(("residual", "energy"), columns, strict=True))
-        self._points.selected.indices = []  # so that the same point can be clicked again
-        self._here.data = {"residual": [1e3 * plan.residual], "energy": [plan.energy]}
+    def _panel(self, name: str, title: str, below: str) -> Any:
+        """Curves over one axis."""
+        plot = _plot(name, title)
+        plot.xaxis.axis_label = below
+        look = {"line_color": "colour", "line_dash": "dash", "line_width": 1.6}
+        plot.multi_line("xs", "ys", source=self._source(*_CURVE), **look)
+        return plot
+
+    def _source(self, *columns: str) -> ColumnDataSource:
+        self._sources.append(_empty(*columns))
+        return self._sources[-1]
+
+
+def _empty(*columns: str) -> ColumnDataSource:
+    """A source that is filled in the browser, which is no news for the server."""
+    return ColumnDataSource({name: [] for name in columns}, syncable=False)
+
+
+def _of_stage(explored: Explored) -> list[Mapping[str, Any]]:
+    seen, plan = film(explored.plan), explored.plan
+    scale = "to scale" if seen.scale == 1 else f"deflection x {seen.scale:g}"
+    words = f"{plan.energy:.4g} J, {residual_words(plan.residual)}; {scale}"
+    alike = {"frames": [seen.frames] * len(seen.xs), "words": [words] * len(seen.xs)}
+    return [
+        {"xs": seen.xs, "ys": seen.ys, **seen.looks, **alike},
+        dict(zip(("xs", "ys"), seen.paths, strict=True)),
+        dict(zip("xy", seen.corners, strict=True)),
+    ]
+
+
+def _of_front(explored: Explored) -> list[Mapping[str, Any]]:
+    front, plan = explored.front, explored.plan
+    points = [] if front is None else front.points
+    return [
+        {"residual": [1e3 * one.residual for one in of], "energy": [one.energy for one in of]}
+        for of in (points, [plan])
+    ]
+
+
+def _of_curves(curves: Sequence[Curve]) -> Mapping[str, Any]:
+    return {name: [curve[i] for curve in curves] for i, name in enumerate(_CURVE)}
 
 
 def _plot(name: str, title: str, height: int = _HIGH, tools: str = "", **more: Any) -> Any:

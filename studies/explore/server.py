@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import webbrowser
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -36,6 +37,8 @@ def serve(
     def fill(document: Document) -> None:
         Page(document, explored, plants)
 
+    # a page that was closed is no error
+    logging.getLogger("bokeh").setLevel(logging.ERROR)
     server = Server({"/": fill}, port=0, address="127.0.0.1")
     server.start()
     address = f"http://localhost:{server.port}/"
