@@ -89,7 +89,7 @@ class Film:
         Coordinates of every body [m], frame after frame.
     looks : dict of str to list
         Colour and width of every body.
-    paths, corners : tuple of list
+    paths, corners : list of list
         Coordinates x and y of where each tip goes, and the least and largest of all [m].
     scale : float
         How many times larger deflections are drawn than they are.
@@ -99,8 +99,8 @@ class Film:
     xs: list[Numbers]
     ys: list[Numbers]
     looks: dict[str, list[Any]]
-    paths: tuple[list[Numbers], list[Numbers]]
-    corners: tuple[Numbers, Numbers]
+    paths: list[list[Numbers]]
+    corners: list[Numbers]
     scale: float
 
 
@@ -115,8 +115,8 @@ def film(plan: Plan) -> Film:
     xs, ys = ([_plain(points[..., axis].ravel()) for points in of_bodies] for axis in (0, 1))
     colours, widths = zip(*map(_look, actor.bodies[0]), strict=True)
     looks = {"colour": list(colours), "width": list(widths)}
-    paths = tuple([_plain(path[:, axis]) for path in actor.paths] for axis in (0, 1))
-    corners = tuple(map(_plain, actor.corners.T))
+    paths = [[_plain(path[:, axis]) for path in actor.paths] for axis in (0, 1)]
+    corners = [_plain(ends) for ends in actor.corners.T]
     return Film(len(times), xs, ys, looks, paths, corners, actor.scale)
 
 

@@ -72,7 +72,9 @@ class Page:
         for root in self._roots():
             document.add_root(root)
         document.title = "quietarm explore"
-        templates = Environment(loader=PackageLoader(__package__, ""), autoescape=True)
+        templates = Environment(
+            loader=PackageLoader("quietarm.studies.explore", ""), autoescape=True
+        )
         document.template = templates.get_template("page.html")
         document.template_variables["panels"] = list(TITLES)
         self._disable(False)
@@ -205,7 +207,7 @@ class Page:
                 if isinstance(field, Slider):
                     field.update(start=dials[name].least, end=dials[name].most)
                 if field.value != shown[name]:
-                    field.value = shown[name]
+                    field.update(value=shown[name])
         self._plant.value = plant_words(self._explored.task.plant)
         self._filling = False
 

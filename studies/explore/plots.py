@@ -151,7 +151,7 @@ def _of_curves(curves: Sequence[Curve]) -> Mapping[str, Any]:
 
 
 def _plot(name: str, title: str, height: int = _HIGH, tools: str = "", **more: Any) -> Any:
-    plot = figure(
+    plot: Any = figure(
         name=name, title=title, height=height, tools=tools, toolbar_location=None,
         sizing_mode="stretch_width", **more,
     )  # fmt: skip

@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import ceil, degrees
 from pathlib import Path
+from typing import Any
 
+from numpy.typing import ArrayLike
 from quietarm.models import Plant
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -65,11 +67,11 @@ class Dial:
     optional: bool = False
 
     @classmethod
-    def of(cls, words: str, unit: str, *ends: float, optional: bool = False) -> Dial:
+    def of(cls, words: str, unit: str, least: float, most: float, optional: bool = False) -> Dial:
         """A dial in the unit that is shown for this one of SI; the range is in the shown unit."""
         shown = _SHOWN.get(unit, unit)
         label = words if unit == "-" else f"{words} [{shown}]"
-        return cls(label, *ends, _FACTORS.get(unit, 1.0), optional)
+        return cls(label, least, most, _FACTORS.get(unit, 1.0), optional)
 
     def held(self, shown: float | None) -> float | None:
         """The nearest value in the range, in SI; None stays None where that may be."""
@@ -141,8 +143,8 @@ class Explored:
         return dials | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
 
     @cached_property
-    def _values(self) -> dict[str, float | None]:
-        """Values of the dials in SI."""
+    def _values(self) -> dict[str, Any]:
+        """Values of the dials in SI, None where one is empty."""
         mine = {"residual_limit": self.residual_limit, "bound": self.bound, **self.coefficients}
         known = {**self.task.plant.nominal.parameters, **vars(self.task), **mine}
         return {name: known[name] for name in self.dials}
@@ -166,13 +168,13 @@ class Explored:
             When CVODES cannot follow the motion.
         """
         held = {name: self.dials[name].held(value) for name, value in shown.items()}
-        values = self._values | held
-        coefficients = [values[name] for name in self.coefficients]
+        values: dict[str, Any] = {**self._values, **held}
+        coefficients: ArrayLike = [values[name] for name in self.coefficients]
         limits = {quantity.limit: values[quantity.limit] for quantity in QUANTITIES.values()}
         task = replace(self.task, **{name: values[name] for name in OF_MOVES}, **limits)
         method = "given coefficients"
         if self.library and not held.keys().isdisjoint(self._axes):
-            at = {name: values[name] or 0.0 for name in self._axes}
+            at = {name: values[name] for name in self._axes}
             coefficients, method = self.library.coefficients(**at), "lookup"
             task = replace(self.library.task(**at), **limits)
         plan = evaluate_coefficients(task, coefficients, profile=self.plan.profile, method=method)

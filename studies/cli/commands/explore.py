@@ -38,14 +38,14 @@ def explore(
       quietarm explore dual-link
       quietarm explore plan.json --no-browser
     """  # noqa: D301  # \b is click's: do not rewrap
+    from quietarm.studies.explore.opening import is_file, menu, of_file, of_plant
+
     try:
-        import bokeh  # noqa: F401
+        from quietarm.studies.explore.server import serve
     except ImportError:
         raise ValueError(
             "the page needs bokeh, which is not installed; install quietarm[explore]"
         ) from None
-    from quietarm.studies.explore.opening import is_file, menu, of_file, of_plant
-    from quietarm.studies.explore.server import serve
 
     if what is not None and is_file(what):
         if parameters:
