@@ -120,9 +120,7 @@ def test_the_panels_have_the_motion_its_cycloid_and_limits_that_are_near(begun):
 
 def test_the_robustness_is_that_of_the_motion(begun):
     curve, tolerated = robustness_curves(begun)
-    own = evaluate_robustness(
-        TASK, CycloidPolynomial(), np.zeros(6), {"frequency": 0.2}, samples=1
-    )
+    own = evaluate_robustness(TASK, CycloidPolynomial(), np.zeros(6), {"frequency": 0.2}, samples=1)
     assert curve.y == pytest.approx(1e3 * own.sweeps[0].figures.residual, rel=1e-3)
     assert tolerated.y == pytest.approx([1e3 * own.tolerated] * 2, rel=1e-3)
 
