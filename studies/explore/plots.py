@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from bokeh.document import Document
-from bokeh.models import ColumnDataSource, CustomJS, DataRange1d
+from bokeh.models import ColumnDataSource, CustomJS, DataRange1d, ScaleBar
 from bokeh.plotting import figure
 from quietarm.studies.display.words import residual_words
 from quietarm.studies.explore.drawn import (
@@ -25,8 +26,9 @@ _HIGH, _HIGHER = 200, 280
 _CURVE = "xs", "ys", "colour", "dash"
 _BODY = "xs", "ys", "colour", "width"
 _POINT = "residual", "energy"
-_HAND_OUT = "news.data.columns.forEach((columns, i) => { sources[i].data = columns; });"
-"""One message for all plots, so that the browser draws once."""
+_HAND_OUT = "JSON.parse(news.data.text[0]).forEach((columns, i) => { sources[i].data = columns; });"
+"""One message for all plots, so that the browser draws once; Bokeh looks at every number of a list,
+and not into a text."""
 _PLAY = """
 const play = () => {
     const {xs, ys, colour, width, frames, words} = film.data;
@@ -60,7 +62,7 @@ class Plots:
         self.roots = [self._stage(), self._tradeoff(pick)]
         self.roots.append(self._panel("robustness", "residual [mm]", "error of the frequency [%]"))
         self.roots += [self._panel(name, title, "time [s]") for name, title in TITLES.items()]
-        self._news = ColumnDataSource({"columns": []})
+        self._news = ColumnDataSource({"text": []})
         self.roots[0].tags = [self._news]  # else it would be no part of the document
         hand_out = CustomJS(args={"news": self._news, "sources": self._sources}, code=_HAND_OUT)
         self._news.js_on_change("data", hand_out)
@@ -70,17 +72,24 @@ class Plots:
         """Show another motion in all plots."""
         self._points.selected.indices = []  # so that the same point can be clicked again
         curves = [robustness_curves(explored), *panels(explored).values()]
-        self._news.data = {
-            "columns": [*_of_stage(explored), *_of_front(explored), *map(_of_curves, curves)]
-        }
+        columns = [*_of_stage(explored), *_of_front(explored), *map(_of_curves, curves)]
+        self._news.data = {"text": [json.dumps(columns)]}
 
     def _stage(self) -> Any:
         """The structure, which the browser plays by itself."""
         plot = _plot("stage", " ", height=_HIGHER, match_aspect=True)
-        plot.grid.visible = False
+        plot.grid.visible = plot.axis.visible = False
         film, paths, corners = self._source(), self._source("xs", "ys"), self._source("x", "y")
         room = plot.scatter("x", "y", source=corners, alpha=0)
-        plot.x_range, plot.y_range = (DataRange1d(renderers=[room]) for _ in "xy")
+        plot.x_range, plot.y_range = (
+            DataRange1d(renderers=[room], range_padding=0.2) for _ in "xy"
+        )
+        plot.add_layout(
+            ScaleBar(
+                range=plot.x_range, unit="m", location="bottom_right", background_fill_alpha=0,
+                border_line_alpha=0,
+            )
+        )  # fmt: skip
         plot.multi_line("xs", "ys", source=paths, color=GREY, line_width=1.5)
         shown = _empty(*_BODY)
         plot.multi_line(
