@@ -17,13 +17,11 @@ def blocks(page: str, language: str) -> list[str]:
 
 TWO_COMMANDS = [block.strip() for block in blocks("README", "console")[:2]]
 NOTEBOOK = next(block.strip() for block in blocks("README", "console") if "jupyter" in block)
-(EXPLORE,) = map(str.strip, blocks("explore", "console"))
-# the last two end with Ctrl-C; tests/studies/explore opens the page
 COMMAND_BLOCKS = {
     f"{page}-{number}": block.strip().splitlines()
     for page in PAGES
     for number, block in enumerate(blocks(page, "console"))
-    if block.strip() not in {*TWO_COMMANDS, NOTEBOOK, EXPLORE}
+    if block.strip() not in {*TWO_COMMANDS, NOTEBOOK}
 }
 """The commands of a move of one's own, block by block."""
 
