@@ -60,7 +60,7 @@ class Page:
         self._fields: dict[str, list[Any]] = {name: [] for name in explored.dials}
         self._figures = Div(name="figures", **_WIDE)
         self._plots = Plots(document, self._on_pick)
-        self._file = ColumnDataSource({"name": [], "text": []})
+        self._saved, self._file = 0, ColumnDataSource({"name": [], "text": [], "number": []})
         self._file.js_on_change("data", CustomJS(args={"file": self._file}, code=_SAVE))
         # as a tag it is part of the document
         self._said = Div(name="said", tags=[self._file], **_WIDE)
@@ -72,10 +72,8 @@ class Page:
         for root in self._roots():
             document.add_root(root)
         document.title = "quietarm explore"
-        templates = Environment(
-            loader=PackageLoader("quietarm.studies.explore", ""), autoescape=True
-        )
-        document.template = templates.get_template("page.html")
+        loader = PackageLoader("quietarm.studies", "explore")
+        document.template = Environment(loader=loader, autoescape=True).get_template("page.html")
         document.template_variables["panels"] = list(TITLES)
         self._disable(False)
         self._show()
@@ -124,14 +122,16 @@ class Page:
         if self._filling:
             return
         if not self._pending:
-            self._document.add_timeout_callback(self._set, _WAIT)
+            self._document.add_timeout_callback(self._on_time, _WAIT)
         self._pending[name] = value
 
-    def _set(self) -> None:
-        """Set what was gathered."""
+    def _on_time(self) -> None:
+        self._set()
+
+    def _set(self) -> bool:
+        """Set what was gathered; False where that cannot be."""
         pending, self._pending = self._pending, {}
-        if pending:
-            self._answer(lambda: self._explored.changed(pending))
+        return not pending or self._answer(lambda: self._explored.changed(pending))
 
     def _on_plant(self, attribute: str, old: str, new: str) -> None:
         if not self._filling:
@@ -141,21 +141,23 @@ class Page:
         self._answer(lambda: self._explored.picked(number))
 
     def _on_file(self, name: str) -> None:
-        self._set()
-        self._file.data = {"name": [name], "text": [self._explored.file(name)]}
+        if self._set():
+            self._saved += 1  # so that the same file can be saved again
+            text = self._explored.file(name)
+            self._file.data = {"name": [name], "text": [text], "number": [self._saved]}
 
     def _on_plan(self) -> None:
-        self._set()
-        self._begin(self._explored.solved, "solving ...")
+        if self._set():
+            self._begin(self._explored.solved, "solving ...")
 
     def _on_front(self) -> None:
         def report(done: int, total: int) -> None:
             words = f"front: {done} of {total} points"
             self._document.add_next_tick_callback(lambda: self._say(words))
 
-        self._set()
-        work = partial(self._explored.with_front, report)
-        self._begin(work, "front ...", "click a point of the front to see its motion")
+        if self._set():
+            work = partial(self._explored.with_front, report)
+            self._begin(work, "front ...", "click a point of the front to see its motion")
 
     def _begin(self, work: Callable[[], Explored], words: str, then: str = "") -> None:
         """Compute something beside the page, on which nothing can be set until it is there."""
@@ -176,14 +178,16 @@ class Page:
             field.disabled = at_work
         self._plant.disabled = at_work or self._explored.library is not None
 
-    def _answer(self, change: Callable[[], Explored], then: str = "") -> None:
-        """Take and show another motion in hand, or say why there is none."""
+    def _answer(self, change: Callable[[], Explored], then: str = "") -> bool:
+        """Take and show another motion in hand; False where there is none, and it is said why."""
+        before = self._explored
         try:
             self._explored = change()
             self._say(then)
         except (ValueError, QuietarmError) as error:
             self._say(str(error), RED)
         self._show()
+        return self._explored is not before
 
     def _say(self, words: str, colour: str = GREY) -> None:
         self._said.text = f'<span style="color: {colour}">{escape(words)}</span>'

@@ -86,7 +86,7 @@ def give(page, label, value):
     return field
 
 
-def test_a_slider_and_the_gradient_change_the_figures(page):
+def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     cycloid = energy(page)
     assert cycloid == pytest.approx(0.0911, abs=5e-5)  # README
     page.locator(".shape .noUi-handle").nth(1).press("ArrowLeft")
@@ -96,6 +96,10 @@ def test_a_slider_and_the_gradient_change_the_figures(page):
     api.expect(figures(page)).to_contain_text("found a local optimum")
     assert energy(page) == pytest.approx(0.0237, abs=5e-5)  # README
     api.expect(page.get_by_label("a6")).not_to_have_value("0")
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.get_by_label("plant").select_option("dual-link")
+    api.expect(figures(page)).to_contain_text("dual-link, 0 to 30 deg")
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
 def test_a_field_shows_what_is_held_and_a_line_says_what_cannot_be(page):
@@ -115,18 +119,10 @@ def test_a_click_on_the_front_shows_its_motion_and_it_is_downloaded(page):
     api.expect(said(page)).to_have_text("click a point of the front to see its motion")
     page.mouse.click(*page.evaluate(PLACE, 10))
     api.expect(figures(page)).to_contain_text(re.compile(r"residual \(F1\) 1\d\.\d mm"))
-    for name, begins in {
-        "plan.json": '{\n  "format": "quietarm-plan"', "move.csv": "time_s,", "move.c": "/* move: ",
-        "move.h": "/* move: ",
-    }.items():  # fmt: skip
+    begins = {"plan.json": '{\n  "format": "quietarm-plan"', "move.csv": "time_s,"}
+    begins |= dict.fromkeys(("move.c", "move.h"), "/* move: ")
+    for name in (*begins, "move.h"):  # the last one twice
         with page.expect_download() as download:
             button(page, name).click()
         assert download.value.suggested_filename == name
-        assert download.value.path().read_text().startswith(begins)
-
-
-def test_another_plant_moves_and_all_fits_a_phone(page):
-    page.set_viewport_size({"width": 390, "height": 844})
-    page.get_by_label("plant").select_option("dual-link")
-    api.expect(figures(page)).to_contain_text("dual-link, 0 to 30 deg")
-    assert page.evaluate("document.documentElement.scrollWidth") == 390
+        assert download.value.path().read_text().startswith(begins[name])
