@@ -47,6 +47,10 @@ TIP_SLOPE = float(_ROOT * (np.sinh(_ROOT) + np.sin(_ROOT)
 """Slope of `cantilever` at the tip: 1.3765."""
 
 
+_SHARE = np.linspace(0.0, 1.0, _POINTS)
+_BENT = cantilever(_SHARE)
+
+
 @dataclass(frozen=True, eq=False)
 class Body:
     """One part of a structure, seen from above.
@@ -114,8 +118,7 @@ def flexible_link(
     ndarray, shape (points, 2)
         Points along it, base and tip among them.
     """
-    share = np.linspace(0.0, 1.0, _POINTS)
-    bent = np.column_stack([length * share, displacement * cantilever(share)])
+    bent = np.column_stack([length * _SHARE, displacement * _BENT])
     return _placed(bent, angle, base)
 
 

@@ -30,6 +30,7 @@ COMMANDS = {
     "lookup": "Take a move from a grid, between its cells.",
     "robustness": "Show what plans leave when the plant is not the assumed one.",
     "versus": "Hold a plan against shapers and ruckig.",
+    "explore": "Change a move by hand, on a page in the browser.",
     "export": "Write a plan as C, csv, for ROS 2 or MATLAB.",
     "plants": "List plants, and what their parameters mean.",
     "problems": "List named problems with their exact fronts.",

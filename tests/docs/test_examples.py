@@ -257,7 +257,11 @@ def test_the_first_commands_run_one_after_another(tmp_path, monkeypatch, block, 
     run_block(block, tmp_path, monkeypatch, started)
 
 
-@pytest.mark.parametrize("block", [name for name in COMMAND_BLOCKS if name not in STARTED])
+CALLED = [name for name in COMMAND_BLOCKS if name not in STARTED and name != "explore-0"]
+"""The page of explore stays until Ctrl-C: tests/studies/explore opens it."""
+
+
+@pytest.mark.parametrize("block", CALLED)
 def test_the_commands_run_one_after_another(tmp_path, monkeypatch, block, called, request):
     given = request.getfixturevalue("machine")[0] if block.startswith("machine") else None
     run_block(block, tmp_path, monkeypatch, called, given)

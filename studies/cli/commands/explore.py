@@ -1,0 +1,57 @@
+"""`quietarm explore`: a page on which a move is changed by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import click
+from quietarm.models import Plant, known_plants
+from quietarm.studies.cli.plants import chosen_plant, parse_plant
+from quietarm.studies.cli.task import plant_file_option
+from quietarm.studies.cli.types import SETTING
+
+_USUAL = "single-link"
+"""The plant where none is given."""
+
+
+@click.command()
+@click.argument("what", required=False, metavar="[PLANT|plan.json|front.json|moves.zarr]")
+@plant_file_option()
+@click.option("--set", "parameters", type=SETTING, multiple=True,
+              help="Set a parameter of the PLANT, as omega=9; may be repeated.")  # fmt: skip
+@click.option("--no-browser", is_flag=True, help="Print the page's address alone.")
+def explore(
+    what: str | None,
+    plant_file: Mapping[str, type[Plant]] | None,
+    parameters: tuple[tuple[str, str], ...],
+    no_browser: bool,
+) -> None:
+    """Show a page on which a move is changed by hand, and its figures and motion at once.
+
+    It begins with the plain cycloid of a PLANT, single-link by default, with a saved plan or front,
+    or with the moves of a sweep. Only this machine reaches the page; Ctrl-C ends it.
+
+    \b
+    Examples:
+      quietarm explore
+      quietarm explore dual-link
+      quietarm explore plan.json --no-browser
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from quietarm.studies.explore.opening import is_file, menu, of_file, of_plant
+
+    try:
+        from quietarm.studies.explore.server import serve
+    except ImportError:
+        raise ValueError(
+            "the page needs bokeh, which is not installed; install quietarm[explore]"
+        ) from None
+
+    if what is not None and is_file(what):
+        if parameters:
+            raise ValueError(f"--set is for a PLANT, and {what} has its own; leave it out")
+        explored = of_file(Path(what))
+    else:
+        kind = parse_plant(what or _USUAL) if what or plant_file is None else None
+        explored = of_plant(chosen_plant(kind, plant_file, parameters))
+    serve(explored, menu(explored.task.plant, known_plants()), click.echo, not no_browser)

@@ -1,0 +1,50 @@
+"""The page's server: this machine alone reaches it, at a port that is free."""
+
+from __future__ import annotations
+
+import logging
+import webbrowser
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+
+from bokeh.document import Document
+from bokeh.server.server import Server
+from quietarm.models import Plant
+from quietarm.studies.explore.page import Page
+from quietarm.studies.explore.state import Explored
+
+
+def serve(
+    explored: Explored,
+    plants: Mapping[str, Plant],
+    tell: Callable[[str], object],
+    browser: bool = True,
+) -> None:
+    """Show the page until Ctrl-C.
+
+    Parameters
+    ----------
+    explored : Explored
+        What every visitor begins with.
+    plants : mapping of str to Plant
+        Plants that can be chosen.
+    tell : callable
+        Is told the page's address.
+    browser : bool
+        Whether a browser is opened on it.
+    """
+
+    def fill(document: Document) -> None:
+        Page(document, explored, plants)
+
+    # a page that was closed is no error
+    logging.getLogger("bokeh").setLevel(logging.ERROR)
+    server = Server({"/": fill}, port=0, address="127.0.0.1")
+    server.start()
+    address = f"http://localhost:{server.port}/"
+    tell(address)
+    if browser:
+        server.io_loop.add_callback(webbrowser.open, address)
+    with suppress(KeyboardInterrupt):
+        server.io_loop.start()
+    server.stop()

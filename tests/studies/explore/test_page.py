@@ -1,0 +1,128 @@
+"""The page in headless Chromium; without one on this machine it is not tested."""
+
+import re
+import shutil
+import signal
+import subprocess
+import sys
+
+import pytest
+
+api = pytest.importorskip("playwright.sync_api")
+CHROMIUM = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here")
+GUARD = 30
+"""Seconds after which what does not come has hung, on any machine."""
+api.expect.set_options(1e3 * GUARD)
+# Where a point of the front is on the page.
+PLACE = """number => {
+    const {id, renderers} = Bokeh.documents[0].get_model_by_name("front");
+    const view = Bokeh.index.find_one_by_id(id), {residual, energy} = renderers[1].data_source.data;
+    const {x, y} = view.canvas_view.el.getBoundingClientRect();
+    const {x_scale, y_scale} = view.frame;
+    return [x + x_scale.compute(residual[number]), y + y_scale.compute(energy[number])];
+}"""
+
+
+@pytest.fixture(scope="module")
+def address():
+    """Of the page, until Ctrl-C."""
+    line = [sys.executable, "-W", "error", "-m", "quietarm", "explore", "--no-browser"]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        said = process.stdout.readline()
+        yield said.strip()
+        process.send_signal(signal.SIGINT)
+        assert (*process.communicate(timeout=GUARD), process.returncode) == ("", "", 0)
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(address, chromium):
+    """The page as it begins; nothing is asked of another machine, and no script fails."""
+    page, wrong = chromium.new_page(viewport={"width": 1280, "height": 800}), []
+    page.set_default_timeout(1e3 * GUARD)
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.on("request", lambda request: wrong.append(request.url))
+    page.goto(address)
+    api.expect(figures(page)).to_contain_text("single-link, 0 to 30 deg in 0.8 s")
+    yield page
+    assert [one for one in wrong if not one.startswith((address, "blob:", "data:"))] == []
+    page.close()
+
+
+def figures(page):
+    return page.locator(".figures .bk-clearfix")
+
+
+def said(page):
+    return page.locator(".said .bk-clearfix")
+
+
+def energy(page):
+    return float(re.search(r"energy \(F2\) ([\d.]+) J", figures(page).inner_text())[1])
+
+
+def button(page, name):
+    return page.get_by_role("button", name=name, exact=True)
+
+
+def give(page, label, value):
+    field = page.get_by_label(label)
+    field.fill(value)
+    field.press("Enter")
+    return field
+
+
+def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
+    cycloid = energy(page)
+    assert cycloid == pytest.approx(0.0911, abs=5e-5)  # README
+    page.locator(".shape .noUi-handle").nth(1).press("ArrowLeft")
+    api.expect(figures(page)).to_contain_text("coefficients 0, -0.001, 0")
+    assert energy(page) < cycloid
+    button(page, "Plan").click()
+    api.expect(figures(page)).to_contain_text("found a local optimum")
+    assert energy(page) == pytest.approx(0.0237, abs=5e-5)  # README
+    api.expect(page.get_by_label("a6")).not_to_have_value("0")
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.get_by_label("plant").select_option("dual-link")
+    api.expect(figures(page)).to_contain_text("dual-link, 0 to 30 deg")
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+
+
+def test_a_field_shows_what_is_held_and_a_line_says_what_cannot_be(page):
+    api.expect(give(page, "target [deg]", "999")).to_have_value("360")
+    give(page, "target [deg]", "0")
+    api.expect(said(page)).to_have_text(re.compile("there is no move; change one of them"))
+    api.expect(page.get_by_label("target [deg]")).to_have_value("360")
+    give(page, "target [deg]", "30")
+    api.expect(said(page)).to_have_text("")
+    give(page, "torque [N m]", "0.01")
+    button(page, "Plan").click()
+    api.expect(said(page)).to_have_text(re.compile("feasible with the rest kept: torque limit"))
+
+
+def test_a_click_on_the_front_shows_its_motion_and_it_is_downloaded(page):
+    button(page, "Front").click()
+    api.expect(said(page)).to_have_text("click a point of the front to see its motion")
+    page.mouse.click(*page.evaluate(PLACE, 10))
+    api.expect(figures(page)).to_contain_text(re.compile(r"residual \(F1\) 1\d\.\d mm"))
+    begins = {"plan.json": '{\n  "format": "quietarm-plan"', "move.csv": "time_s,"}
+    begins |= dict.fromkeys(("move.c", "move.h"), "/* move: ")
+    for name in (*begins, "move.h"):  # the last one twice
+        with page.expect_download() as download:
+            button(page, name).click()
+        assert download.value.suggested_filename == name
+        assert download.value.path().read_text().startswith(begins[name])
