@@ -40,6 +40,9 @@ _CONFIG = {
     # On a busy machine everything takes long: dask's warnings about that are left out.
     "distributed.comm.timeouts.connect": "300s",
     "distributed.worker.multiprocessing-method": "forkserver" if _FORKED else "spawn",
+    # With dask's 64 kB arrays go back to the system all the time: a sweep took a quarter longer.
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": str(1 << 27),
+    "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": str(1 << 25),
     "distributed.nanny.pre-spawn-environ.PYTHONWARNINGS": "ignore::UserWarning",
 }
 _PACKAGES = {"distributed", "models", "ocp", "metaheuristics", "studies"}

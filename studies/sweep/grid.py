@@ -99,10 +99,11 @@ class Grid:
 
     @cached_property
     def chunk(self) -> tuple[int, ...]:
-        """Cells of a chunk along each axis."""
+        """Cells of a chunk along each axis; along one that is cut, chunks are alike."""
         sizes, room = list[int](), self.at_once
         for length in reversed(self.shape):
-            sizes.append(min(length, max(1, room)))
+            parts = -(-length // max(1, room))
+            sizes.append(-(-length // parts))
             room //= sizes[-1]
         return tuple(reversed(sizes))
 
