@@ -36,7 +36,7 @@ class NamedProblem:
     Attributes
     ----------
     name : str
-        What it is called.
+        What it is called; of a named problem its identifier, which stays.
     task : PointToPoint
         The move and its limits.
     profile : JointProfile
@@ -47,6 +47,8 @@ class NamedProblem:
         Quantity whose peak is the third objective; empty where there are two.
     peaks : tuple of float
         Limits on that peak under which the exact fronts of the other two were found.
+    version : int
+        Of move, profile, box and front; a change of any of them is another version.
     """
 
     name: str
@@ -55,6 +57,7 @@ class NamedProblem:
     bound: float
     peak: str = ""
     peaks: tuple[float, ...] = ()
+    version: int = 1
 
     def function(self, **settings: Any) -> MoveFunction:
         """It as a function of arrays; settings as for `MoveFunction`: steps and threads."""

@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +27,9 @@ from quietarm.ocp.record import Setting, settings_given, versions
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.simulation.rollout import rollout
 from quietarm.ocp.task import PointToPoint
+
+if TYPE_CHECKING:
+    import pandas
 
 LEAST_REFERENCE = 1e-3
 """Where the plain cycloid arrives nearly still, its residual is no scale for hypervolumes [m]."""
@@ -133,7 +136,7 @@ class Front(Saved):
         return np.array([point.energy for point in self.points])
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
-        """The points as columns of a table, as ``pandas.DataFrame(front.columns())`` takes them.
+        """The points as columns of a table, as `to_frame` has them.
 
         Returns
         -------
@@ -144,6 +147,12 @@ class Front(Saved):
         coefficients = np.array([point.coefficients for point in self.points]).reshape(shape)
         named = {f"a_{i + 1}": column for i, column in enumerate(coefficients.T)}
         return {"residual_m": self.residuals, "energy_J": self.energies, **named}
+
+    def to_frame(self) -> pandas.DataFrame:
+        """The points as a data frame of pandas, stillest first, with the columns of `columns`."""
+        import pandas as pd  # comes with quietarm[sweep]
+
+        return pd.DataFrame(self.columns())
 
     def save_csv(self, path: str | Path) -> None:
         """Write the points as a table: one row for each, stillest first, with every digit.

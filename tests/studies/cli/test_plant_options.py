@@ -111,7 +111,7 @@ def test_a_study_takes_the_files_plant(call):
 def test_every_command_that_takes_a_plant_or_what_was_saved_takes_the_option(call):
     takes = {name for name in COMMANDS if "--plant-file" in call(f"{name} --help")[1]}
     # These have plants of their own: the paper's, or those of the named problems.
-    assert takes == set(COMMANDS) - {"reproduce", "contest", "problems"}
+    assert takes == set(COMMANDS) - {"reproduce", "problems"}
 
 
 def test_a_parameter_of_a_plant_of_quietarms_own_is_set(call):

@@ -1,0 +1,192 @@
+"""The certificate of an exact front: what it is, and how far it was tried to be beaten."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from quietarm.metaheuristics.problems.catalogue import NamedProblem
+from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
+from quietarm.ocp import Front, FrontPoint, PointToPoint, QuietarmError
+from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.plan.solver import plan_at_samples
+from quietarm.ocp.plan.starts import first_steps
+from quietarm.ocp.plan.verification import Checked
+from quietarm.ocp.program.program import Program
+from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
+from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.record import SolveSettings, versions
+from quietarm.ocp.saved import Saved, plain
+
+CERTIFICATES = Path(__file__).parent / "certificates.json"
+_TRIED, _STARTS, _SEED = 20, 5, 2000
+"""Points that are also tried from so many random starts, others than found the front."""
+_TELLING = 1e-5
+BEATEN, DIFFERENT = 1e-4, 1e-6
+"""A certificate holds where nothing is cheaper by more than the first share of the energy, and
+CVODES gives the stated energies within the second; residuals within `STILL` more."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What is known of an exact front.
+
+    Attributes
+    ----------
+    front : str
+        Name of the front: the problem's, or of a third objective with the limit.
+    checksum : str
+        SHA-256 of move, profile, box and points.
+    points : int
+        How many there are.
+    optimiser : dict of str to str
+        Versions of what found it again for this certificate; the method is the gradient's.
+    prices : tuple of float
+        Multiplier of the residual at every point [J/m]; 0 where the solver did not confirm it.
+    energy_difference : float
+        Largest share by which CVODES gives another energy than stated.
+    residual_difference : float
+        Largest difference of the residuals [m].
+    confirmed : int
+        Points that the solver, started there, calls optimal.
+    tried : int
+        Starts that tried to beat some of the points.
+    gained : float
+        Largest share by which any solution is cheaper than its point, by CVODES and at its residual
+        and limits by their prices; 0 where none is.
+    """
+
+    front: str
+    checksum: str
+    points: int
+    prices: tuple[float, ...]
+    energy_difference: float
+    residual_difference: float
+    confirmed: int
+    tried: int
+    gained: float
+    optimiser: Mapping[str, str] = field(default_factory=versions, hash=False)
+
+    @property
+    def holds(self) -> bool:
+        """Whether what was found now is within the tolerances."""
+        same = self.energy_difference <= DIFFERENT and self.residual_difference <= STILL
+        return same and self.gained <= BEATEN
+
+
+@dataclass(frozen=True)
+class Certificates(Saved):
+    """The certificates of all named problems."""
+
+    kind: ClassVar[str] = "certificates"
+    version: ClassVar[int] = 1
+
+    entries: tuple[Certificate, ...]
+
+    @classmethod
+    def kept(cls) -> dict[str, Certificate]:
+        """Those that come with quietarm, by their fronts."""
+        return {one.front: one for one in cls.load(CERTIFICATES).entries}
+
+
+def checksum(front: Front) -> str:
+    """SHA-256 of a front's move, profile, box and points, in canonical JSON."""
+    bound = front.settings.get("bound")
+    content = [plain(front.task), plain(front.profile), bound, plain(front.points)]
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return sha256(text.encode()).hexdigest()
+
+
+def certified(
+    problem: NamedProblem, report: Callable[[str], None] = lambda name: None
+) -> list[Certificate]:
+    """Check the exact fronts of a problem anew.
+
+    Every point is evaluated by CVODES and is the start of a solve at its residual; some are solved
+    from random starts as well.
+
+    Parameters
+    ----------
+    problem : NamedProblem
+        The problem.
+    report : callable, optional
+        Called with the name of each front when it begins.
+
+    Returns
+    -------
+    list of Certificate
+        One for each of its fronts.
+    """
+    found = list[Certificate]()
+    for (name, task), front in zip(problem.tasks().items(), problem.fronts(), strict=True):
+        report(name)
+        found.append(_certified(name, task, front, problem))
+    return found
+
+
+def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProblem) -> Certificate:
+    steps = LIMITED_STEPS if task.limits else None
+    settings = SolveSettings(bound=problem.bound, steps=steps)
+    program = Program(task, front.profile, first_steps(task, front.profile, settings))
+    asks = [Ask({RESIDUAL: r if r > STILL else 0.0, **task.limits}, problem.bound)
+            for r in front.residuals.tolist()]  # fmt: skip
+    motions = [np.array(point.coefficients) for point in front.points]
+    warm = solve([Row(program, *one) for one in zip(asks, motions, strict=True)], warm=True)
+    places = np.unique(np.linspace(0, len(motions) - 1, _TRIED).astype(int)).tolist()
+    random, box = np.random.default_rng(_SEED), front.profile.start_box(problem.bound)
+    rows = [(i, Row(program, asks[i], random.uniform(*box)))
+            for i in places for _ in range(_STARTS)]  # fmt: skip
+    cold = solve([row for _, row in rows])
+    found = [*enumerate(warm.solutions), *((i, one) for (i, _), one in zip(
+        rows, cold.solutions, strict=True))]  # fmt: skip
+    solved = [(i, one) for i, one in found if one.status.solved]
+    judged = [Checked(program, _as_given(one)) for one in motions]
+    energies, residuals = (np.array([getattr(one, name) for one in judged])
+                           for name in ("energy", "residual"))  # fmt: skip
+    return Certificate(
+        front=name,
+        checksum=checksum(front),
+        points=len(motions),
+        prices=tuple(-one.slope if one.status.solved else 0.0 for one in warm.solutions),
+        energy_difference=float(np.abs(energies / front.energies - 1).max()),
+        residual_difference=float(np.abs(residuals - front.residuals).max()),
+        confirmed=sum(one.status.solved for one in warm.solutions),
+        tried=len(rows),
+        gained=max(0.0, *(_gained(program, asks[i], one, front.points[i]) for i, one in solved)),
+    )  # fmt: skip
+
+
+def _gained(program: Program, ask: Ask, found: Solution, point: FrontPoint) -> float:
+    """The share by which a solution is cheaper than a point.
+
+    By CVODES, with what its prices ask for what it passes its limits by, between the steps. Where
+    that is worth a second look, it is corrected until it passes none.
+    """
+    checked = Checked(program, found)
+    over = {name: max(0.0, checked.peak(name) - limit) for name, limit in ask.limits.items()}
+    priced = sum(found.prices.get(name, 0.0) * most for name, most in over.items())
+    gained = 1 - (checked.energy + priced) / point.energy
+    if gained < _TELLING:
+        return gained
+    settings = SolveSettings(
+        ask.limits[RESIDUAL],
+        ask.bound,
+        starts=1,
+        steps=program.steps,
+        guess=tuple(found.coefficients.tolist()),
+    )
+    try:
+        plan = plan_at_samples(program.task, program.profile, settings)
+    except QuietarmError:
+        return 0.0
+    return 1 - plan.energy / point.energy
+
+
+def _as_given(coefficients: np.ndarray) -> Solution:
+    """Coefficients that no solver gave."""
+    return Solution(coefficients, 0.0, {}, SolveStatus.NOT_OPTIMISED, 0, coefficients)

@@ -1,0 +1,54 @@
+"""The certificates of the exact fronts."""
+
+from dataclasses import replace
+
+import pytest
+from quietarm.metaheuristics import PROBLEMS, problem_of
+from quietarm.metaheuristics.problems import catalogue, certificate
+from quietarm.metaheuristics.problems.certificate import Certificates, certified, checksum
+
+KEPT = Certificates.kept()
+NAME = "single-link-30deg-0.8s-2-terms"
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_every_front_is_the_one_that_was_certified(name):
+    problem = problem_of(name)
+    for front_name, front in zip(problem.tasks(), problem.fronts(), strict=True):
+        assert KEPT[front_name].checksum == checksum(front)
+        assert KEPT[front_name].holds
+        assert len(KEPT[front_name].prices) == len(front.points) == KEPT[front_name].confirmed
+
+
+def test_multipliers_are_the_slope_of_the_front():
+    (front,) = problem_of(NAME).fronts()
+    residuals, energies = front.residuals, front.energies
+    slopes = -(energies[2:] - energies[:-2]) / (residuals[2:] - residuals[:-2])
+    inner = KEPT[NAME].prices[1:-1]
+    ratios = sorted(price / slope for price, slope in zip(inner, slopes, strict=True))
+    assert ratios[len(ratios) // 2] == pytest.approx(1.0, abs=0.01)
+
+
+def test_it_is_checked_anew(call, monkeypatch):
+    code, out, err = call(f"problems --verify {NAME} --quiet")
+    assert (code, err) == (0, "")
+    assert KEPT[NAME].checksum[:12] in out
+
+    (front,) = problem_of(NAME).fronts()
+    dearer = tuple(replace(point, energy=point.energy * 1.001) for point in front.points)
+    monkeypatch.setattr(catalogue, "_loaded", lambda path: replace(front, points=dearer))
+    (worse,) = certified(problem_of(NAME))
+    assert worse.gained == pytest.approx(1e-3, rel=0.01)
+    assert not worse.holds
+    code, _, err = call(f"problems --verify {NAME} --quiet")
+    assert code == 1
+    assert "is not what was certified" in err
+    assert certificate.BEATEN == 1e-4  # docs/problems.md states what was measured
+
+
+def test_a_front_is_a_data_frame():
+    pytest.importorskip("pandas")
+    (front,) = problem_of(NAME).fronts()
+    frame = front.to_frame()
+    assert [*frame.columns] == ["residual_m", "energy_J", "a_1", "a_2"]
+    assert frame.energy_J.is_monotonic_decreasing
