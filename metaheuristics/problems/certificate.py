@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from quietarm.metaheuristics.problems.catalogue import NamedProblem
 from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
-from quietarm.ocp import Front, FrontPoint, PointToPoint, QuietarmError
+from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.plan.solver import plan_at_samples
 from quietarm.ocp.plan.starts import first_steps
@@ -157,34 +158,38 @@ def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProble
         residual_difference=float(np.abs(residuals - front.residuals).max()),
         confirmed=sum(one.status.solved for one in warm.solutions),
         tried=len(rows),
-        gained=max(0.0, *(_gained(program, asks[i], one, front.points[i]) for i, one in solved)),
+        gained=_gained(program, front, [(i, asks[i], one) for i, one in solved]),
     )  # fmt: skip
 
 
-def _gained(program: Program, ask: Ask, found: Solution, point: FrontPoint) -> float:
-    """The share by which a solution is cheaper than a point.
+def _gained(program: Program, front: Front, found: Sequence[tuple[int, Ask, Solution]]) -> float:
+    """The largest share by which a solution is cheaper than its point; 0 where none is.
 
     By CVODES, with what its prices ask for what it passes its limits by, between the steps. Where
-    that is worth a second look, it is corrected until it passes none.
+    that is worth a second look, a solution is corrected until it passes none.
     """
+    shares = [_priced(program, ask, one, front.points[i].energy) for i, ask, one in found]
+    gained = 0.0
+    for k in np.argsort(shares)[::-1].tolist():
+        if shares[k] < max(_TELLING, gained):
+            return max(gained, min(shares[k], _TELLING))
+        i, ask, one = found[k]
+        settings = SolveSettings(
+            ask.limits[RESIDUAL], ask.bound, 1, steps=program.steps,
+            guess=tuple(one.coefficients.tolist()),
+        )  # fmt: skip
+        with suppress(QuietarmError):
+            plan = plan_at_samples(program.task, program.profile, settings)
+            gained = max(gained, 1 - plan.energy / front.points[i].energy)
+    return gained
+
+
+def _priced(program: Program, ask: Ask, found: Solution, energy: float) -> float:
+    """The share by which a solution is cheaper at the price of what it passes its limits by."""
     checked = Checked(program, found)
     over = {name: max(0.0, checked.peak(name) - limit) for name, limit in ask.limits.items()}
     priced = sum(found.prices.get(name, 0.0) * most for name, most in over.items())
-    gained = 1 - (checked.energy + priced) / point.energy
-    if gained < _TELLING:
-        return gained
-    settings = SolveSettings(
-        ask.limits[RESIDUAL],
-        ask.bound,
-        starts=1,
-        steps=program.steps,
-        guess=tuple(found.coefficients.tolist()),
-    )
-    try:
-        plan = plan_at_samples(program.task, program.profile, settings)
-    except QuietarmError:
-        return 0.0
-    return 1 - plan.energy / point.energy
+    return 1 - (checked.energy + priced) / energy
 
 
 def _as_given(coefficients: np.ndarray) -> Solution:

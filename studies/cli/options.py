@@ -10,7 +10,7 @@ from click.core import ParameterSource
 from quietarm.ocp.profiles.shapers import SHAPERS
 from quietarm.ocp.program.solving import SOLVERS
 from quietarm.studies.cli.quantities import literal, once
-from quietarm.studies.cli.types import METHOD_SETTING, WHOLE, Named, Parsed
+from quietarm.studies.cli.types import METHOD_SETTING, OUTPUT, WHOLE, Named, Parsed
 from quietarm.studies.registry.profiles import FAMILIES, POLYNOMIAL, PROFILES
 from rich.console import Console
 
@@ -144,6 +144,11 @@ def _part(text: str) -> tuple[int, int]:
     if not (slash and number.isdigit() and of.isdigit() and 1 <= int(number) <= int(of)):
         raise ValueError(f"{text!r} is no part; give the second of eight as 2/8")
     return int(number), int(of)
+
+
+latex_option = click.option(
+    "--latex", type=OUTPUT, help="Write the tables as LaTeX, with the rules of booktabs."
+)
 
 
 def part_option(pieces: str) -> Callable[[F], F]:

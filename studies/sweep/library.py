@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -185,19 +185,18 @@ class MoveLibrary:
         return found
 
     def _least(self, tasks: Sequence[PointToPoint]) -> Array:
-        """Energies of the plans of moves, NaN where one has none."""
-        settings = self.store.sweep.settings
-
-        def planned(task: PointToPoint) -> float:
-            limit, bound = settings.residual_limit, settings.bound
-            try:
-                if task.errors:
-                    return plan_move(
-                        task, self.profile, residual_limit=limit or None, bound=bound
-                    ).energy
-                moves = plan_moves([task], self.profile, residual_limit=limit, bound=bound)
-                return float(moves.energy[0])
-            except QuietarmError:
-                return math.nan
-
-        return np.array([planned(task) for task in tasks])
+        """Energies of the plans of moves, NaN where one has none; those of one plant at once."""
+        settings, least = self.store.sweep.settings, np.full(len(tasks), np.nan)
+        limit, bound = settings.residual_limit, settings.bound
+        if tasks[0].errors:
+            for k, task in enumerate(tasks):
+                with suppress(QuietarmError):
+                    plan = plan_move(task, self.profile, residual_limit=limit or None, bound=bound)
+                    least[k] = plan.energy
+            return least
+        for plant in {task.plant for task in tasks}:
+            places = [k for k, task in enumerate(tasks) if task.plant == plant]
+            some = [tasks[k] for k in places]
+            moves = plan_moves(some, self.profile, residual_limit=limit, bound=bound, starts=2)
+            least[places] = moves.energy
+        return least

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.options import latex_option, quiet_option
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import FOLDER, INPUT
 from quietarm.studies.display.progress import working
@@ -23,6 +23,7 @@ from rich.console import Console
     "--as-found", is_flag=True, help="Do not count motions between the points of a front."
 )
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
+@latex_option
 @plant_file_option(expose_value=False)
 @quiet_option
 def compare(
@@ -31,6 +32,7 @@ def compare(
     floor: bool,
     as_found: bool,
     output: Path | None,
+    latex: Path | None,
     quiet: bool,
 ) -> None:
     """Compare fronts of one task, found by any methods.
@@ -49,6 +51,7 @@ def compare(
     from quietarm.studies.cli.ending import finish
     from quietarm.studies.comparison.measures import FILL, compare_fronts
     from quietarm.studies.document.files import document_files
+    from quietarm.studies.document.latex import latex_file
     from quietarm.studies.reading.saved import load_front
     from quietarm.studies.reports.comparison import comparison_document, with_floor
 
@@ -69,4 +72,5 @@ def compare(
             trouble = QuietarmError("interrupted; the comparison is kept, without the floor")
     document = comparison_document(comparison)
     files = [] if output is None else document_files(output, document)
+    files = [*files, latex_file(latex, document)]
     finish(files, document, trouble=trouble, quiet=quiet)

@@ -9,6 +9,7 @@ import click
 from quietarm.metaheuristics.sharing.pieces import NotTriedError
 from quietarm.studies.cli.options import (
     family_option,
+    latex_option,
     method_settings_option,
     part_option,
     quiet_option,
@@ -73,6 +74,7 @@ _FEW = 6
     "--output", type=FOLDER, required=True,
     help="Folder for the runs and what they say; runs that are there are not done again.",
 )  # fmt: skip
+@latex_option
 @part_option("run")
 @workers_options
 @quiet_option
@@ -92,6 +94,7 @@ def contest(
     import_evaluations: int | None,
     explain: bool,
     output: Path,
+    latex: Path | None,
     part: tuple[int, int],
     workers: int,
     scheduler: str | None,
@@ -120,7 +123,7 @@ def contest(
     from quietarm.studies.contest.asked import Contest
     from quietarm.studies.contest.conditions import conditions
     from quietarm.studies.contest.measures import arenas_of
-    from quietarm.studies.contest.page import PLACES, report_files
+    from quietarm.studies.contest.page import PLACES, contest_document, report_files
     from quietarm.studies.contest.sentences import not_alike, wrong_claims
     from quietarm.studies.contest.statistics import why_none
     from quietarm.studies.contest.store import FOLDERS, Store, problems_of
@@ -129,6 +132,7 @@ def contest(
     from quietarm.studies.display.progress import progress, working
     from quietarm.studies.display.words import print_lines
     from quietarm.studies.document.blocks import Document, Lines
+    from quietarm.studies.document.latex import latex_file
 
     names = tuple(name.strip() for name in methods.split(","))
     for name in ("profile", "terms", "bound"):
@@ -170,8 +174,10 @@ def contest(
     notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *left_out]
     document = Document("", [*tables, *over, Lines([*filter(None, notes)])])
     page, *others = report_files(arenas, output, left_out)
+    every = contest_document(arenas, left_out)
     finish(
-        [page], document, trouble=QuietarmError(trouble) if trouble else None, quiet=quiet,
+        [page, latex_file(latex, every)], document, quiet=quiet,
+        trouble=QuietarmError(trouble) if trouble else None,
         together=Together("tables and pictures", output, others),
     )  # fmt: skip
 

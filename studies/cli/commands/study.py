@@ -10,6 +10,7 @@ import click
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import PointToPoint
 from quietarm.studies.cli.options import (
+    latex_option,
     method_settings_option,
     quiet_option,
     settings_by_method,
@@ -54,6 +55,7 @@ from rich.console import Console
     help="Compare with this front as well, as quietarm import writes one; may be repeated.",
 )  # fmt: skip
 @click.option("--fronts", type=FOLDER, help="Write every front to this folder.")
+@latex_option
 @quiet_option
 def study(
     task: PointToPoint | None,
@@ -63,6 +65,7 @@ def study(
     output: Path,
     given: Sequence[Path],
     fronts: Path | None,
+    latex: Path | None,
     quiet: bool,
     **amounts: Any,
 ) -> None:
@@ -85,10 +88,11 @@ def study(
     from quietarm.studies.display.progress import progress
     from quietarm.studies.display.words import counted
     from quietarm.studies.document.blocks import Bullets, Document
+    from quietarm.studies.document.latex import latex_file
     from quietarm.studies.paper import CONDITIONS, Case
     from quietarm.studies.reading.saved import load_front
     from quietarm.studies.study.findings import case_findings, findings
-    from quietarm.studies.study.page import front_files, page_file
+    from quietarm.studies.study.page import front_files, page_file, study_document
     from quietarm.studies.study.work import StudySettings, amount_of_work, run_study
 
     settings = StudySettings(
@@ -115,5 +119,5 @@ def study(
     together = None
     if fronts is not None:
         together = Together("fronts", fronts, front_files(result, fronts))
-    page = [page_file(result, output)]
+    page = [page_file(result, output), latex_file(latex, study_document(result))]
     finish(page, Document("", [Bullets(found)]), trouble=trouble, together=together, quiet=quiet)

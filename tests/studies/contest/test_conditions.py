@@ -13,11 +13,31 @@ from quietarm.studies.contest.store import Run, Store, problems_of
 
 import quietarm as qa
 
-QUIETARM = str(Path(sys.executable).parent / "quietarm")
 LINE = (
-    "contest single-link --target 20deg,40deg --duration 0.8 --bound 0.2 --terms 3 "
-    "--methods nsga2,multistart --runs 2 --evaluations 300 --quiet --output folder"
+    "contest single-link --target 20deg,40deg --duration 0.8 --bound 0.2 --terms 3 --quiet "
+    "--methods nsga2,multistart --runs 2 --evaluations 300 --output folder"
 )
+SCRIPT = """
+import sys
+from math import radians
+import quietarm as qa
+
+link = qa.SingleLinkManipulator()
+problems = [
+    qa.NamedProblem(
+        f"single-link-{angle}deg-0.8s", qa.PointToPoint(link, radians(angle), 0.8),
+        qa.CycloidPolynomial(3), 0.2,
+    )
+    for angle in (20, 40)
+]
+part = int(sys.argv[1]), int(sys.argv[2])
+methods = ["nsga2", "multistart"]
+qa.contest(problems, methods, "folder", runs=2, evaluations=300, part=part)
+"""
+
+
+def part(number, of):
+    return [sys.executable, "-c", SCRIPT, str(number), str(of)]
 
 
 def runs_of(folder):
@@ -27,32 +47,32 @@ def runs_of(folder):
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole")
-    subprocess.run([QUIETARM, *LINE.split()], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(part(1, 1), cwd=folder, check=True)
     return folder / "folder"
 
 
-def test_every_condition_has_its_exact_front_and_runs(whole):
-    store = Store(whole)
+def test_every_condition_has_its_exact_front_and_runs(call, folder, whole, no_pictures):
+    assert call(LINE)[0] == 0
+    store = Store(Path("folder"))
     assert {*store.yardsticks} == {"single-link-20deg-0.8s", "single-link-40deg-0.8s"}
-    assert len(store.of(Run)) == 2 * 2 * 2
     task = store.yardsticks["single-link-40deg-0.8s"].front.task
     assert (task.target, task.duration) == (pytest.approx(np.radians(40)), 0.8)
+    assert len(store.of(Run)) == 2 * 2 * 2
+    assert runs_of("folder") == runs_of(whole)
 
 
 def test_two_parts_with_a_kill_between_end_with_the_same_runs(whole, tmp_path):
-    first = [QUIETARM, *LINE.split(), "--part", "1/2"]
-    killed = subprocess.Popen(first, cwd=tmp_path, stdout=subprocess.DEVNULL)
+    killed = subprocess.Popen(part(1, 2), cwd=tmp_path)
     while killed.poll() is None and not [*tmp_path.glob("folder/runs/*/*/*.json")]:
         pass
     os.kill(killed.pid, signal.SIGKILL)
     killed.wait()
-    for part in ("1/2", "2/2"):
-        again = [QUIETARM, *LINE.split(), "--part", part]
-        subprocess.run(again, cwd=tmp_path, check=True, stdout=subprocess.DEVNULL)
+    for number in (1, 2):
+        subprocess.run(part(number, 2), cwd=tmp_path, check=True)
     assert runs_of(tmp_path / "folder") == runs_of(whole)
 
 
-def test_a_condition_that_cannot_be_is_left_out_and_it_is_said(call, folder):
+def test_a_condition_that_cannot_be_is_left_out_and_it_is_said(call, folder, no_pictures):
     code, out, err = call(
         "contest single-link --target 30deg --duration 0.3,1 --bound 0.2 --terms 2 --quiet "
         "--torque-limit 0.2 --methods nsga2 --runs 1 --evaluations 200 --output some"
