@@ -20,7 +20,7 @@ from quietarm.studies.cli.options import (
     workers_options,
 )
 from quietarm.studies.cli.task import own_grid_options
-from quietarm.studies.cli.types import FOLDER, WHOLE
+from quietarm.studies.cli.types import FOLDER, OUTPUT, WHOLE
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.sweep.grid import Grid
 from rich.console import Console
@@ -75,6 +75,8 @@ _FEW = 6
     help="Folder for the runs and what they say; runs that are there are not done again.",
 )  # fmt: skip
 @latex_option
+@click.option("--ioh", type=OUTPUT, help="Write the runs as a csv for IOHanalyzer.")
+@click.option("--coco", type=FOLDER, help="Write archives as those of COCO to this folder.")
 @part_option("run")
 @workers_options
 @quiet_option
@@ -95,6 +97,8 @@ def contest(
     explain: bool,
     output: Path,
     latex: Path | None,
+    ioh: Path | None,
+    coco: Path | None,
     part: tuple[int, int],
     workers: int,
     scheduler: str | None,
@@ -120,6 +124,7 @@ def contest(
     from quietarm.ocp import QuietarmError
     from quietarm.ocp.files import check_inside
     from quietarm.studies.cli.ending import Together, finish
+    from quietarm.studies.contest.archives import coco_files, ioh_file
     from quietarm.studies.contest.asked import Contest
     from quietarm.studies.contest.conditions import conditions
     from quietarm.studies.contest.measures import arenas_of
@@ -176,7 +181,8 @@ def contest(
     page, *others = report_files(arenas, output, left_out)
     every = contest_document(arenas, left_out)
     finish(
-        [page, latex_file(latex, every)], document, quiet=quiet,
+        [page, latex_file(latex, every), ioh_file(ioh, arenas), *coco_files(coco, arenas)],
+        document, quiet=quiet,
         trouble=QuietarmError(trouble) if trouble else None,
         together=Together("tables and pictures", output, others),
     )  # fmt: skip

@@ -1,0 +1,31 @@
+"""The runs of a contest for the tools of others."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from quietarm.studies.contest.measures import arenas_of
+from quietarm.studies.contest.store import Store
+from small_contest import LINE
+
+
+def test_runs_are_written_for_iohanalyzer_and_coco(call, copy, no_pictures):
+    code, _, err = call(f"{LINE} --output held --ioh runs.csv --coco archive")
+    assert (code, err) == (0, "")
+    arenas = arenas_of(Store(copy))
+    rows = [*csv.DictReader(Path("runs.csv").read_text().splitlines())]
+    field = arenas[0].fields[0]
+    own = [row for row in rows if (row["function"], row["algorithm"], row["run"])
+           == (arenas[0].problem, field.method, "1")]  # fmt: skip
+    assert [int(row["evaluations"]) for row in own] == field.evaluations.tolist()
+    assert [float(row["missing"]) for row in own] == pytest.approx(field.missing[0].tolist())
+
+    files = sorted(Path("archive").glob("quietarm_f*_nondominated.adat"))
+    assert len(files) == len(arenas)
+    for file in files:
+        table = np.loadtxt(file, comments="%")
+        assert (table[:2, 0] == 0).all()  # extremes
+        found = table[2:, 1:3]
+        order = np.argsort(found[:, 0])
+        assert (np.diff(found[order, 1]) < 0).all()  # none dominates another
