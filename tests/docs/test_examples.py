@@ -57,7 +57,7 @@ def test_the_short_example_plans_saves_and_draws(tmp_path):
 
 
 def test_the_command_prints_what_the_page_shows(tmp_path):
-    (shown,) = blocks("README", "text")
+    shown = blocks("README", "text")[0]
     line = next(block[0] for name, block in COMMAND_BLOCKS.items() if name.startswith("README"))
     words = [str(BIN / "quietarm"), *shlex.split(line)[1:]]
     ran = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=600)
