@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Mapping
-from contextlib import suppress
-from functools import cached_property
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp import FileFormatError
+from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.record import versions
 from quietarm.studies.sweep.asked import COEFFICIENTS, JUMP, STATES, STATUS, Sweep
 from quietarm.studies.sweep.branches import jumps
@@ -40,7 +39,10 @@ class Store:
 
     def __init__(self, path: Path) -> None:
         self.path, self._group = path, _opened(path)
-        self.sweep = Sweep.from_json(self._read("sweep"))
+        with _told(path):
+            self.sweep = Sweep.from_json(self._read("sweep"))
+            names = (*self.sweep.variables, STATUS, JUMP)
+            self._arrays: dict[str, Any] = {name: self._group[name] for name in names}
 
     @classmethod
     def of(cls, path: Path, sweep: Sweep) -> Store:
@@ -54,14 +56,11 @@ class Store:
     def _read(self, name: str) -> Any:
         return json.loads(str(self._group.attrs.get(name, "null")))
 
-    @cached_property
-    def _arrays(self) -> dict[str, Any]:
-        return {name: self._group[name] for name in (*self.sweep.variables, STATUS, JUMP)}
-
     @property
     def status(self) -> NDArray[np.int8]:
         """The numbers of `STATES` of all cells."""
-        return np.asarray(self._arrays[STATUS][...])
+        with _told(self.path / STATUS):
+            return np.asarray(self._arrays[STATUS][...])
 
     def missing(self, part: tuple[int, int] = (1, 1)) -> list[int]:
         """The chunks of a part, i of n, that are not computed."""
@@ -75,17 +74,23 @@ class Store:
         """Write a chunk; its status last, so that a killed run computes it again."""
         chunk = self.sweep.grid.chunks[number]
         shape = tuple(cut.stop - cut.start for cut in chunk)
-        for name in (*self.sweep.variables, STATUS):
-            values = found[name]
-            self._arrays[name][chunk] = values.reshape(*shape, *values.shape[1:])
+        try:
+            for name in (*self.sweep.variables, STATUS):
+                values = found[name]
+                self._arrays[name][chunk] = values.reshape(*shape, *values.shape[1:])
+        except OSError as error:  # nothing is damaged: the chunk counts as not computed
+            raise QuietarmError(
+                f"{self.path}: {error.strerror or error}; make room, and give the same line again"
+            ) from None
 
     def mark_jumps(self) -> None:
         """Mark where the least energy jumps from one motion to another, once all is computed."""
         self._arrays[JUMP][...] = jumps(self.read(COEFFICIENTS))
 
     def read(self, name: str) -> Array:
-        """All of a variable."""
-        return np.asarray(self._arrays[name][...])
+        """All of a variable; FileFormatError where a file of it is broken."""
+        with _told(self.path / name):
+            return np.asarray(self._arrays[name][...])
 
     @property
     def versions(self) -> dict[str, str]:
@@ -140,6 +145,17 @@ def lay_out(path: Path, asked: Sweep, sweep: Sweep) -> None:
 
 def _as_json(sweep: Sweep) -> dict[str, Any]:
     return json.loads(json.dumps(sweep.to_json()))
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Tell whatever zarr makes of a damaged dataset in a line."""
+    try:
+        yield
+    except Exception as error:
+        raise FileFormatError(
+            f"{path} is damaged ({type(error).__name__}); remove the dataset and sweep it again"
+        ) from None
 
 
 def _zarr() -> Any:

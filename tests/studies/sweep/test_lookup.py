@@ -124,6 +124,19 @@ def test_a_controller_gets_the_same_coefficients_and_path(call, tmp_path):
     assert [float(one) for one in printed[8:]] == pytest.approx(expected)
 
 
+@pytest.mark.parametrize("broken", ["coefficients/c/0/0/0", "zarr.json", "energy"])
+def test_a_damaged_dataset_is_told_in_one_line(call, tmp_path, broken):
+    place = tmp_path / "moves.zarr"
+    shutil.copytree("moves.zarr", place)
+    if (place / broken).is_dir():
+        shutil.rmtree(place / broken)
+    else:
+        (place / broken).write_bytes(b"{}")
+    code, out, err = call(f"lookup {place} --target 30deg --duration 0.9 --quiet")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "remove the dataset and sweep it again" in err or "is no dataset of a sweep" in err
+
+
 def test_many_moves_are_no_table(call, tmp_path):
     code, out, err = call(f"export moves.zarr --output {tmp_path / 'moves.csv'}")
     assert (code, out, err.count("\n")) == (2, "", 1)
