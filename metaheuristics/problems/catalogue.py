@@ -5,6 +5,7 @@ The fronts are files beside this one; ``quietarm problems --again`` computes the
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 FRONTS = Path(__file__).parent / "fronts"
 """The exact fronts, in a folder for each plant, where a problem with several has one of its own."""
+_FILE_NAME = re.compile(r"[^\W_][\w .+=-]*")
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,13 @@ class NamedProblem:
     peak: str = ""
     peaks: tuple[float, ...] = ()
     version: int = 1
+
+    def __post_init__(self) -> None:
+        if not _FILE_NAME.fullmatch(self.name):
+            raise ValueError(
+                f"the name {self.name!r} does not do for a problem; give letters, digits, spaces "
+                "and . + = - _ with a letter or digit first: files are called by it"
+            )
 
     def function(self, **settings: Any) -> MoveFunction:
         """It as a function of arrays; settings as for `MoveFunction`: steps and threads."""
@@ -156,7 +165,13 @@ def _loaded(path: Path) -> Front:
     return Front.load(path)
 
 
-_swept = lru_cache(maxsize=64)(swept_front)
+@lru_cache(maxsize=64)
+def _swept(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
+    """The whole front; after Ctrl-C none, as others would be measured against a part of it."""
+    front = swept_front(task, profile, bound)
+    if not front.complete:
+        raise KeyboardInterrupt
+    return front
 
 
 def problem_of(name: str) -> NamedProblem:

@@ -15,6 +15,7 @@ from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.runs.front import verified_points
 from quietarm.metaheuristics.runs.settings import search_versions
 from quietarm.ocp import Front, reference_corner
+from quietarm.ocp.checks import whole
 from quietarm.ocp.saved import Saved
 
 if TYPE_CHECKING:
@@ -95,7 +96,9 @@ class RecordedFunction(MoveFunction):
         """Candidates until now."""
         return sum(len(table) for table, *_ in self._asked)
 
-    def run(self, method: str, seed: int | None = None) -> RecordedRun:
+    def run(
+        self, method: str, seed: int | None = None, evaluations: int | None = None
+    ) -> RecordedRun:
         """What was asked until now, as a run of a method.
 
         Parameters
@@ -104,28 +107,43 @@ class RecordedFunction(MoveFunction):
             What the method is called.
         seed : int, optional
             Its seed.
+        evaluations : int, optional
+            How many candidates count, the first ones, where the library asked for more than the
+            contest gives; all by default.
 
         Raises
         ------
         ValueError
-            When nothing was asked.
+            When nothing was asked, or not so many.
         """
         if not self.evaluations:
             raise ValueError("no candidate was asked for; let the library call the function first")
+        budget = self.evaluations
+        if evaluations is not None:
+            budget = whole("evaluations", evaluations, 1, budget, "no more were asked for")
         (exact,) = self.problem.fronts()
         scale = Scale.of(exact)
-        record = Record(self.evaluations, scale, len(self.variables))
-        for asked in self._asked:
-            record.add(*asked)
+        record, seconds = Record(budget, scale, len(self.variables)), 0.0
+        for table, found, usable, after in self._asked:
+            first = slice(budget - record.spent)
+            if len(table[first]):
+                seconds = after
+                record.add(table[first], found[first], usable[first], seconds)
         front = Front(
             task=self.task, profile=self.profile,
             points=verified_points(self.task, self.profile, record.non_dominated()[0]),
             method=method, settings={"bound": self.bound}, seed=seed,
             reference=reference_corner(self.task), evaluations=record.spent,
-            versions=search_versions(), seconds=self._asked[-1][-1],
+            versions=search_versions(), seconds=seconds,
         )  # fmt: skip
         return RecordedRun(self.problem.name, front, scale, tuple(record.marks), record.visits)
 
-    def save(self, path: str | Path, method: str, seed: int | None = None) -> None:
+    def save(
+        self,
+        path: str | Path,
+        method: str,
+        seed: int | None = None,
+        evaluations: int | None = None,
+    ) -> None:
         """Write the run as a file for ``quietarm contest --import``; arguments as for `run`."""
-        self.run(method, seed).save(path)
+        self.run(method, seed, evaluations).save(path)

@@ -91,6 +91,10 @@ class Contest:
         number_of_evaluations(self.evaluations)
         if self.population is not None:
             number_of_individuals(self.population)
+        names = [problem.name for problem in self.problems]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"two problems are called {name}; give each once, by its own name")
         if not self.planned:
             raise ValueError(f"{self.left_out[0]}; give another method or problem")
 

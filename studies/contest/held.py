@@ -8,10 +8,18 @@ from pathlib import Path
 from quietarm.metaheuristics import NamedProblem
 from quietarm.metaheuristics.algorithms.settings import Value
 from quietarm.metaheuristics.sharing.workers import Workers
+from quietarm.ocp import SolverFailedError
 from quietarm.studies.contest.asked import Contest
 from quietarm.studies.contest.measures import Arena, arenas_of
 from quietarm.studies.contest.store import Store, problems_of
-from quietarm.studies.contest.work import named_files, pieces_of, run_contest, set_up
+from quietarm.studies.contest.work import (
+    failures_of,
+    named_files,
+    pieces_of,
+    run_contest,
+    set_up,
+    without_front,
+)
 
 
 def contest(
@@ -54,14 +62,15 @@ def contest(
     -------
     tuple of Arena
         A problem each, with the runs of all methods in the folder: `Field.final`, `Field.missing`,
-        `Field.expected_running_time` and others measure them. After Ctrl-C what was done.
+        `Field.expected_running_time` and others measure them. After Ctrl-C what was done. A problem
+        without an exact front is left out.
 
     Raises
     ------
     ValueError
         When something is out of range, or does not fit what the folder holds.
     QuietarmError
-        When a run or an exact front failed; the others are in the folder.
+        When a run failed, the others being in the folder; or no problem has an exact front.
     """
     chosen = tuple(
         one if isinstance(one, NamedProblem) else problems_of([one])[0] for one in problems
@@ -73,6 +82,9 @@ def contest(
     store = Store(Path(folder))
     set_up(asked, store, named_files(imports))
     done = run_contest(pieces_of(asked, store), store, asked.workers, lambda name: None)
-    for failure in done.failures.values():
+    for failure in failures_of(done).values():
         raise failure
-    return arenas_of(store)
+    arenas = arenas_of(Store(Path(folder)))  # to which other parts may have added
+    if not arenas and (reasons := without_front(done)):
+        raise SolverFailedError(reasons[0])
+    return arenas

@@ -32,6 +32,7 @@ from quietarm.studies.contest.statistics import (
 from quietarm.studies.contest.tables import (
     anytime_table,
     effects_table,
+    over_table,
     pairs_table,
     ranks_table,
     runs_table,
@@ -66,9 +67,9 @@ _RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell
 
 
 def contest_document(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> Document:
-    """The contest: what was found, a section for each problem, how it was held."""
+    """The contest: what holds over the problems, what was found, a section for each, how held."""
     methods = methods_in(arenas)
-    blocks: list[Block] = [Bullets(findings(arenas, notes), card=True)]
+    blocks: list[Block] = [over_table(arenas)] if len(arenas) > 1 else []
     tables = {"runs": runs_table(arenas), "anytime": anytime_table(arenas)}
     if not why_none(arenas):
         over = ranking_over(arenas)
@@ -76,6 +77,7 @@ def contest_document(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> Docu
         rankings = [*map(ranking_on, arenas), over]
         tables["pairs"] = pairs_table([pair for arena in arenas for pair in pairs_on(arena)])
         tables["ranks"] = ranks_table([found for found in rankings if found])
+    blocks.append(Bullets(findings(arenas, notes), card=True))
     references = bibtex(arenas).splitlines()
     how = [
         Text(methods_paragraph(arenas)),

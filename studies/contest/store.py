@@ -126,11 +126,12 @@ class Run(Saved):
 Kept = Yardstick | Run | Landscape
 K = TypeVar("K", Yardstick, Run, Landscape)
 FOLDERS: dict[str, type[Kept]] = {
-    "exact": Yardstick,
     "runs": Run,
     "imports": Run,
     "landscape": Landscape,
+    "exact": Yardstick,
 }
+"""Exact fronts are read last: another part that is at work writes one before the runs on it."""
 
 
 class Store:

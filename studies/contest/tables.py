@@ -51,7 +51,9 @@ def over_table(arenas: Sequence[Arena]) -> Table:
         for method in methods_in(arenas)
     }  # fmt: skip
     whole = [method for method, ends in known.items() if len(ends) == len(arenas)]
-    placed = np.argsort(np.argsort([known[method] for method in whole], axis=0), axis=0) + 1.0
+    middles = np.array([known[method] for method in whole])
+    above, level = (compare(middles[:, None], middles).sum(1) for compare in (np.greater, np.equal))
+    placed = above + (level + 1) / 2  # those that are equal share their places
     ranks = dict(zip(whole, placed.mean(axis=1).tolist(), strict=True)) if whole else {}
     rows: list[list[Cell]] = [
         [label_of(method), len(ends), *(100 * quartiles(ends)).tolist(), ranks.get(method)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -180,6 +180,29 @@ def run_contest(
             if place not in store.kept:  # it was on its way when Ctrl-C came
                 store.keep(answer)
     return done
+
+
+def without_front(done: Done) -> list[str]:
+    """Problems that are left out, as the gradient finds no exact front, and why."""
+    return [
+        f"{Path(str(place)).stem} is left out: {error}"
+        for place, error in done.failures.items()
+        if _is_without_front(place, error)
+    ]
+
+
+def failures_of(done: Done) -> dict[str, QuietarmError]:
+    """What failed of work that can be done, by its place."""
+    return {
+        str(place): error
+        for place, error in done.failures.items()
+        if not isinstance(error, NotTriedError) and not _is_without_front(place, error)
+    }
+
+
+def _is_without_front(place: Hashable, error: QuietarmError) -> bool:
+    # a worker that died says nothing of the problem
+    return str(place).startswith("exact/") and isinstance(error, SolverFailedError)
 
 
 def _yardstick(problem: NamedProblem, earlier: Done, say: Say) -> Yardstick:

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from quietarm.metaheuristics.sharing.pieces import NotTriedError
 from quietarm.studies.cli.options import (
     family_option,
     latex_option,
@@ -133,7 +132,13 @@ def contest(
     from quietarm.studies.contest.statistics import why_none
     from quietarm.studies.contest.store import FOLDERS, Store, problems_of
     from quietarm.studies.contest.tables import over_table, summary_table
-    from quietarm.studies.contest.work import named_files, pieces_of, run_contest, set_up
+    from quietarm.studies.contest.work import (
+        named_files,
+        pieces_of,
+        run_contest,
+        set_up,
+        without_front,
+    )
     from quietarm.studies.display.progress import progress, working
     from quietarm.studies.display.words import print_lines
     from quietarm.studies.document.blocks import Document, Lines
@@ -168,14 +173,15 @@ def contest(
         print_lines(errors, *filter(None, few))
     with progress(len(pieces), errors, quiet=quiet) as begin:
         done = run_contest(pieces, store, asked.workers, begin)
-    arenas, trouble = arenas_of(store), _why_not_whole(done, len(pieces))
+    # of the folder, to which other parts may have added
+    arenas, trouble = arenas_of(Store(output)), _why_not_whole(done, len(pieces))
     if not arenas:
         raise QuietarmError(trouble or "no run was done")
 
     shown = arenas if len(arenas) <= _FEW else ()
     tables = [block for one in shown for block in (Lines([one.problem]), summary_table(one))]
     over = [over_table(arenas)] if len(arenas) > 1 else []
-    left_out = [*asked.left_out, *_without_front(done)]
+    left_out = [*asked.left_out, *without_front(done)]
     notes = [why_none(arenas), *not_alike(arenas), *wrong_claims(arenas), *left_out]
     document = Document("", [*tables, *over, Lines([*filter(None, notes)])])
     page, *others = report_files(arenas, output, left_out)
@@ -188,23 +194,11 @@ def contest(
     )  # fmt: skip
 
 
-def _without_front(done: Done) -> list[str]:
-    """Conditions that have no exact front, and why."""
-    failures = {str(place): error for place, error in done.failures.items()}
-    return [
-        f"{Path(place).stem} is left out: {error}"
-        for place, error in failures.items()
-        if place.startswith("exact/")
-    ]
-
-
 def _why_not_whole(done: Done, pieces: int) -> str:
     """What was not done, and why; empty where all was that can be."""
-    failures = [
-        f"{piece}: {error}"
-        for piece, error in done.failures.items()
-        if not str(piece).startswith("exact/") and not isinstance(error, NotTriedError)
-    ]
+    from quietarm.studies.contest.work import failures_of
+
+    failures = [f"{piece}: {error}" for piece, error in failures_of(done).items()]
     words = [f"{done.stopped}: {len(done.answers)} of {pieces} pieces of work are done; give the "
              "same line again to go on"] if done.stopped else []  # fmt: skip
     if failures:

@@ -5,10 +5,13 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from quietarm.metaheuristics.problems import catalogue
+from quietarm.studies.contest import held
 from quietarm.studies.contest.store import Run, Store, problems_of
 
 import quietarm as qa
@@ -142,3 +145,66 @@ def test_what_was_recorded_elsewhere_is_refused(tmp_path):
         ValueError, match=r"one\.json was recorded on single-link-30deg-0\.8s-2-terms"
     ):
         qa.contest([other], ["nsga2"], tmp_path / "folder", imports=[str(tmp_path / "one.json")])
+
+
+def of_three_terms(name, duration, **limits):
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), math.radians(30), duration, **limits)
+    return qa.NamedProblem(name, task, qa.CycloidPolynomial(3), 0.2)
+
+
+def test_an_exact_front_that_was_interrupted_is_no_measure(call, folder, monkeypatch):
+    (whole,) = problems_of(["single-link-30deg-0.8s-2-terms"])[0].fronts()
+    part = replace(whole, points=whole.points[::50], complete=False)
+    monkeypatch.setattr(catalogue, "swept_front", lambda *asked: part)
+    code, _, err = call(LINE.replace("20deg,40deg", "33deg"))
+    assert (code, err.count("\n")) == (1, 1)
+    assert "interrupted: 0 of 5 pieces of work are done" in err
+    assert [*folder.rglob("*.json")] == []
+    with pytest.raises(KeyboardInterrupt):
+        of_three_terms("mine", 0.83).exact()
+
+
+def test_from_python_a_problem_without_a_front_is_left_out(folder):
+    few = {"runs": 1, "evaluations": 100}
+    problems = [of_three_terms("short", 0.3, torque_limit=0.2), of_three_terms("long", 1.0)]
+    assert [arena.problem for arena in qa.contest(problems, ["nsga2"], "two", **few)] == ["long"]
+    with pytest.raises(qa.SolverFailedError, match="short is left out: found no motion"):
+        qa.contest(problems[:1], ["nsga2"], "one", **few)
+
+
+def test_a_part_shows_what_others_have_done_meanwhile(folder, monkeypatch):
+    work, asked = held.run_contest, ([of_three_terms("mine", 1.0)], ["nsga2"], "folder")
+
+    def meanwhile(*given):
+        monkeypatch.setattr(held, "run_contest", work)
+        qa.contest(*asked, runs=2, evaluations=100, part=(2, 2))
+        return work(*given)
+
+    monkeypatch.setattr(held, "run_contest", meanwhile)
+    (arena,) = qa.contest(*asked, runs=2, evaluations=100, part=(1, 2))
+    assert [run.front.seed for run in arena.fields[0].runs] == [0, 1]
+
+
+def test_names_are_those_of_files_and_each_is_given_once(folder):
+    with pytest.raises(ValueError, match=r"the name '\.\./mine' does not do for a problem"):
+        of_three_terms("../mine", 1.0)
+    twice = [of_three_terms("mine", duration) for duration in (0.9, 1.0)]
+    with pytest.raises(ValueError, match="two problems are called mine"):
+        qa.contest(twice, ["nsga2"], "folder")
+
+
+def test_what_a_library_asked_beyond_the_contest_does_not_count():
+    (problem,) = problems_of(["single-link-30deg-0.8s-2-terms"])
+    candidates = np.random.default_rng(0).uniform(-0.2, 0.2, (130, 2))
+    just, more = problem.recorded(), problem.recorded()
+    just(candidates[:100])
+    more(candidates[:80])
+    more(candidates[80:])
+    one, other = just.run("one"), more.run("other", evaluations=100)
+    assert (other.front.evaluations, other.front.points) == (100, one.front.points)
+    assert [(m.evaluations, m.hypervolume) for m in other.marks] == [
+        (m.evaluations, m.hypervolume) for m in one.marks
+    ]
+    assert other.visits == one.visits
+    with pytest.raises(ValueError, match="evaluations is 131"):
+        more.run("other", evaluations=131)

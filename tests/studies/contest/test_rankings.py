@@ -9,6 +9,7 @@ import pytest
 from quietarm.studies.contest.measures import Arena, Field, arenas_of
 from quietarm.studies.contest.page import contest_document, report_files
 from quietarm.studies.contest.store import Store
+from quietarm.studies.contest.tables import over_table
 from quietarm.studies.document.files import page as page_of
 from small_contest import NAME, rows_of
 
@@ -119,3 +120,15 @@ def test_the_page_says_it_for_a_problem(arena, quick_pictures):
     # over one problem nothing is tested, and nothing else is named than what was
     assert "Friedman" not in text
     assert re.search(r"moocore [\d.]+, scipy [\d.]+\.", text)
+
+
+def test_over_problems_those_that_are_equal_share_their_places(arenas, quick_pictures):
+    tied = [
+        replace(one, fields=(*one.fields, replace(one.fields[0], method="gde3+polish")))
+        for one in arenas
+    ]
+    ranks = {row[0]: row[-1] for row in over_table(tied).rows}
+    assert ranks["VEPSO"] == ranks["GDE3, then polished"] == 3.5
+    assert (ranks["NSGA-II"], ranks["GDE3"]) == (1, 2)
+    text = unescape(page_of(contest_document(tied)))
+    assert text.index("in the middle run, over problems") < text.index("ends nearest")
