@@ -112,7 +112,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _run(arguments: Sequence[str] | None) -> int:
     try:
-        status = quietarm.main(arguments, prog_name="quietarm", standalone_mode=False) or 0
+        words = sys.argv[1:] if arguments is None else list(arguments)
+        status = quietarm.main(words, prog_name="quietarm", standalone_mode=False, obj=words) or 0
         sys.stdout.flush()
         return status
     except click.exceptions.NoArgsIsHelpError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
@@ -32,6 +33,11 @@ def typed(option: str) -> bool:
     """Whether the command's option of this name was typed."""
     source = click.get_current_context().get_parameter_source(option)
     return source is ParameterSource.COMMANDLINE
+
+
+def typed_line() -> str:
+    """The whole line that was typed."""
+    return shlex.join(["quietarm", *click.get_current_context().obj])
 
 
 def refuse_idle(method: str, only_for: Mapping[str, Sequence[str]], called: str = "") -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
 from itertools import groupby
@@ -20,6 +20,8 @@ from quietarm.studies.contest.store import Run, Store, Yardstick
 Array = NDArray[np.float64]
 TARGETS = (1e-2, 1e-3)
 """Shares of the exact front's hypervolume that may be missing for a target to count as reached."""
+BUDGETS = (0.1, 0.3, 1.0)
+"""Shares of a run's evaluations after which methods are held against each other."""
 _TIMES = 120
 _THIRDS = (np.arange(3000) + 0.5) / 3000
 
@@ -117,6 +119,16 @@ class Field:
         counts = np.array([astuple(run.visits or Visits()) for run in self.runs], dtype=float)
         return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
 
+    def missing_after(self, evaluations: int) -> Array:
+        """Missing share after so many evaluations, shape (runs,); all of it before the first mark.
+
+        Of results from elsewhere, of which the end alone is known, that of the end.
+        """
+        if not self.own:
+            return self.final
+        known = np.column_stack([np.ones(len(self.runs)), self.missing])
+        return known[:, np.searchsorted(self.evaluations, evaluations, side="right")]
+
     def hits(self, target: float) -> Array:
         """Evaluations after which a target was first seen reached, shape (runs,).
 
@@ -193,6 +205,12 @@ class Arena:
         first = min(field.seconds[:, 0].min() for field in self.own)
         last = max(field.seconds[:, -1].max() for field in self.own)
         return np.geomspace(max(first, 1e-4), max(last, 2e-4), _TIMES)
+
+
+def budgets_of(arenas: Sequence[Arena]) -> list[int]:
+    """Evaluations after which the methods are held against each other, the last those of a run."""
+    whole = max(run.evaluations or 0 for arena in arenas for one in arena.own for run in one.runs)
+    return [round(share * whole) for share in BUDGETS]
 
 
 def arenas_of(store: Store) -> tuple[Arena, ...]:

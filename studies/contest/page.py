@@ -31,6 +31,7 @@ from quietarm.studies.contest.statistics import (
 )
 from quietarm.studies.contest.tables import (
     anytime_table,
+    budgets_table,
     effects_table,
     over_table,
     pairs_table,
@@ -51,6 +52,7 @@ from quietarm.studies.document.blocks import (
     Text,
 )
 from quietarm.studies.document.files import page
+from quietarm.studies.document.table import Table
 
 PAGE, REFERENCES, TABLES, FIGURES = "contest.html", "references.bib", "tables", "figures"
 PLACES = (PAGE, REFERENCES, f"{TABLES}/any", f"{FIGURES}/any")
@@ -68,15 +70,9 @@ _RANKS = "Mean ranks, 1 the best; a bar joins methods that the tests do not tell
 
 def contest_document(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> Document:
     """The contest: what holds over the problems, what was found, a section for each, how held."""
-    methods = methods_in(arenas)
+    methods, over = methods_in(arenas), _over(arenas)
     blocks: list[Block] = [over_table(arenas)] if len(arenas) > 1 else []
-    tables = {"runs": runs_table(arenas), "anytime": anytime_table(arenas)}
-    if not why_none(arenas):
-        over = ranking_over(arenas)
-        blocks += [_ranks(over)] if over else []
-        rankings = [*map(ranking_on, arenas), over]
-        tables["pairs"] = pairs_table([pair for arena in arenas for pair in pairs_on(arena)])
-        tables["ranks"] = ranks_table([found for found in rankings if found])
+    blocks += [_ranks(over)] if over else []
     blocks.append(Bullets(findings(arenas, notes), card=True))
     references = bibtex(arenas).splitlines()
     how = [
@@ -85,7 +81,39 @@ def contest_document(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> Docu
         Section("References", [Lines(references)]),
     ]
     blocks += [*(section(arena, methods) for arena in arenas), Section("Methods", how)]
-    return Document(f"{counted(len(methods), 'method')} against the exact front", blocks, tables)
+    title = f"{counted(len(methods), 'method')} against the exact front"
+    return Document(title, blocks, {**_tables(arenas), "anytime": anytime_table(arenas)})
+
+
+def results_document(arenas: Sequence[Arena], command: str) -> Document:
+    """Methods on problems after parts of the evaluations, for a page that stays."""
+    over = _over(arenas)
+    blocks: list[Block] = [
+        Text(f"`{command}` makes this page anew. {methods_paragraph(arenas)}"),
+        Section(
+            "Over all problems", [over_table(arenas).turned(), *([_ranks(over)] if over else [])]
+        ),
+        *(Section(arena.problem, [budgets_table(arena).turned()]) for arena in arenas),
+        Section("Settings", [Bullets(settings_lines(arenas))]),
+    ]
+    title = f"{counted(len(methods_in(arenas)), 'method')} on {counted(len(arenas), 'problem')}"
+    return Document(title, blocks, _tables(arenas))
+
+
+def _over(arenas: Sequence[Arena]) -> Ranking | None:
+    return None if why_none(arenas) else ranking_over(arenas)
+
+
+def _tables(arenas: Sequence[Arena]) -> dict[str, Table]:
+    """Every run; and where there are enough of them, pairs of methods and ranks."""
+    if why_none(arenas):
+        return {"runs": runs_table(arenas)}
+    rankings = [*map(ranking_on, arenas), _over(arenas)]
+    return {
+        "runs": runs_table(arenas),
+        "pairs": pairs_table([pair for arena in arenas for pair in pairs_on(arena)]),
+        "ranks": ranks_table([found for found in rankings if found]),
+    }
 
 
 def section(arena: Arena, methods: Sequence[str]) -> Section:
@@ -111,6 +139,7 @@ def section(arena: Arena, methods: Sequence[str]) -> Section:
     blocks: list[Block] = [
         Text(title, soft=True),
         drawn[0],
+        budgets_table(arena),
         summary_table(arena),
         drawn[1],
         *([_ranks(found)] if found else []),

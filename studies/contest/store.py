@@ -25,11 +25,20 @@ _FILL = 2_000
 differs by 4e-6 at most, on three problems."""
 
 
+EVERY = "all"
+"""In the place of names: every problem that a contest can be held on."""
+
+
 def problems_of(names: Sequence[str]) -> tuple[NamedProblem, ...]:
-    """Problems by their names; the paper's six conditions where none is given."""
+    """Problems by their names; the paper's six conditions where none is given.
+
+    `EVERY` stands for all that have two objectives.
+    """
+    every = [problem for problem in PROBLEMS.values() if not problem.peak]
+    if tuple(names) == (EVERY,):
+        return tuple(every)
     if not names:
         wanted = [(case.task, CycloidPolynomial(), case.bound) for case in CONDITIONS]
-        every = [problem for problem in PROBLEMS.values() if not problem.peak]
         return tuple(one for one in every if (one.task, one.profile, one.bound) in wanted)
     problems = tuple(map(problem_of, dict.fromkeys(names)))
     for problem in problems:

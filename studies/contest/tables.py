@@ -9,7 +9,15 @@ from math import isfinite
 import numpy as np
 from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp.front.points import LEVELS
-from quietarm.studies.contest.measures import TARGETS, Arena, Field, methods_in, quartiles
+from quietarm.studies.contest.measures import (
+    TARGETS,
+    Arena,
+    Array,
+    Field,
+    budgets_of,
+    methods_in,
+    quartiles,
+)
 from quietarm.studies.contest.names import label_of
 from quietarm.studies.contest.statistics import ALPHA, Pair, Ranking
 from quietarm.studies.display.words import millimetres
@@ -44,25 +52,51 @@ def runs_table(arenas: Sequence[Arena]) -> Table:
 
 
 def over_table(arenas: Sequence[Arena]) -> Table:
-    """What each method ended with over several problems: quartiles of the middle runs, ranks."""
+    """What the middle run of each method misses over several problems, and the mean ranks.
+
+    After parts of the evaluations and after all; mean ranks of those that ran on every problem.
+    """
+    budgets, methods = budgets_of(arenas), methods_in(arenas)
     known = {
-        method: np.array([field.middle for arena in arenas for field in arena.fields
-                          if field.method == method])
-        for method in methods_in(arenas)
+        method: np.array([
+            [quartiles(field.missing_after(budget))[1] for budget in budgets]
+            for arena in arenas for field in arena.fields
+            if field.method == method
+        ])
+        for method in methods
     }  # fmt: skip
-    whole = [method for method, ends in known.items() if len(ends) == len(arenas)]
+    whole = [method for method in methods if len(known[method]) == len(arenas)]
     middles = np.array([known[method] for method in whole])
     above, level = (compare(middles[:, None], middles).sum(1) for compare in (np.greater, np.equal))
     placed = above + (level + 1) / 2  # those that are equal share their places
     ranks = dict(zip(whole, placed.mean(axis=1).tolist(), strict=True)) if whole else {}
-    rows: list[list[Cell]] = [
-        [label_of(method), len(ends), *(100 * quartiles(ends)).tolist(), ranks.get(method)]
-        for method, ends in known.items()
+    columns = [Column("method"), Column("problems")]
+    for budget in budgets:
+        columns += [Column(f"after {budget} [%]"), Column("  mean rank", "{:.2f}".format)]
+    rows: list[list[Cell]] = []
+    for method, ends in known.items():
+        places = ranks.get(method, [None] * len(budgets))
+        pairs = zip(map(_spread, ends.T), places, strict=True)
+        rows.append([label_of(method), len(ends), *(cell for pair in pairs for cell in pair)])
+    title = "Hypervolume missing in the middle run: median and quartiles over problems"
+    return Table(title, columns, rows)
+
+
+def _spread(shares: Array) -> str:
+    """Median and quartiles [%] of what is missing."""
+    lower, median, upper = 100 * quartiles(shares)
+    return f"{median:.3g} ({lower:.3g} to {upper:.3g})"
+
+
+def budgets_table(arena: Arena) -> Table:
+    """What each method misses on a problem after parts of its evaluations and after all."""
+    budgets = budgets_of([arena])
+    columns = [Column("method"), *(Column(f"after {budget} [%]") for budget in budgets)]
+    rows = [
+        [field.label, *(_spread(field.missing_after(budget)) for budget in budgets)]
+        for field in arena.own
     ]
-    names = "lower quartile [%]", "median [%]", "upper quartile [%]"
-    columns = [Column("method"), Column("problems"), *(Column(n, _PERCENT.format) for n in names)]
-    title = "Hypervolume missing in the middle run, over problems"
-    return Table(title, [*columns, Column("mean rank", "{:.2f}".format)], rows)
+    return Table("Hypervolume missing: median and quartiles over the runs", columns, rows)
 
 
 def anytime_table(arenas: Sequence[Arena]) -> Table:

@@ -15,6 +15,7 @@ from quietarm.studies.cli.options import (
     settings_by_method,
     terms_option,
     typed,
+    typed_line,
     warn_of_workers,
     workers_options,
 )
@@ -73,6 +74,11 @@ _FEW = 6
     "--output", type=FOLDER, required=True,
     help="Folder for the runs and what they say; runs that are there are not done again.",
 )  # fmt: skip
+@click.option(
+    "--report", type=FOLDER,
+    help="Write what each method misses after parts of the evaluations to this folder, as Markdown "
+    "with its pictures and tables.",
+)  # fmt: skip
 @latex_option
 @click.option("--ioh", type=OUTPUT, help="Write the runs as a csv for IOHanalyzer.")
 @click.option("--coco", type=FOLDER, help="Write archives as those of COCO to this folder.")
@@ -95,6 +101,7 @@ def contest(
     import_evaluations: int | None,
     explain: bool,
     output: Path,
+    report: Path | None,
     latex: Path | None,
     ioh: Path | None,
     coco: Path | None,
@@ -105,7 +112,8 @@ def contest(
 ) -> None:
     """Hold methods with equal evaluations against the exact front of each PROBLEM.
 
-    Without PROBLEM, on the six conditions of the paper; on conditions of your own where a PLANT
+    Without PROBLEM, on the six conditions of the paper, with `all` on every named problem that has
+    two objectives; on conditions of your own where a PLANT
     with --target and --duration is given: these, --start and --set may be axes, from:to:step or a
     list with commas. Every run is a file in the folder as soon
     as it is done. The same line again goes on after any stop; one with another method adds that
@@ -127,7 +135,12 @@ def contest(
     from quietarm.studies.contest.asked import Contest
     from quietarm.studies.contest.conditions import conditions
     from quietarm.studies.contest.measures import arenas_of
-    from quietarm.studies.contest.page import PLACES, contest_document, report_files
+    from quietarm.studies.contest.page import (
+        PLACES,
+        contest_document,
+        report_files,
+        results_document,
+    )
     from quietarm.studies.contest.sentences import not_alike, wrong_claims
     from quietarm.studies.contest.statistics import why_none
     from quietarm.studies.contest.store import FOLDERS, Store, problems_of
@@ -142,6 +155,7 @@ def contest(
     from quietarm.studies.display.progress import progress, working
     from quietarm.studies.display.words import print_lines
     from quietarm.studies.document.blocks import Document, Lines
+    from quietarm.studies.document.files import document_files
     from quietarm.studies.document.latex import latex_file
 
     names = tuple(name.strip() for name in methods.split(","))
@@ -186,8 +200,12 @@ def contest(
     document = Document("", [*tables, *over, Lines([*filter(None, notes)])])
     page, *others = report_files(arenas, output, left_out)
     every = contest_document(arenas, left_out)
+    results = [] if report is None else document_files(
+        report, results_document(arenas, typed_line())
+    )  # fmt: skip
     finish(
-        [page, latex_file(latex, every), ioh_file(ioh, arenas), *coco_files(coco, arenas)],
+        [page, latex_file(latex, every), ioh_file(ioh, arenas), *coco_files(coco, arenas),
+         *results],
         document, quiet=quiet,
         trouble=QuietarmError(trouble) if trouble else None,
         together=Together("tables and pictures", output, others),

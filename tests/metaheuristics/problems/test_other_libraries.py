@@ -1,5 +1,6 @@
 """The problems in the hands of other libraries."""
 
+import json
 import random
 import re
 from pathlib import Path
@@ -12,7 +13,9 @@ from scipy.optimize import differential_evolution
 TWO_TERMS = problem_of("single-link-30deg-0.8s-2-terms")
 DOCUMENT = Path(__file__).parents[3] / "docs" / "problems.md"
 BLOCKS = re.findall(r"^```python\n(.*?)^```$", DOCUMENT.read_text(), re.DOTALL | re.MULTILINE)
-(PLATYPUS,) = [block for block in BLOCKS if "platypus" in block]
+(PLATYPUS,), (STEADY,) = (
+    [block for block in BLOCKS if name in block] for name in ("platypus", "jmetal")
+)
 
 
 def test_scipy_finds_the_cheap_end():
@@ -29,12 +32,20 @@ def test_scipy_finds_the_cheap_end():
 def test_the_document_s_examples_run_as_they_stand(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     for block in BLOCKS:
-        if block != PLATYPUS:
+        if block not in (PLATYPUS, STEADY):
             exec(compile(block, str(DOCUMENT), "exec"), {})
     assert Front.load("random.json").method == "random"
     printed = capsys.readouterr().out.splitlines()
     assert any(float(line) > 0 for line in printed if re.fullmatch(r"[\d.]+", line))  # IGD+
     assert printed[-1] == "['NSGA-II', 'sampling']"
+
+
+def none_beats_the_exact_front(objectives):
+    """Those of any motion within the limits."""
+    (front,) = problem_of("arm-on-flexible-link-90deg-0.8s-limits").fronts()
+    for residual, energy in objectives:
+        beyond = [point.energy for point in front.points if point.residual >= residual]
+        assert energy >= max(beyond, default=front.cheapest().energy) * (1 - 1e-4)
 
 
 def test_platypus_searches_a_problem_with_limits():
@@ -44,7 +55,16 @@ def test_platypus_searches_a_problem_with_limits():
     exec(compile(PLATYPUS, str(DOCUMENT), "exec"), names)
     found = [solution for solution in names["algorithm"].result if solution.feasible]
     assert len(found) > 2
-    (front,) = problem_of("arm-on-flexible-link-90deg-0.8s-limits").fronts()
-    for residual, energy in (solution.objectives for solution in found):
-        beyond = [point.energy for point in front.points if point.residual >= residual]
-        assert energy >= max(beyond, default=front.cheapest().energy) * (1 - 1e-4)
+    none_beats_the_exact_front(solution.objectives for solution in found)
+
+
+def test_a_steady_state_of_jmetal_searches_it_and_is_recorded(tmp_path, monkeypatch):
+    pytest.importorskip("jmetal")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(compile(STEADY, str(DOCUMENT), "exec"), names)
+    found = [one for one in names["algorithm"].result() if min(one.constraints) >= 0]
+    assert len(found) > 2
+    none_beats_the_exact_front(one.objectives for one in found)
+    kept = json.loads((tmp_path / "steady-state.json").read_text())
+    assert kept["front"]["evaluations"] == 400  # each child is one

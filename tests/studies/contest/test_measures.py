@@ -77,6 +77,14 @@ def test_the_figures_are_those_of_the_files_by_other_code(held, arena, method):
         assert float(row["missing_median"]) == pytest.approx(median_of(shares))
 
 
+def test_after_more_evaluations_no_more_is_missing(arena):
+    for field in arena.fields:
+        after = [field.missing_after(spent) for spent in range(150)]
+        assert (np.diff(after, axis=0) <= 0).all()
+        assert (after[0] == 1).all()
+        assert after[-1].tolist() == field.final.tolist()
+
+
 def test_over_time_a_run_keeps_what_it_had(arena):
     field = arena.fields[0]
     times = np.array([0.0, field.seconds[0, 0], field.seconds[:, -1].max()])

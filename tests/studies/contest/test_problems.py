@@ -17,6 +17,7 @@ def test_without_a_name_they_are_the_papers_conditions():
     assert [problem.bound for problem in found] == [case.bound for case in CONDITIONS]
     assert {problem.profile.size for problem in found} == {6}
     assert problems_of((NAME, NAME)) == (PROBLEMS[NAME],)
+    assert {problem.name for problem in problems_of(("all",))} == PROBLEMS.keys() - {THIRD}
 
 
 def test_the_yardstick_is_the_front_that_comes_with_the_problem(held):
