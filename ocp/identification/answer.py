@@ -10,6 +10,9 @@ from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
 from quietarm.ocp.simulation.errors import with_values
 
+POOR = 0.25
+"""Share of a recording that a fit may leave; with more the plant is not what was recorded."""
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -105,13 +108,19 @@ class Identified(Saved):
         Raises
         ------
         ValueError
-            When a parameter is not told.
+            When a parameter is not told, or the plant does not move as what was recorded.
         """
+        if (left := min(part.misfit for part in self.parts)) > POOR:
+            raise ValueError(
+                f"{left:.0%} and more of the recordings is left by the plant, so that the "
+                "intervals say nothing; state errors of your own, as frequency=5%, or record anew"
+            )
         if self.untold:
             name, told = next(iter(self.untold)), [one.parameter for one in self.told]
             raise ValueError(
                 f"{name} was not told by the recordings ({self.untold[name]}); state errors of "
-                f"your own, as frequency=5%, or identify {' and '.join(told) or 'omega'} alone"
+                f"your own, as frequency=5%, or identify again with "
+                f"{' and '.join(told) or 'omega'} alone, by --free"
             )
         return {
             one.parameter: one.error

@@ -177,9 +177,10 @@ def _too_short(recordings: Sequence[Recording], frequency: float) -> ValueError:
     few = ""
     if longest < LEAST_PERIODS:
         few = f": it lasts {longest:.2g} periods of {frequency:.3g} Hz"
+    angle = "" if recordings[0].angle is not None else ", or record the joint's angle, too"
     return ValueError(
         f"{recordings[0].name} has no ring-down{few}; record the tip for two periods and more "
-        "after a push, with the joint held, or record the joint's angle, too"
+        f"after a push, with the joint held{angle}"
     )
 
 

@@ -81,6 +81,14 @@ def parse_length(text: str) -> float:
     return _with_unit(text, _LENGTHS, "a length", "metres (0.001) or 1mm")
 
 
+def parse_residual(text: str) -> float:
+    """Read a residual: beyond 0.1 m with its unit alone, as millimetres are easily meant."""
+    residual = parse_length(text)
+    if residual > 0.1 and is_number(text):
+        raise ValueError(f"{text} is in metres; were millimetres meant? give {text}mm, or {text}m")
+    return residual
+
+
 def parse_time(text: str) -> float:
     """Read a time: seconds, or with s or ms. ValueError when it is none."""
     return _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")

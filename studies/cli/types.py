@@ -18,6 +18,7 @@ from quietarm.studies.cli.quantities import (
     parse_energy,
     parse_joint_angle,
     parse_length,
+    parse_residual,
     parse_share,
     parse_state,
     parse_time,
@@ -121,6 +122,7 @@ ERROR = Parsed("name=share", parse_error)
 ENERGY = Parsed("energy", parse_energy)
 ANGLE = Parsed("angle", parse_joint_angle)
 LENGTH = Parsed("length", parse_length)
+RESIDUAL = Parsed("length", parse_residual)
 TIME = Parsed("time", parse_time)
 TORQUE = Parsed("torque", parse_torque)
 SHARE = Parsed("share", parse_share)

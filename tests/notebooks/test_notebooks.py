@@ -9,6 +9,7 @@ from notebook_files import (
     PATHS,
     code_cells,
     execute,
+    keep,
     kernel,
     pictures,
     printed,
@@ -34,7 +35,9 @@ def client():
 def both(request, client, tmp_path_factory):
     """A notebook as committed and executed anew, in a folder that is not the repository's."""
     folder = tmp_path_factory.mktemp("notebook")
-    return read(request.param), execute(request.param, folder, client), folder
+    executed = execute(request.param, folder, client)
+    keep(request.param, executed)
+    return read(request.param), executed, folder
 
 
 def kinds(notebook):

@@ -38,7 +38,7 @@ from quietarm.studies.cli.options import (
     terms_option,
 )
 from quietarm.studies.cli.task import robust_option, task_or_fastest_options
-from quietarm.studies.cli.types import LENGTH, WHOLE, Named
+from quietarm.studies.cli.types import RESIDUAL, WHOLE, Named
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import File
 from quietarm.studies.display.search_progress import search_display
@@ -59,7 +59,7 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 @terms_option
 @click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
 @click.option(
-    "--residual-limit", type=LENGTH,
+    "--residual-limit", type=RESIDUAL,
     help="Largest tip displacement after arrival; 0, the default, is at rest. With --robust the "
     "default is 5 % of how far the plain cycloid bends the tip on its way.",
 )  # fmt: skip

@@ -18,7 +18,7 @@ from quietarm.studies.cli.options import (
     workers_options,
 )
 from quietarm.studies.cli.task import task_grid_options
-from quietarm.studies.cli.types import FOLDER, LENGTH, PICTURE, WHOLE
+from quietarm.studies.cli.types import FOLDER, LENGTH, PICTURE, RESIDUAL, WHOLE
 from quietarm.studies.display.progress import progress
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import profile_of
@@ -48,7 +48,7 @@ def _check_size(grid: Grid, yes: bool) -> None:
 @family_option
 @terms_option
 @click.option("--bound", type=float, help="Largest coefficient; no bound by default.")
-@click.option("--residual-limit", type=LENGTH, default="0", show_default=True,
+@click.option("--residual-limit", type=RESIDUAL, default="0", show_default=True,
               help="Largest tip displacement after arrival; 0 is at rest, and with --robust 5 % of "
               "how far the plain cycloid bends the tip.")  # fmt: skip
 @click.option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",

@@ -11,7 +11,7 @@ from quietarm.ocp.interrupts import hear_interrupts
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option, terms_option
 from quietarm.studies.cli.task import robust_option, task_options
-from quietarm.studies.cli.types import FOLDER, LENGTH
+from quietarm.studies.cli.types import FOLDER, RESIDUAL
 from quietarm.studies.display.progress import working
 from quietarm.studies.document.files import document_files
 from quietarm.studies.registry.profiles import POLYNOMIAL, profile_of
@@ -23,7 +23,7 @@ from rich.console import Console
 @click.command()
 @task_options
 @terms_option
-@click.option("--residual-limit", type=LENGTH, help="Of the robust plan; as for quietarm plan.")
+@click.option("--residual-limit", type=RESIDUAL, help="Of the robust plan; as for quietarm plan.")
 @robust_option
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and a picture to this folder.")
 @quiet_option

@@ -4,6 +4,7 @@ import base64
 import re
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import nbformat
@@ -11,8 +12,11 @@ from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
 HERE = str(Path(__file__).parent)
-NOTEBOOKS = Path(__file__).parent.parent.parent.parent / "notebooks"
+ROOT = Path(__file__).parents[3]
+NOTEBOOKS = ROOT / "notebooks"
 PATHS = sorted(NOTEBOOKS.glob("*.ipynb"))
+EXECUTED = ROOT / "build" / "notebooks"
+"""Where a notebook is kept as it was executed last: the tests leave them there for the site."""
 
 FOLDED = re.compile(r"<details>\n<summary>Solution</summary>\n(.*?)</details>", re.DOTALL)
 """A solution, folded wherever a notebook is shown: in JupyterLab, as HTML, on slides."""
@@ -105,6 +109,28 @@ def execute(path, folder, client):
     for number, cell in enumerate(code_cells(notebook), 1):
         _keep_what_lasts(cell, number)
     return Executed(notebook, [_shown_by(cell) for cell in extra[1:]])
+
+
+def keep(path, executed):
+    """Keep an executed notebook for the site."""
+    EXECUTED.mkdir(parents=True, exist_ok=True)
+    nbformat.write(executed.notebook, EXECUTED / path.name)
+
+
+def execute_those_that_changed():
+    """Execute and keep every notebook that was not since it, or the code that it runs, changed."""
+    packages = ("models", "ocp", "metaheuristics", "studies", "quietarm")
+    code = [file for name in packages for file in (ROOT / name).rglob("*") if file.is_file()]
+    changed = max(file.stat().st_mtime for file in code if "__pycache__" not in file.parts)
+    kept = {path: path.stat().st_mtime for path in EXECUTED.glob("*.ipynb")}
+    old = [
+        path
+        for path in PATHS
+        if kept.get(EXECUTED / path.name, 0) < max(changed, path.stat().st_mtime)
+    ]
+    with kernel() as client, TemporaryDirectory() as folder:
+        for path in old:
+            keep(path, execute(path, folder, client))
 
 
 def _keep_what_lasts(cell, number):
