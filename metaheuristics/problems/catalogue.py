@@ -23,6 +23,7 @@ from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, U
 from quietarm.ocp.checks import unknown
 
 if TYPE_CHECKING:
+    from quietarm.metaheuristics.problems.certificate import Certificate
     from quietarm.metaheuristics.problems.pymoo_problem import ExactProblem
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
@@ -116,6 +117,15 @@ class NamedProblem:
     def _folder(self) -> Path:
         plant = FRONTS / self.task.plant.name
         return plant / self.name if self.peak else plant
+
+    def certificates(self) -> tuple[Certificate, ...]:
+        """What is known of its exact fronts; ValueError where it is none of `PROBLEMS`."""
+        from quietarm.metaheuristics.problems.certificate import Certificates
+
+        if not self.named:
+            raise ValueError(f"{self.name} comes without a certificate: it is no named problem")
+        kept = Certificates.kept()
+        return tuple(kept[name] for name in self.tasks())
 
     def exact(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Coefficients and objectives of the exact front.

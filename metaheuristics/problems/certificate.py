@@ -8,10 +8,9 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from quietarm.metaheuristics.problems.catalogue import NamedProblem
 from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.errors import SolveStatus
@@ -23,6 +22,9 @@ from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
 from quietarm.ocp.program.solving import Row, solve
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
+
+if TYPE_CHECKING:
+    from quietarm.metaheuristics.problems.catalogue import NamedProblem
 
 CERTIFICATES = Path(__file__).parent / "certificates.json"
 _TRIED, _STARTS, _SEED = 20, 5, 2000

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 
 import numpy as np
 from quietarm.metaheuristics.budget.run import MULTISTART, Help, parts_of
+from quietarm.metaheuristics.problems.certificate import checksum
 from quietarm.studies.comparison.staircase import objectives
 from quietarm.studies.contest.landscape import CANDIDATES, LEVEL, Landscape
 from quietarm.studies.contest.measures import Arena, Field, methods_in
@@ -25,7 +26,7 @@ from quietarm.studies.contest.tables import evaluations_words
 from quietarm.studies.display.words import counted, versions_of
 from quietarm.studies.document.prose import told
 
-_ALWAYS = ("casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment")
+_ALWAYS = ("quietarm", "abe2016", "casadi", "ipopt", "pymoo", "moocore", "numpy", "coco")
 _OF_PAIRS = ("scipy", "mannwhitney", "holm", "varghadelaney")
 
 
@@ -36,7 +37,7 @@ def bibtex(arenas: Sequence[Arena]) -> str:
     entries, methods, tested = _entries(), methods_in(arenas), _tests(arenas)
     searches = dict.fromkeys(parts_of(method_in(method))[0] for method in methods if is_own(method))
     elsewhere = [method for method in methods if not is_own(method)]
-    keys = [*_ALWAYS, *(_OF_PAIRS if tested["pairs"] else ())]
+    keys = [*_ALWAYS, "attainment", *(_OF_PAIRS if tested["pairs"] else ())]
     keys += ["kruskalwallis"] * tested["within"] + ["friedman", "demsar"] * tested["over"]
     unknown = [one for one in searches if one not in entries and one != MULTISTART]
     keys += [one for one in searches if one in entries]
@@ -47,7 +48,7 @@ def bibtex(arenas: Sequence[Arena]) -> str:
 
 def _entries() -> dict[str, str]:
     text = (files("quietarm.studies.contest") / "references.bib").read_text(encoding="utf-8")
-    entries = text.strip().split("\n\n")
+    entries = text.replace("VERSION", version("quietarm")).strip().split("\n\n")
     return {entry.partition("{")[2].partition(",")[0]: entry for entry in entries}
 
 
@@ -66,16 +67,20 @@ def findings(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> list[str]:
 
 def _headline(arena: Arena) -> str:
     """Who ends nearest to the exact front: a winner only where the tests name one."""
-    missing = _missing_words(arena.best, "its")
+    missing, among = _missing_words(arena.best, "its"), ""
+    if len(arena.alike) < len(arena.fields):
+        among = f"of the methods with {_evaluations_compared(arena)} evaluations "
     if why_none([arena]):
-        return f"{arena.best.label} ends nearest to the exact front, untested, with {missing}"
+        return (
+            f"{among}{arena.best.label} ends nearest to the exact front, untested, with {missing}"
+        )
     best, *alike = nearest(arena)
     if not alike:
-        return f"{best.label} ends nearest to the exact front, with {missing}"
+        return f"{among}{best.label} ends nearest to the exact front, with {missing}"
     stated = ", ".join(f"{one.label} ({100 * one.middle:.3g} %)" for one in (best, *alike))
     return (
-        "the tests name no winner among those that end nearest to the exact front, here with the "
-        f"hypervolume missing in their middle runs: {stated}"
+        f"no winner: {among}the tests do not tell apart those that end nearest to the exact front "
+        f"(hypervolume missing in their middle runs: {stated})"
     )
 
 
@@ -100,11 +105,15 @@ def not_alike(arenas: Sequence[Arena]) -> list[str]:
     return [
         f"{arena.problem}: {one.label} ends with {_missing_words(one, _EXACT)}. It does not "
         f"compare: its evaluations are {evaluations_words(one)}, those of the others "
-        f"{' or '.join(sorted({evaluations_words(field) for field in arena.own}))}."
+        f"{_evaluations_compared(arena)}."
         for arena in arenas
-        for one in arena.imports
+        for one in arena.fields
         if one not in arena.alike
     ]
+
+
+def _evaluations_compared(arena: Arena) -> str:
+    return " or ".join(sorted({evaluations_words(field) for field in arena.alike}))
 
 
 def wrong_claims(arenas: Sequence[Arena]) -> list[str]:
@@ -139,14 +148,16 @@ def explanation(found: Landscape) -> list[str]:
 
 def methods_paragraph(arenas: Sequence[Arena]) -> str:
     """How the contest was held, ready for a paper."""
-    runs = [run for arena in arenas for field in arena.own for run in field.runs]
+    runs = [run for arena in arenas for field in arena.fields if field.here for run in field.runs]
     methods = [method for method in methods_in(arenas) if is_own(method)]
     parts = [parts_of(method_in(method)) for method in methods]
-    imports = [
+    elsewhere = [
         f"{one.label} on {arena.problem} ({counted(len(one.runs), 'run')}, evaluations "
         f"{evaluations_words(one)})"
+        for own in (True, False)
         for arena in arenas
-        for one in arena.imports
+        for one in arena.fields
+        if not one.here and one.own is own
     ]
     exact = [arena.yardstick.scale.scaled(objectives(arena.yardstick.front)) for arena in arenas]
     (paragraph,) = told(
@@ -162,7 +173,8 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
         helps={helped.value for _, helped in parts},
         alpha=f"{100 * ALPHA:g}",
         tested=_tests(arenas),
-        imports=", ".join(imports),
+        elsewhere=", ".join(elsewhere),
+        imports=any(arena.imports for arena in arenas),
         versions=", ".join(
             [
                 *versions_of(run.front for run in runs),
@@ -184,8 +196,12 @@ def _tests(arenas: Sequence[Arena]) -> dict[str, bool]:
 
 
 def settings_lines(arenas: Sequence[Arena]) -> list[str]:
-    """The settings of every method, as its runs state them."""
-    lines = list[str]()
+    """The exact fronts and the settings of every method, as its runs state them."""
+    fronts = [(arena.problem, arena.yardstick.front) for arena in arenas]
+    lines = [
+        f"Exact front of {problem}: {len(front.points)} points, SHA-256 {checksum(front)}."
+        for problem, front in fronts
+    ]
     for method in filter(is_own, methods_in(arenas)):
         fields = [field for arena in arenas for field in arena.own if field.method == method]
         fronts = [field.runs[0].front for field in fields]

@@ -114,19 +114,6 @@ class Document:
         """Every picture, in order."""
         return list(_pictures(self.blocks))
 
-    @property
-    def tables(self) -> list[Table]:
-        """Every table, in order."""
-        return list(_tables(self.blocks))
-
-
-def _tables(blocks: Sequence[Block]) -> Iterator[Table]:
-    for block in blocks:
-        if isinstance(block, Table):
-            yield block
-        elif isinstance(block, Section):
-            yield from _tables(block.blocks)
-
 
 def _pictures(blocks: Sequence[Block]) -> Iterator[Picture]:
     for block in blocks:

@@ -59,6 +59,11 @@ def problems(
     elif not again:
         for problem in chosen:
             fronts |= zip(problem.tasks(), problem.fronts(), strict=True)
+    certified = [
+        f"{one.front}: version {problem.version}, {one.points} points, SHA-256 {one.checksum}"
+        for problem in chosen
+        for one in problem.certificates()
+    ]
     together = None
     if output is not None and fronts:
         writes = {f"{name}.json": front.save for name, front in fronts.items()}
@@ -66,7 +71,8 @@ def problems(
             "front" if len(writes) == 1 else "fronts", output, inside(output, writes)
         )
     finish(
-        [], Document("", [Lines([*map(_line, chosen)])]), trouble=trouble,
+        [], Document("", [Lines([*map(_line, chosen), *(certified if names else ())])]),
+        trouble=trouble,
         together=together, quiet=quiet,
     )  # fmt: skip
 
@@ -103,7 +109,8 @@ def _line(problem: NamedProblem) -> str:
     errors = error_words(problem.task.plant)
     limits = ", ".join(f"{name} {most:g}" for name, most in problem.task.limits.items())
     words = [
-        f"{problem.name}: {problem.profile.size} coefficients up to {problem.bound:g}",
+        f"{problem.name}: {problem.profile.size} coefficients from "
+        f"{-problem.bound:g} to {problem.bound:g}",
         f"limits {limits}" if limits else "",
         f"third objective peak {problem.peak}" if problem.peak else "",
         f"the largest residual with {errors}" if errors else "",

@@ -106,8 +106,8 @@ def test_pictures_are_those_of_every_problem_and_of_all(arenas, folder):
 
 def test_the_page_says_it_for_a_problem(arena, quick_pictures):
     text = unescape(page_of(contest_document([arena])))
-    assert "the tests name no winner among those that end nearest" in text
-    assert re.search(r"middle runs: NSGA-II \([\d.]+ %\), GDE3 \([\d.]+ %\)\.", text)
+    assert "no winner: the tests do not tell apart those that end nearest" in text
+    assert re.search(r"middle runs: NSGA-II \([\d.]+ %\), GDE3 \([\d.]+ %\)\)\.", text)
     assert "Over 15 runs. The Kruskal-Wallis test" in text
     assert f"chi2 = 9.5, p = {math.exp(-WITHIN / 2):.2g}, the methods differ at 5 %" in text
     # a square: how likely a run of the line's method misses less than one of the column's
