@@ -93,7 +93,10 @@ def results_document(arenas: Sequence[Arena], command: str) -> Document:
         Section(
             "Over all problems", [over_table(arenas).turned(), *([_ranks(over)] if over else [])]
         ),
-        *(Section(arena.problem, [budgets_table(arena).turned()]) for arena in arenas),
+        *(
+            Section(arena.problem, [budgets_table(arena).turned(), *_why(arena)])
+            for arena in arenas
+        ),
         Section("Settings", [Bullets(settings_lines(arenas))]),
     ]
     title = f"{counted(len(methods_in(arenas)), 'method')} on {counted(len(arenas), 'problem')}"
@@ -145,9 +148,14 @@ def section(arena: Arena, methods: Sequence[str]) -> Section:
         *([_ranks(found)] if found else []),
         Text(f"{none[0].upper()}{none[1:]}.") if none else effects_table(arena, pairs_on(arena)),
         visits_table(arena),
-        *([Bullets(explanation(arena.landscape))] if arena.landscape else []),
+        *_why(arena),
     ]
     return Section(arena.problem, blocks)
+
+
+def _why(arena: Arena) -> list[Block]:
+    """What makes the problem hard, where that was looked for."""
+    return [Bullets(explanation(arena.landscape))] if arena.landscape else []
 
 
 def _ranks(found: Ranking) -> Picture:
