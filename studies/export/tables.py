@@ -26,7 +26,6 @@ UNITS: Mapping[str, Mapping[str, float]] = {
     "power": {"W": 1.0, "mW": 1e3},
 }
 """What a column may hold, and its units; the first is that where none is given."""
-USUAL = ("time", "angle", "speed", "acceleration")
 
 
 def columns_of(text: str) -> dict[str, tuple[str, float]]:
