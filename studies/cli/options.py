@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import click
@@ -32,6 +32,13 @@ def typed(option: str) -> bool:
     """Whether the command's option of this name was typed."""
     source = click.get_current_context().get_parameter_source(option)
     return source is ParameterSource.COMMANDLINE
+
+
+def refuse_typed(names: Collection[str], why: str) -> None:
+    """Refuse options that were typed where they have no meaning."""
+    for one in click.get_current_context().command.params:
+        if one.name in names and typed(one.name):
+            raise ValueError(f"{one.opts[0]} {why}")
 
 
 def refuse_idle(method: str, only_for: Mapping[str, Sequence[str]], called: str = "") -> None:

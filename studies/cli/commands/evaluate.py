@@ -12,8 +12,8 @@ from quietarm.studies.cli.options import (
     profile_option,
     quiet_option,
     refuse_idle,
+    refuse_typed,
     sensitivities_option,
-    typed,
 )
 from quietarm.studies.cli.task import robust_option, task_or_path_options
 from quietarm.studies.cli.types import COEFFICIENTS
@@ -62,10 +62,7 @@ def evaluate(
       quietarm evaluate flexible-beam --set omega=3.2Hz --path recorded.csv
     """  # noqa: D301  # \b is click's: do not rewrap
     if recorded is not None:
-        for name in _NOT_OF_A_PATH:
-            if typed(name):
-                option = "sensitivities" if name == "sensitive" else name.removesuffix("_file")
-                raise click.UsageError(f"--{option} is not for a --path")
+        refuse_typed(_NOT_OF_A_PATH, "is not for a --path")
         with working("integrating", Console(stderr=True), quiet=quiet):
             path = evaluated_path(task, recorded)
         finish([], path)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from quietarm.metaheuristics.ensemble import LostSeedsError, search_many, seeds_of
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError, cross_check
+from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import (
     family_option,
@@ -42,9 +43,6 @@ from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, methods_o
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.reports.front import failure_lines, searches_document, sweep_document
 from rich.console import Console
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
@@ -227,14 +225,10 @@ def _by_gradient(
         except KeyboardInterrupt:  # the front is there
             complete = False
 
-    def picture() -> Figure:
-        from quietarm.studies.figures import sweep_figure
-
-        return sweep_figure(front)
-
     output, csv_file, figure = files
+    picture = drawing(lambda: figures.sweep_figure(front))
     finish(
-        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
+        [(output, front.save), (csv_file, front.save_csv), (figure, picture)],
         sweep_document(front, asked_for, checked),
         trouble=None if complete else interruption(),
     )
@@ -282,11 +276,6 @@ def _by_search(
             raise KeyboardInterrupt
         raise lost or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
 
-    def picture() -> Figure:
-        from quietarm.studies.figures import front_figure
-
-        return front_figure(fronts)
-
     def path_of(path: Path | None, front: Front) -> Path | None:
         """With several seeds front.json is front-seed3.json for seed 3."""
         return path.with_stem(f"{path.stem}-seed{front.seed}") if path and several else path
@@ -296,7 +285,7 @@ def _by_search(
         [
             *((path_of(output, front), front.save) for front in fronts),
             *((path_of(csv_file, front), front.save_csv) for front in fronts),
-            (figure, drawing(picture)),
+            (figure, drawing(lambda: figures.front_figure(fronts))),
         ],
         searches_document(fronts),
         trouble=lost or (QuietarmError(trouble) if trouble else None),

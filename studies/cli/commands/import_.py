@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from quietarm.ocp import PointToPoint
+from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import family_option, quiet_option
 from quietarm.studies.cli.task import task_options
@@ -18,9 +19,6 @@ from quietarm.studies.reading.importing import import_front
 from quietarm.studies.registry.profiles import FAMILIES
 from quietarm.studies.reports.front import searches_document
 from rich.console import Console
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @click.command("import")
@@ -86,11 +84,6 @@ def import_(
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
 
-    def picture() -> Figure:
-        from quietarm.studies.figures import front_figure
-
-        return front_figure([front])
-
     lines = [claim.line() for claim in claims]
     if not claims:
         lines.append(
@@ -98,7 +91,8 @@ def import_(
         )
     if found.ignored:
         lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
+    picture = drawing(lambda: figures.front_figure([front]))
     finish(
-        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
+        [(output, front.save), (csv_file, front.save_csv), (figure, picture)],
         searches_document([front], lines),
     )

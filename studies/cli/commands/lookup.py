@@ -34,13 +34,11 @@ from rich.console import Console
 @plan_file_options
 def lookup(
     moves: Path,
-    start: float | None,
-    target: float | None,
-    duration: float | None,
     parameters: tuple[tuple[str, str], ...],
     solve: bool,
     quiet: bool,
     files_of: Callable[[Plan], list[File]],
+    **asked: float | None,
 ) -> None:
     """Take a move from the DATASET of quietarm sweep, by interpolation between its cells.
 
@@ -57,7 +55,6 @@ def lookup(
         given = once(parameters, "--set ")
         units = units_of_plant(library.grid.task.plant, given)
         at = {name: parse_in(units[name], text, name) for name, text in given.items()}
-        asked = {"start": start, "target": target, "duration": duration}
         at |= {name: value for name, value in asked.items() if value is not None}
         found = library.plan(solve=solve, **at)
         between = None if found.status.solved else library.between()
