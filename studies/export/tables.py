@@ -28,26 +28,24 @@ UNITS: Mapping[str, Mapping[str, float]] = {
 """What a column may hold, and its units; the first is that where none is given."""
 
 
-def columns_of(text: str) -> dict[str, tuple[str, float]]:
+def columns_of(
+    text: str, known: Mapping[str, Mapping[str, float]] = UNITS, what: str = "column"
+) -> dict[str, tuple[str, float]]:
     """Columns as `time:ms,angle:deg,speed`: their units and the factors to these.
 
-    Raises
-    ------
-    ValueError
-        When a column or a unit is unknown, or a column comes twice.
+    ValueError where one or its unit is unknown, or one comes twice.
     """
     found: dict[str, tuple[str, float]] = {}
     for one in text.split(","):
-        name, _, unit = one.strip().partition(":")
-        if name not in UNITS:
-            raise ValueError(unknown("column", name, UNITS))
+        name, _, unit = (part.strip() for part in one.partition(":"))
+        if name not in known:
+            raise ValueError(unknown(what, name, known))
         if name in found:
-            raise ValueError(f"column {name} is given twice; give it once")
-        units = UNITS[name]
-        unit = unit or next(iter(units))
-        if unit not in units:
-            raise ValueError(unknown(f"unit of {name}", unit, units))
-        found[name] = unit, units[unit]
+            raise ValueError(f"{what} {name} is given twice; give it once")
+        unit = unit or next(iter(known[name]))
+        if unit not in known[name]:
+            raise ValueError(unknown(f"unit of {name}", unit, known[name]))
+        found[name] = unit, known[name][unit]
     return found
 
 

@@ -75,8 +75,7 @@ def import_(
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from None
     settings: dict[str, Any] = {"imported": file.name}
-    if bound is not None:
-        settings["bound"] = bound
+    settings |= {} if bound is None else {"bound": bound}
     name = method or file.stem
     with working("evaluating", Console(stderr=True), quiet=quiet):
         try:
@@ -84,11 +83,9 @@ def import_(
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
 
-    lines = [claim.line() for claim in claims]
-    if not claims:
-        lines.append(
-            "the file states neither residual nor energy in numbers: nothing to hold against"
-        )
+    lines = [claim.words for claim in claims] or [
+        "the file states neither residual nor energy in numbers: nothing to hold against"
+    ]
     if found.ignored:
         lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
     picture = drawing(lambda: figures.front_figure([front]))
