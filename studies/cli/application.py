@@ -141,7 +141,3 @@ def _complain(message: str, status: int) -> int:
     line = " ".join(message.split())
     click.echo(f"quietarm: {line}", err=True)
     return status
-
-
-if __name__ == "__main__":
-    main()

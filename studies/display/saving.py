@@ -22,14 +22,7 @@ def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
     def write(path: Path) -> None:
         from quietarm.studies.display.pictures import save_figure
 
-        try:
-            figure = draw()
-        except UnicodeDecodeError:  # what matplotlib reads when it is loaded
-            raise ValueError(
-                f"{path} cannot be drawn: matplotlibrc is no text in UTF-8; save it so, or take it "
-                "away"
-            ) from None
-        save_figure(figure, path)
+        save_figure(draw(), path)
 
     return write
 

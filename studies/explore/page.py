@@ -41,17 +41,7 @@ URL.revokeObjectURL(link.href);
 
 
 class Page:
-    """One visitor's page.
-
-    Parameters
-    ----------
-    document : Document
-        What the browser shows; it is filled here.
-    explored : Explored
-        The motion in hand.
-    plants : mapping of str to Plant
-        Plants that can be chosen, by what the menu calls them.
-    """
+    """One visitor's page: the motion in hand, and plants that can be chosen by their words."""
 
     def __init__(self, document: Document, explored: Explored, plants: Mapping[str, Plant]) -> None:
         self._document, self._explored, self._plants = document, explored, plants

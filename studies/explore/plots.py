@@ -49,12 +49,7 @@ setInterval(play, 1000 / rate);
 class Plots:
     """The structure in motion, the front, the robustness, and the quantities over time.
 
-    Parameters
-    ----------
-    document : Document
-        In whose browser they are.
-    pick : callable
-        Is told the number of a point of the front that is clicked.
+    `pick` is told the number of a point of the front that is clicked.
     """
 
     def __init__(self, document: Document, pick: Callable[[int], None]) -> None:

@@ -46,25 +46,15 @@ FILES = ("plan.json", "move.csv", "move.c", "move.h")
 
 @dataclass(frozen=True)
 class Dial:
-    """A number that is set by hand.
-
-    Attributes
-    ----------
-    label : str
-        What it is, and the unit in which it is shown.
-    least, most : float
-        Its range, in this unit.
-    factor : float
-        From SI to this unit.
-    optional : bool
-        Whether it may be empty, as a limit.
-    """
+    """A number that is set by hand: what it is and its range, in the unit that is shown."""
 
     label: str
     least: float
     most: float
     factor: float = 1.0
+    """From SI to this unit."""
     optional: bool = False
+    """Whether it may be empty, as a limit."""
 
     @classmethod
     def of(cls, words: str, unit: str, least: float, most: float, optional: bool = False) -> Dial:
@@ -82,28 +72,19 @@ class Dial:
 
 @dataclass(frozen=True, eq=False)
 class Explored:
-    """A move that is changed by hand; every change gives a new one.
-
-    Attributes
-    ----------
-    plan : Plan
-        The move and the motion in hand, with the figures of CVODES.
-    residual_limit, bound : float or None
-        What the gradient is asked for, as by `plan_move`.
-    library : MoveLibrary or None
-        Where coefficients come from when the move is changed; else they stay as they are.
-    front : Front or None
-        The front of this move, where it was asked for.
-    reach : float
-        Range of the coefficients by hand, on either side of 0.
-    """
+    """A move that is changed by hand; every change gives a new one."""
 
     plan: Plan
+    """The move and the motion in hand, with the figures of CVODES."""
     residual_limit: float | None = None
     bound: float | None = None
+    """What the gradient is asked for, as by `plan_move`."""
     library: MoveLibrary | None = None
+    """Where coefficients come from when the move is changed; else they stay as they are."""
     front: Front | None = None
+    """The front of this move, where it was asked for."""
     reach: float = 1.0
+    """Range of the coefficients by hand, on either side of 0."""
 
     def __post_init__(self) -> None:
         furthest = max(map(abs, self.plan.coefficients), default=0.0)
@@ -160,12 +141,7 @@ class Explored:
     def changed(self, shown: Mapping[str, float | None]) -> Explored:
         """The same with some dials set, each held within its range.
 
-        Raises
-        ------
-        ValueError
-            When there is no such move, or the library has none.
-        SolverFailedError
-            When CVODES cannot follow the motion.
+        It raises ValueError where there is no such move, or the library has none.
         """
         held = {name: self.dials[name].held(value) for name, value in shown.items()}
         values: dict[str, Any] = {**self._values, **held}

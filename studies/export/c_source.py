@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 
 import casadi as ca
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.studies.display.templates import templates
 from quietarm.studies.display.words import move_of, plant_words
 
 _OPERATIONS = {
@@ -53,13 +53,12 @@ def rendered(
     template: str, name: str, variables: Sequence[str], lines: Sequence[str], **words: object
 ) -> tuple[str, str]:
     """Header and source of a template beside this file."""
-    texts = Environment(
-        loader=PackageLoader("quietarm.studies", "export/c"), trim_blocks=True,
-        keep_trailing_newline=True, undefined=StrictUndefined,
-    )  # fmt: skip
+    texts = templates(keep_trailing_newline=True)
     texts.filters.update(c=number, row=lambda values: ", ".join(map(number, values)))
     words |= {"name": name, "guard": name.upper(), "variables": variables, "lines": lines}
-    header, source = (texts.get_template(f"{template}.{kind}").render(words) for kind in "hc")
+    header, source = (
+        texts.get_template(f"export/c/{template}.{kind}").render(words) for kind in "hc"
+    )
     return header, source
 
 

@@ -33,40 +33,21 @@ _LEAST_SHARE = 0.02
 
 @dataclass(frozen=True)
 class Rival:
-    """What one way to move makes of a move.
-
-    Attributes
-    ----------
-    name : str
-        What it is called.
-    motion : Motion or None
-        Its figures, by CVODES on the assumed plant; None where it cannot be.
-    worst : float or None
-        The largest residual within the errors [m]; None where there are no errors.
-    why : str
-        Why it cannot be.
-    """
+    """What one way to move makes of a move: its figures by CVODES, or why it cannot be."""
 
     name: str
     motion: Motion | None = None
     worst: float | None = None
+    """The largest residual within the errors [m]; None where there are none."""
     why: str = ""
 
 
 def rivals(
     task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
 ) -> Iterator[Rival]:
-    """Every way to make a move, one after another.
+    """Every way to make a move, one after another; with errors of the plant a robust plan, too.
 
-    Parameters
-    ----------
-    task : PointToPoint
-        The move. Of an uncertain plant there is a robust plan as well, and the worst within its
-        errors; limits are for the plans and for ruckig.
-    profile : JointProfile
-        Of the plans.
-    residual_limit : float, optional
-        Of the robust plan; see `plan_move`.
+    The residual limit is of that; those of the task are for the plans and for ruckig.
     """
     certain = task.nominal
     yield _planned("plan", task, lambda: plan_move(certain, profile))
@@ -116,10 +97,7 @@ def _impulses(task: PointToPoint, shaper: str) -> Impulses:
 def ruckig_motion(task: PointToPoint) -> FreeMotion:
     """The motion of constant jerk that ruckig finds within a task's limits, in its duration.
 
-    Raises
-    ------
-    ValueError
-        When ruckig is not installed, the task limits no acceleration, or the duration is too short.
+    ValueError where ruckig is not installed, the task limits no acceleration, or time is too short.
     """
     try:
         from ruckig import InputParameter, Ruckig, Trajectory

@@ -6,5 +6,5 @@
 void {{ name }}_at(double time, double *angle, double *speed, double *acceleration)
 {
 {% set start, target, duration = guard ~ "_START", guard ~ "_TARGET", guard ~ "_DURATION" %}
-{% include "path.c" %}
+{% include "export/c/path.c" %}
 }
