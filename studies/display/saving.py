@@ -27,11 +27,16 @@ def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
     return write
 
 
-def inside(folder: Path, writes: Mapping[str, Callable[[Path], object]]) -> list[File]:
-    """Files of a folder by their names; the folder is made when the first is written."""
+def inside(folder: Path | None, writes: Mapping[str, Callable[[Path], object]]) -> list[File]:
+    """Files of a folder by their names; the folder is made when the first is written.
+
+    None where no folder was asked for.
+    """
 
     def write_inside(write: Callable[[Path], object], path: Path) -> None:
-        folder.mkdir(exist_ok=True)
+        path.parent.mkdir(exist_ok=True)
         write(path)
 
-    return [(folder / name, partial(write_inside, write)) for name, write in writes.items()]
+    return [
+        (folder and folder / name, partial(write_inside, write)) for name, write in writes.items()
+    ]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def document_files(folder: Path, document: Document) -> list[File]:
+def document_files(folder: Path | None, document: Document) -> list[File]:
     """The report, a CSV file for each table of its data, and its pictures; what writes each."""
     writes: dict[str, Callable[[Path], object]] = {
         "report.md": lambda path: write_whole(path, markdown(document))

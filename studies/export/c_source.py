@@ -57,7 +57,7 @@ def rendered(
     texts.filters.update(c=number, row=lambda values: ", ".join(map(number, values)))
     words |= {"name": name, "guard": name.upper(), "variables": variables, "lines": lines}
     header, source = (
-        texts.get_template(f"export/c/{template}.{kind}").render(words) for kind in "hc"
+        texts.get_template(f"export/templates/{template}.{kind}").render(words) for kind in "hc"
     )
     return header, source
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from quietarm.ocp import Plan, Trajectory
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.plan.answer import ticks_of_move
+from quietarm.studies.display.templates import templates
 
 Array = NDArray[np.float64]
 _ANGLE = {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi}
@@ -99,25 +100,15 @@ def mat_bytes(columns: Mapping[str, Array], facts: Mapping[str, Any]) -> bytes:
 def ros_text(plan: Plan, joint: str, rate: float) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, for one joint."""
     motion = sampled(plan, rate)
-    lines = ["joint_names:", f"- {_quoted(joint)}", "points:"]
-    for time, (angle, speed, acceleration) in zip(motion.time, motion.joint, strict=True):
-        seconds, nanoseconds = divmod(round(time * 1e9), 1_000_000_000)
-        lines += [
-            f"- positions: [{_decimal(angle)}]",
-            f"  velocities: [{_decimal(speed)}]",
-            f"  accelerations: [{_decimal(acceleration)}]",
-            "  time_from_start:",
-            f"    sec: {seconds}",
-            f"    nanosec: {nanoseconds}",
-        ]
-    return "\n".join([*lines, ""])
+    points = [
+        (divmod(round(time * 1e9), 1_000_000_000), map(_decimal, moving))
+        for time, moving in zip(motion.time, motion.joint, strict=True)
+    ]
+    name = joint.replace("'", "''")  # as YAML reads it back
+    texts = templates(keep_trailing_newline=True)
+    return texts.get_template("export/templates/move.yaml").render(joint=f"'{name}'", points=points)
 
 
 def _decimal(value: float) -> str:
     """Twelve digits with a point: ROS takes no whole number for a real one."""
     return repr(float(f"{value:.12g}"))
-
-
-def _quoted(name: str) -> str:
-    """A name as YAML reads it back."""
-    return "'" + name.replace("'", "''") + "'"

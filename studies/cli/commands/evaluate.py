@@ -40,9 +40,7 @@ _NOT_OF_A_PATH = ("coefficients", "profile", "sensitive", "output", "csv_file", 
 @sensitivities_option
 @quiet_option
 @plan_file_options
-@click.pass_context
 def evaluate(
-    context: click.Context,
     task: PointToPoint,
     recorded: RecordedPath | None,
     profile: str,
@@ -69,8 +67,7 @@ def evaluate(
         return
     refuse_idle(profile, {"coefficients": list(FAMILIES)})
     if profile in FAMILIES and coefficients is None:
-        (option,) = (one for one in context.command.params if one.name == "coefficients")
-        raise click.MissingParameter(ctx=context, param=option)
+        raise click.UsageError("Missing option '--coefficients'.")
     numbers = coefficients or []
     family = FAMILIES.get(profile)
     motions = family.of_size(len(numbers)) if family else profile_of(profile, task)

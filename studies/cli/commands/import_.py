@@ -70,15 +70,12 @@ def import_(
                 f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
                 f"{size}; leave --terms out{turned}"
             )
-    try:
-        motions = FAMILIES[profile].of_size(columns)
-    except ValueError as error:
-        raise ValueError(f"{file}: {error}") from None
     settings: dict[str, Any] = {"imported": file.name}
     settings |= {} if bound is None else {"bound": bound}
     name = method or file.stem
     with working("evaluating", Console(stderr=True), quiet=quiet):
         try:
+            motions = FAMILIES[profile].of_size(columns)
             front, claims = import_front(task, motions, found, name, settings, evaluations)
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None

@@ -76,8 +76,7 @@ def robustness(
     if len(figured) < len(plans):
         trouble = interruption(f"{len(figured)} of {len(plans)} plans")
     document = robustness_document(figured)
-    files = [] if output is None else document_files(output, document)
-    finish(files, document, trouble=trouble, quiet=quiet)
+    finish(document_files(output, document), document, trouble=trouble, quiet=quiet)
 
 
 def _parted(

@@ -6,5 +6,5 @@
 void {{ name }}_at(double time, double *angle, double *speed, double *acceleration)
 {
 {% set start, target, duration = guard ~ "_START", guard ~ "_TARGET", guard ~ "_DURATION" %}
-{% include "export/c/path.c" %}
+{% include "export/templates/path.c" %}
 }

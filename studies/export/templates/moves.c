@@ -82,5 +82,5 @@ void {{ name }}_at(const double coefficients[{{ size }}]{% for name in move_axes
     const double {{ name }} = {{ value | c }};
 {% endfor %}
 {% set start, target, duration = "start", "target", "duration" %}
-{% include "export/c/path.c" %}
+{% include "export/templates/path.c" %}
 }
