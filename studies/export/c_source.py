@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import casadi as ca
 from quietarm.ocp import Plan
@@ -54,7 +54,7 @@ def rendered(
 ) -> tuple[str, str]:
     """Header and source of a template beside this file."""
     texts = templates(keep_trailing_newline=True)
-    texts.filters.update(c=number, row=lambda values: ", ".join(map(number, values)))
+    texts.filters.update(c=number, row=_row)
     words |= {"name": name, "guard": name.upper(), "variables": variables, "lines": lines}
     header, source = (
         texts.get_template(f"export/templates/{template}.{kind}").render(words) for kind in "hc"
@@ -94,3 +94,7 @@ def statements(profile: JointProfile, inputs: Sequence[str]) -> tuple[list[str],
 def number(value: float) -> str:
     """A constant of C with every digit."""
     return repr(float(value))
+
+
+def _row(values: Iterable[float]) -> str:
+    return ", ".join(map(number, values))
