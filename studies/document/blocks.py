@@ -112,30 +112,19 @@ class Document:
     @property
     def pictures(self) -> list[Picture]:
         """Every picture, in order."""
-        return list(_pictures(self.blocks))
+        return [block for block in _flat(self.blocks) if isinstance(block, Picture)]
 
     @property
     def tables(self) -> list[Table]:
         """Every table, in order."""
-        return list(_tables(self.blocks))
+        return [block for block in _flat(self.blocks) if isinstance(block, Table)]
 
 
-def _tables(blocks: Sequence[Block]) -> Iterator[Table]:
-    for block in blocks:
-        if isinstance(block, Table):
-            yield block
-        elif isinstance(block, Section):
-            yield from _tables(block.blocks)
-
-
-def _pictures(blocks: Sequence[Block]) -> Iterator[Picture]:
+def _flat(blocks: Sequence[Block]) -> Iterator[Block]:
+    """Blocks, those of sections and grids in the place of these."""
     for block in blocks:
         match block:
-            case Picture():
-                yield block
-            case Grid(pictures):
-                yield from pictures
-            case Section(_, inner):
-                yield from _pictures(inner)
+            case Section(_, inner) | Grid(inner):
+                yield from _flat(inner)
             case _:
-                pass
+                yield block

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,6 @@ from quietarm.ocp import (
     plan_after,
     plan_move,
 )
-from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.plan.robust import limit_of
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.files import plan_file_options
@@ -174,26 +172,24 @@ def _by_search(
         point = front.cheapest(limit)
     except ValueError as error:
         raise SolverFailedError(f"{METHODS[method].label} found no such plan: {error}") from None
-    used, stopped = {**front.settings, "seed": seed, "residual_limit": limit}, None
-    if polish:
-        try:
-            polished = plan_move(
-                task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
-                guess=point.coefficients,
-            )  # fmt: skip
-        except KeyboardInterrupt:
-            stopped = "the search, before its point was polished"
-        else:
-            provenance = replace(
-                polished.provenance,
-                method=f"{method}, polished by ipopt",
-                search=used,
-                seconds=front.seconds + polished.provenance.seconds,
-            )
-            return replace(polished, provenance=provenance)
-    with note_interrupts() if stopped else nullcontext():
-        found = evaluate_coefficients(
-            task, point.coefficients, profile=profile, method=method, settings=used
-        )
-    provenance = replace(found.provenance, seconds=front.seconds, stopped=stopped)
-    return replace(found, provenance=provenance)
+    used = {**front.settings, "seed": seed, "residual_limit": limit}
+    found = evaluate_coefficients(
+        task, point.coefficients, profile=profile, method=method, settings=used
+    )
+    found = _told(found, seconds=front.seconds)
+    if not polish:
+        return found
+    try:
+        polished = plan_move(
+            task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
+            guess=point.coefficients,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        return _told(found, stopped="the search, before its point was polished")
+    seconds = front.seconds + polished.provenance.seconds
+    return _told(polished, method=f"{method}, polished by ipopt", search=used, seconds=seconds)
+
+
+def _told(plan: Plan, **changes: Any) -> Plan:
+    """The same plan with another record of how it was found."""
+    return replace(plan, provenance=replace(plan.provenance, **changes))
