@@ -37,8 +37,7 @@ _ANGLE, _SHORTEST, _LONGEST = 360.0, 0.1, 5.0
 """Ranges of the sliders [deg, s, s]."""
 _LEAST, _MOST = 1e-3, 1e4
 """Range of a limit, in the unit that is shown."""
-_FACTORS = {"rad": degrees(1.0), "m": 1e3}
-_SHOWN = {"rad": "deg", "m": "mm"}
+_SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
 FILES = ("plan.json", "move.csv", "move.c", "move.h")
 """What can be downloaded."""
@@ -59,9 +58,9 @@ class Dial:
     @classmethod
     def of(cls, words: str, unit: str, least: float, most: float, optional: bool = False) -> Dial:
         """A dial in the unit that is shown for this one of SI; the range is in the shown unit."""
-        shown = _SHOWN.get(unit, unit)
+        shown, factor = _SHOWN.get(unit, (unit, 1.0))
         label = words if unit == "-" else f"{words} [{shown}]"
-        return cls(label, least, most, _FACTORS.get(unit, 1.0), optional)
+        return cls(label, least, most, factor, optional)
 
     def held(self, shown: float | None) -> float | None:
         """The nearest value in the range, in SI; None stays None where that may be."""
@@ -104,21 +103,18 @@ class Explored:
     def dials(self) -> dict[str, Dial]:
         """What can be set, by name."""
         task, axes = self.task, self.library.grid.axes if self.library else ()
-        angle = Dial.of("start", "rad", -_ANGLE, _ANGLE)
+        longest = max(_LONGEST, task.duration)
         dials = {
-            "start": angle,
-            "target": replace(angle, label="target [deg]"),
-            "duration": Dial.of(
-                "duration", "s", min(_SHORTEST, task.duration), max(_LONGEST, task.duration)
-            ),
+            "start": Dial.of("start", "rad", -_ANGLE, _ANGLE),
+            "target": Dial.of("target", "rad", -_ANGLE, _ANGLE),
+            "duration": Dial.of("duration", "s", min(_SHORTEST, task.duration), longest),
         }
         for axis in axes:
-            factor = _FACTORS.get(axis.unit, 1.0)
+            _, factor = _SHOWN.get(axis.unit, ("", 1.0))
             ends = factor * min(axis.values), factor * max(axis.values)
             dials[axis.name] = Dial.of(axis.name, axis.unit, *ends)
         for name, quantity in QUANTITIES.items():
-            limit = Dial.of(name, quantity.unit, _LEAST, _MOST, optional=True)
-            dials[quantity.limit] = limit
+            dials[quantity.limit] = Dial.of(name, quantity.unit, _LEAST, _MOST, optional=True)
         dials["residual_limit"] = Dial.of("residual", "m", 0.0, _MOST, optional=True)
         dials["bound"] = Dial.of("coefficient", "-", _LEAST, _MOST, optional=True)
         return dials | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
