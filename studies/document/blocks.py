@@ -1,7 +1,7 @@
 """Documents: blocks of text, tables, pictures and verdicts, written once and shown in three forms.
 
-`terminal.show` prints one, `markdown.markdown` and `page.page` make files of it. A new form is one
-more file beside these.
+`terminal.show` prints one, `files.markdown` and `files.page` make files of it. A new form is one
+more function beside these.
 """
 
 from __future__ import annotations
