@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -49,44 +50,45 @@ def rivals(
 
     The residual limit is of that; those of the task are for the plans and for ruckig.
     """
+    for name, joint_of in _ways(task, profile, residual_limit):
+        try:
+            rival = _judged(name, task, joint_of())
+        except (QuietarmError, ValueError) as error:
+            rival = Rival(name, why=str(error))
+        yield rival
+
+
+def _ways(
+    task: PointToPoint, profile: JointProfile, residual_limit: float | None
+) -> Iterator[tuple[str, Callable[[], PiecewiseMotion]]]:
+    """What moves the joint, by its name."""
     certain = task.nominal
-    yield _planned("plan", task, lambda: plan_move(certain, profile))
+
+    def along(plan: Plan) -> PiecewiseMotion:
+        return PiecewiseMotion.of_profile(certain, plan.profile, plan.coefficients)
+
+    def shaped_by(shaper: str) -> PiecewiseMotion:
+        own = shaped_cycloid(certain, shaper)
+        return along(evaluate_coefficients(certain, [], profile=own))
+
+    yield "plan", lambda: along(plan_move(certain, profile))
     if task.errors:
-        yield _planned(
-            "robust plan", task, lambda: plan_move(task, profile, residual_limit=residual_limit)
-        )
-    yield _planned("plain cycloid", task, lambda: evaluate_coefficients(certain, []))
+        limit = residual_limit
+        yield "robust plan", lambda: along(plan_move(task, profile, residual_limit=limit))
+    yield "plain cycloid", lambda: along(evaluate_coefficients(certain, []))
     for name in SHAPERS:
-        yield _planned(
-            f"{name}, cycloid", task,
-            lambda name=name: evaluate_coefficients(
-                certain, [], profile=shaped_cycloid(certain, name)
-            ),
-        )  # fmt: skip
-    for name in ("", *SHAPERS):
-        yield _by_ruckig(task, name)
+        yield f"{name}, cycloid", partial(shaped_by, name)
+    yield "ruckig", partial(_by_ruckig, certain, Impulses((1.0,), (0.0,)))
+    for name in SHAPERS:
+        yield f"{name}, ruckig", lambda name=name: _by_ruckig(certain, _impulses(task, name))
 
 
-def _planned(name: str, task: PointToPoint, plan_of: Callable[[], Plan]) -> Rival:
-    try:
-        plan = plan_of()
-    except (QuietarmError, ValueError) as error:
-        return Rival(name, why=str(error))
-    joint = PiecewiseMotion.of_profile(task.nominal, plan.profile, plan.coefficients)
-    return _judged(name, task, joint)
-
-
-def _by_ruckig(task: PointToPoint, shaper: str) -> Rival:
-    name = f"{shaper}, ruckig" if shaper else "ruckig"
-    try:
-        impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
-        left = task.duration - impulses.times[-1]
-        if left < _LEAST_SHARE * task.duration:
-            return Rival(name, why=f"the shaper alone takes {impulses.times[-1]:.3g} s")
-        free = shaped(ruckig_motion(replace(task.nominal, duration=left)), impulses)
-    except (QuietarmError, ValueError) as error:
-        return Rival(name, why=str(error))
-    return _judged(name, task, PiecewiseMotion.of_free_motion(task.nominal, free))
+def _by_ruckig(task: PointToPoint, impulses: Impulses) -> PiecewiseMotion:
+    left = task.duration - impulses.times[-1]
+    if left < _LEAST_SHARE * task.duration:
+        raise ValueError(f"the shaper alone takes {impulses.times[-1]:.3g} s")
+    free = shaped(ruckig_motion(replace(task, duration=left)), impulses)
+    return PiecewiseMotion.of_free_motion(task, free)
 
 
 def _impulses(task: PointToPoint, shaper: str) -> Impulses:
@@ -139,11 +141,8 @@ def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
 
 
 def _judged(name: str, task: PointToPoint, joint: PiecewiseMotion) -> Rival:
-    try:
-        found = resimulated(task.nominal, joint)
-        left = [resimulated(task.nominal, joint, one).residual for one in _errors(task.errors)]
-    except QuietarmError as error:
-        return Rival(name, why=str(error))
+    found = resimulated(task.nominal, joint)
+    left = [resimulated(task.nominal, joint, one).residual for one in _errors(task.errors)]
     return Rival(name, found.motion, max(left, default=None))
 
 
