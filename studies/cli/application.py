@@ -59,24 +59,13 @@ class LazyGroup(click.Group):
         return name, command, others
 
 
-def _say_version(ctx: click.Context, param: click.Parameter, wanted: bool) -> None:
-    if wanted:
-        from quietarm.models import __version__
-
-        click.echo(f"quietarm, version {__version__}")
-        ctx.exit()
-
-
 @click.group(
     cls=LazyGroup,
     commands=[click.Command(name, short_help=does) for name, does in COMMANDS.items()],
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     no_args_is_help=True,
 )
-@click.option(
-    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_say_version,
-    help="Show the version and exit.",
-)  # fmt: skip
+@click.version_option(package_name="quietarm")
 def quietarm() -> None:
     """Plan point-to-point moves of flexible robot arms that arrive still and spend little energy.
 
@@ -142,7 +131,3 @@ def _complain(message: str, status: int) -> int:
     line = " ".join(message.split())
     click.echo(f"quietarm: {line}", err=True)
     return status
-
-
-if __name__ == "__main__":
-    main()

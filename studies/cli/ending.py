@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from quietarm.ocp import QuietarmError
@@ -18,8 +18,6 @@ from quietarm.studies.document.blocks import Document
 from quietarm.studies.document.terminal import show
 from rich.console import Console
 
-_OF_A_FILE = (OSError, ValueError, QuietarmError)
-
 
 @dataclass(frozen=True)
 class Together:
@@ -28,25 +26,6 @@ class Together:
     what: str
     folder: Path
     files: Sequence[File]
-
-
-@dataclass
-class _Saved:
-    written: list[str] = field(default_factory=list)
-    failures: list[Exception] = field(default_factory=list)
-
-    def save(self, files: Iterable[File]) -> list[str]:
-        """Save files, each even if another fails; returns the names of those written."""
-        names: list[str] = []
-        for path, write in files:
-            if path is not None:
-                try:
-                    _save(path, write)
-                except Exception as error:  # of any kind: the next file may be saved all the same
-                    self.failures.append(_named(path, error))
-                else:
-                    names += [] if path is STDOUT else [str(path)]
-        return names
 
 
 def finish(
@@ -62,20 +41,39 @@ def finish(
     In this order, so that nothing is lost where standard output is closed. Ctrl-C waits until the
     files are there. Words go to standard error where standard output is one of the files.
     """
-    saved = _Saved()
+    failures = list[Exception]()
     with note_interrupts() as came, working("writing", Console(stderr=True), quiet=quiet):
-        saved.written += saved.save(files)
-        if together is not None:
-            names = saved.save(together.files)
-            saved.written += [f"{len(names)} {together.what} to {together.folder}"] * bool(names)
+        written = [str(path) for path in _saved(files, failures) if path is not STDOUT]
+        if together is not None and (inside := _saved(together.files, failures)):
+            written.append(f"{len(inside)} {together.what} to {together.folder}")
     try:
         console = Console(stderr=any(path is STDOUT for path, _ in files))
         show(console, document)
-        for name in saved.written:
+        for name in written:
             print_lines(console, f"wrote {name}")
     except KeyboardInterrupt:
         came.append(0)
-    _raise(saved, trouble, interrupted=bool(came))
+    if came and trouble is None:
+        if not written and not failures:
+            raise KeyboardInterrupt
+        kept = f"wrote {', '.join(written)}" if written else "nothing was written"
+        trouble = QuietarmError(f"interrupted; {kept}")
+    _raise(failures, trouble)
+
+
+def _saved(files: Iterable[File], failures: list[Exception]) -> list[Path]:
+    """Save files, each even if another fails; the paths of those written."""
+    paths = list[Path]()
+    for path, write in files:
+        if path is not None:
+            try:
+                _save(path, write)
+                paths.append(path)
+            except OSError as error:  # the system's own may leave the name out
+                failures.append(unwritable(path, error))
+            except Exception as error:  # of any kind: the next file may be saved all the same
+                failures.append(error)
+    return paths
 
 
 def interruption(after: str | None = None) -> QuietarmError:
@@ -94,25 +92,13 @@ def _save(path: Path, write: Callable[[Path], object]) -> None:
         sys.stdout.write(whole.read_text(encoding="utf-8"))
 
 
-def _named(path: Path, error: Exception) -> Exception:
-    """The same error, with the name of the file where the system's own leaves it out."""
-    if isinstance(error, OSError):
-        return unwritable(path, error)
-    return error
-
-
-def _raise(saved: _Saved, trouble: Exception | None, interrupted: bool) -> None:
-    for error in saved.failures:
-        if not isinstance(error, _OF_A_FILE):
+def _raise(failures: Sequence[Exception], trouble: Exception | None) -> None:
+    for error in failures:
+        if not isinstance(error, ValueError | QuietarmError):
             raise error
-    if interrupted and trouble is None:
-        if not saved.written and not saved.failures:
-            raise KeyboardInterrupt
-        kept = f"wrote {', '.join(saved.written)}" if saved.written else "nothing was written"
-        trouble = QuietarmError(f"interrupted; {kept}")
-    if saved.failures:
-        first, *others = saved.failures
-        more = [f"nor can {len(others)} other file{'s' * (len(others) > 1)}"] if others else []
+    if failures:
+        first, *others = failures
+        more = [f"nor can {len(others)} other file{'s' * (len(others) > 1)}"] * bool(others)
         raise ValueError("; ".join([*([str(trouble)] if trouble else []), str(first), *more]))
     if trouble is not None:
         raise trouble

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial, wraps
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
-from quietarm.ocp import Plan, PointToPoint
+from quietarm.ocp import Plan
 from quietarm.ocp.plan.answer import ticks_of_move
+from quietarm.studies import figures
 from quietarm.studies.cli.options import options, typed
 from quietarm.studies.cli.types import CSV_FILE, JSON_FILE, PICTURE
 from quietarm.studies.display.saving import File, drawing
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+_RATE = "sample_rate"
 _PLAN_FILES = options(
     click.option("--output", type=JSON_FILE,
                  help="Write the plan to this JSON file; - is standard output."),
@@ -32,35 +30,21 @@ def plan_file_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options for the files of a plan; the command gets `files_of` a plan."""
 
     @wraps(command)
-    def with_files(
-        *positional: Any,
-        task: PointToPoint | None = None,
-        output: Path | None,
-        csv_file: Path | None,
-        sample_rate: float,
-        figure: Path | None,
-        **named: Any,
-    ) -> Any:
-        duration = named["duration"] if task is None else task.duration
+    def with_files(**named: Any) -> Any:
+        output, csv_file, rate, figure = map(named.pop, ("output", "csv_file", _RATE, "figure"))
+        duration = named["task"].duration if "task" in named else named["duration"]
         if csv_file is not None and duration is not None:  # refused now, not after the solve
-            ticks_of_move(duration, sample_rate)
-        elif csv_file is None and typed("sample_rate"):
+            ticks_of_move(duration, rate)
+        elif csv_file is None and typed(_RATE):
             raise ValueError("--sample-rate is for --csv: give that too, or leave it out")
-
-        def picture(plan: Plan) -> Figure:
-            from quietarm.studies.figures import motion_figure
-
-            return motion_figure(plan)
 
         def files_of(plan: Plan) -> list[File]:
             return [
                 (output, plan.save),
-                (csv_file, partial(plan.save_csv, sample_rate=sample_rate)),
-                (figure, drawing(partial(picture, plan))),
+                (csv_file, partial(plan.save_csv, sample_rate=rate)),
+                (figure, drawing(lambda: figures.motion_figure(plan))),
             ]
 
-        if task is not None:
-            named["task"] = task
-        return command(*positional, files_of=files_of, **named)
+        return command(files_of=files_of, **named)
 
     return _PLAN_FILES(with_files)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import click
@@ -38,6 +38,13 @@ def typed(option: str) -> bool:
 def typed_line() -> str:
     """The whole line that was typed."""
     return shlex.join(["quietarm", *click.get_current_context().obj])
+
+
+def refuse_typed(names: Collection[str], why: str) -> None:
+    """Refuse options that were typed where they have no meaning."""
+    for one in click.get_current_context().command.params:
+        if one.name in names and typed(one.name):
+            raise ValueError(f"{one.opts[0]} {why}")
 
 
 def refuse_idle(method: str, only_for: Mapping[str, Sequence[str]], called: str = "") -> None:

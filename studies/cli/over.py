@@ -11,7 +11,7 @@ from quietarm.ocp import InfeasibleTaskError, PointToPoint
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.durations import plans_over_duration
 from quietarm.studies.cli.ending import finish, interruption
-from quietarm.studies.cli.options import typed
+from quietarm.studies.cli.options import refuse_typed
 from quietarm.studies.display.progress import count
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.reports.durations import durations_document, durations_table
@@ -35,10 +35,8 @@ def checked_range(
         raise ValueError(
             f"--duration {durations[0]:g}:{durations[1]:g} is no range; give the shorter one first"
         )
-    for name in ("method", "output", *settings):
-        if name not in _OF_DURATIONS and typed(name):
-            option = "check" if name == "check" else name.replace("_", "-")
-            raise ValueError(f"--{option} is not for --over duration; leave it out")
+    idle = {"method", "output", *settings} - {*_OF_DURATIONS}
+    refuse_typed(idle, "is not for --over duration; leave it out")
     return durations
 
 

@@ -70,13 +70,22 @@ def uncertain(
     return UncertainPlant(plant, ranges) if ranges else plant
 
 
-def units_of_plant(plant: Plant, names: Iterable[str]) -> dict[str, str]:
+def units_of_plant(plant: Plant | type[Plant], names: Iterable[str]) -> dict[str, str]:
     """Units of parameters; ValueError where there is no such parameter."""
     known = {entry.name: entry.metadata.get("unit", "-") for entry in fields(plant)}
     for name in names:
         if name not in known:
             raise ValueError(has_no(plant.name, "parameter", name, known))
     return {name: known[name] for name in names}
+
+
+def values_of_plant(
+    plant: Plant | type[Plant], settings: Iterable[tuple[str, str]]
+) -> dict[str, float]:
+    """What parameters are set to."""
+    texts = once(settings, "--set ")
+    units = units_of_plant(plant, texts)
+    return {name: parse_in(units[name], text, name) for name, text in texts.items()}
 
 
 def chosen_plant(
@@ -101,19 +110,12 @@ def chosen_plant(
             f"the plant file defines {' and '.join(own)}, not {kind.name}; leave {kind.name} or "
             "--plant-file out"
         )
-    return _made(kind, machine, settings)
-
-
-def _made(kind: type[Plant], machine: Plant | None, settings: Iterable[tuple[str, str]]) -> Plant:
-    known = {entry.name: entry for entry in fields(kind)}
-    given: dict[str, float] = {}
-    for name, text in once(settings, "--set ").items():
-        if name not in known:
-            raise ValueError(has_no(kind.name, "parameter", name, known))
-        given[name] = parse_in(known[name].metadata.get("unit", "-"), text, name)
+    given = values_of_plant(kind, settings)
     if machine is not None:
         return replace(machine, **given)
-    for name, entry in known.items():
-        if entry.default is MISSING and entry.default_factory is MISSING and name not in given:
-            raise ValueError(f"{kind.name} has no value for {name}; give --set {name}=...")
+    for entry in fields(kind):
+        if entry.default is entry.default_factory is MISSING and entry.name not in given:
+            raise ValueError(
+                f"{kind.name} has no value for {entry.name}; give --set {entry.name}=..."
+            )
     return kind(**given)

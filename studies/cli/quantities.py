@@ -144,25 +144,16 @@ def parse_whole(text: str) -> int:
 
 def parse_coefficients(text: str) -> list[float]:
     """Read numbers that are separated by commas. ValueError when one is not a finite number."""
-    values: list[float] = []
-    for i, entry in enumerate(text.split(","), start=1):
-        try:
-            value = float(entry)
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
-            raise ValueError(
-                f"coefficient {i} is {entry.strip()!r}; give finite numbers separated by commas"
-            )
-        values.append(value)
-    return values
+    try:
+        return [finite(f"coefficient {i}", one) for i, one in enumerate(text.split(","), start=1)]
+    except ValueError as error:
+        raise ValueError(f"{error}, and commas between several") from None
 
 
 def parse_weights(text: str) -> tuple[float, float]:
     """Read a pair of weights, of residual and energy: ``1:3``. ValueError when it is none."""
-    parts = text.split(":")
     try:
-        of_residual, of_energy = (float(part) for part in parts)
+        of_residual, of_energy = map(float, text.split(":"))
     except ValueError:
         raise ValueError(
             f"{text!r} is no pair of weights; give those of residual and energy as in 1:3"

@@ -11,7 +11,7 @@ import click
 from quietarm.models import Plant
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
-from quietarm.studies.cli.options import options, typed
+from quietarm.studies.cli.options import options, refuse_typed, typed
 from quietarm.studies.cli.plants import chosen_plant, uncertain, units_of_plant
 from quietarm.studies.cli.quantities import parse_in, parse_joint_angle, parse_rate, parse_time
 from quietarm.studies.cli.types import (
@@ -37,6 +37,7 @@ _OF_A_MOVE = (
     *(quantity.limit for quantity in QUANTITIES.values()),
 )  # fmt: skip
 _EARLIER = ("after", "wait")
+_OWN = ("plant_file", "parameters", *_OF_A_MOVE, *_EARLIER)
 
 
 def _limit_option(quantity: Quantity) -> Callable[[F], F]:
@@ -68,10 +69,12 @@ FASTEST = "fastest"
 """In the place of a duration: the shortest within the limits."""
 _BEGIN = 1.0
 """Duration [s] at which the shortest is begun to be looked for."""
-_TIME_OR_FASTEST = Parsed("time", lambda text: text if text == FASTEST else parse_time(text))
 BEST = "best"
 """In the place of a wait: the one of least energy."""
-_TIME_OR_BEST = Parsed("time", lambda text: text if text == BEST else parse_time(text))
+
+
+def _time_or(word: str) -> Parsed:
+    return Parsed("time", lambda text: text if text == word else parse_time(text))
 
 
 def _range(text: str) -> float | tuple[float, float]:
@@ -80,29 +83,24 @@ def _range(text: str) -> float | tuple[float, float]:
     return (parse_time(first), parse_time(last)) if colon else parse_time(text)
 
 
-_TIME_OR_RANGE = Parsed("time", _range)
+def _axis_of(parse: Callable[[str], float]) -> Parsed:
+    return Parsed("axis", partial(axis_values, parse=parse))
 
 
-def _task_options(
-    required: bool,
-    fastest: bool = False,
-    ranged: bool = False,
-    axes: bool = False,
-    argument: str = "plant",
+def _with_task(
+    asked: Callable[[dict[str, Any]], dict[str, Any]],
+    *,
+    required: bool = True,
+    plant: bool = True,
+    angle: Parsed = ANGLE,
+    time: Parsed = TIME,
+    words: str = "Travelling time.",
+    wait: Parsed = TIME,
+    until: str = "",
 ) -> Callable[[F], F]:
-    time, words = TIME, "Travelling time."
-    angle = _axis_of(parse_joint_angle) if axes else ANGLE
-    if axes:
-        time = _axis_of(parse_time)
-    wait, until = TIME, "Time from that plan's arrival to this start"
-    if ranged:
-        time, words = _TIME_OR_RANGE, "Travelling time; with --over duration two, as 600ms:1.4s."
-    if fastest:
-        time, words = _TIME_OR_FASTEST, "Travelling time, or `fastest`: the least in the limits."
-        wait, until = _TIME_OR_BEST, f"{until}, or `best`: of least energy, up to a period"
-    plant = click.argument("plant", type=PLANT, required=False, metavar="PLANT")
-    return options(
-        *([plant] if argument == "plant" else []),
+    """The options that describe a task; the command gets what `asked` makes of them."""
+    several = options(
+        *([click.argument("plant", type=PLANT, required=False, metavar="PLANT")] * plant),
         plant_file_option(),
         click.option("--set", "parameters", type=SETTING, multiple=True,
                      help="Set a parameter of the plant, as omega=9 (SI units); may be repeated."),
@@ -116,7 +114,8 @@ def _task_options(
         click.option("--after", type=INPUT,
                      help="Begin where an earlier plan, of this file, has ended, and with what it "
                      "left ringing."),
-        click.option("--wait", type=wait, help=f"{until}.  [default: 0]"),
+        click.option("--wait", type=wait,
+                     help=f"Time from that plan's arrival to this start{until}.  [default: 0]"),
         click.option("--initial", type=MODES,
                      help="What rings at the start, modal amplitudes W [m] and rates W' [m/s]: "
                      "5mm:-0.3, or of two modes 5mm,0:0,0.1."),
@@ -128,88 +127,124 @@ def _task_options(
                      "copper:0.12, or one of your own in --plant-file."),
     )  # fmt: skip
 
+    def add(command: F) -> F:
+        @wraps(command)
+        def with_task(**named: Any) -> Any:
+            return command(**asked(named), **named)
 
-def task_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the plant and the options that describe a task, which the command gets as `task`."""
+        return several(with_task)  # pyright: ignore[reportReturnType]
 
-    @wraps(command)
-    def with_task(*positional: Any, **named: Any) -> Any:
-        return command(*positional, task=_task_of(named), **named)
-
-    return _task_options(required=True)(with_task)
-
-
-def task_or_fastest_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The same where duration or wait may be looked for: the command gets `fastest` as well.
-
-    And as `best_after` the file of the plan after which the best wait is looked for, or None.
-    """
-
-    @wraps(command)
-    def with_task(*positional: Any, **named: Any) -> Any:
-        fastest, best = named["duration"] == FASTEST, named["wait"] == BEST
-        after = named["after"] if best else None
-        if fastest:
-            named["duration"] = _BEGIN
-        if best:
-            named["wait"] = 0.0
-        task = _task_of(named)
-        return command(*positional, task=task, fastest=fastest, best_after=after, **named)
-
-    return _task_options(required=True, fastest=True)(with_task)
+    return add
 
 
-def task_or_durations_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The same where the duration may be a range: the command gets both its ends or None."""
-
-    @wraps(command)
-    def with_task(*positional: Any, **named: Any) -> Any:
-        given = named["duration"]
-        durations = given if isinstance(given, tuple) else None
-        if durations is not None:
-            named["duration"] = durations[0]
-        return command(*positional, task=_task_of(named), durations=durations, **named)
-
-    return _task_options(required=True, ranged=True)(with_task)
+def _task(named: dict[str, Any]) -> dict[str, Any]:
+    return {"task": _task_of(named)}
 
 
-def _axis_of(parse: Callable[[str], float]) -> Parsed:
-    return Parsed("axis", partial(axis_values, parse=parse))
+def _task_or_fastest(named: dict[str, Any]) -> dict[str, Any]:
+    fastest, best = named["duration"] == FASTEST, named["wait"] == BEST
+    after = named["after"] if best else None
+    if fastest:
+        named["duration"] = _BEGIN
+    if best:
+        named["wait"] = 0.0
+    return {"task": _task_of(named), "fastest": fastest, "best_after": after}
 
 
-def task_grid_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The same where start, target, duration and parameters may be axes: it gets a `grid`."""
-
-    @wraps(command)
-    def with_grid(*positional: Any, **named: Any) -> Any:
-        grid = _grid_of(named)
-        if not grid.axes:
-            raise click.UsageError(
-                "no axis is given; give one as --target 10deg:90deg:5deg, or quietarm plan"
-            )
-        return command(*positional, grid=grid, **named)
-
-    return _task_options(required=True, axes=True)(robust_option(with_grid))
+def _task_or_durations(named: dict[str, Any]) -> dict[str, Any]:
+    given = named["duration"]
+    durations = given if isinstance(given, tuple) else None
+    if durations is not None:
+        named["duration"] = durations[0]
+    return {"task": _task_of(named), "durations": durations}
 
 
-def own_grid_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The same where the first of `problems` may be a plant: else the `grid` is None."""
+def _task_or_path(named: dict[str, Any]) -> dict[str, Any]:
+    path: Path | None = named.pop("path")
+    if path is None:
+        _need_move(named, "Missing option '--{}'.")
+        return {"task": _task_of(named), "recorded": None}
+    refuse_typed(("start", "target", "duration"), "is in the file of --path; leave it out")
+    refuse_typed(("after",), "is not for a --path; give what rings as --initial")
+    from quietarm.studies.reading.path import read_path
 
-    @wraps(command)
-    def with_grid(*positional: Any, problems: tuple[str, ...], **named: Any) -> Any:
-        own = ("plant_file", "parameters", "robust", *_OF_A_MOVE, *_EARLIER)
-        if not any(map(typed, own)):
-            kept = {name: value for name, value in named.items() if name not in own}
-            return command(*positional, problems=problems, grid=None, **kept)
-        for name in ("target", "duration"):
-            if named[name] is None:
-                raise click.UsageError(f"give --{name} for conditions of a plant, or PROBLEM alone")
-        if len(problems) > 1:
-            raise click.UsageError("conditions are of one PLANT; give its name alone")
-        named["plant"] = PLANT.convert(problems[0], None, None) if problems else None
-        return command(*positional, problems=(), grid=_grid_of(named), **named)
+    recorded = read_path(path)
+    named |= {name: getattr(recorded, name) for name in ("start", "target", "duration")}
+    return {"task": _task_of(named), "recorded": recorded}
 
-    return _task_options(required=False, axes=True, argument="problems")(robust_option(with_grid))
+
+def _task_or_none(named: dict[str, Any]) -> dict[str, Any]:
+    if named["plant"] is not None or named["plant_file"] is not None:
+        _need_move(named, "give --{} with the plant, or no plant for the paper's tasks")
+        return {"task": _task_of(named)}
+    own = ("plant", *_OWN)
+    refuse_typed(own, "is for a task of your own: give its plant as well")
+    for name in own:
+        del named[name]
+    return {"task": None}
+
+
+def _grid(named: dict[str, Any]) -> dict[str, Any]:
+    grid = _grid_of(named)
+    if not grid.axes:
+        raise click.UsageError(
+            "no axis is given; give one as --target 10deg:90deg:5deg, or quietarm plan"
+        )
+    return {"grid": grid}
+
+
+def _grid_or_problems(named: dict[str, Any]) -> dict[str, Any]:
+    problems, own = named.pop("problems"), (*_OWN, "robust")
+    if not any(map(typed, own)):
+        for name in own:
+            del named[name]
+        return {"problems": problems, "grid": None}
+    _need_move(named, "give --{} for conditions of a plant, or PROBLEM alone")
+    if len(problems) > 1:
+        raise click.UsageError("conditions are of one PLANT; give its name alone")
+    named["plant"] = PLANT.convert(problems[0], None, None) if problems else None
+    return {"problems": (), "grid": _grid_of(named)}
+
+
+def _need_move(named: dict[str, Any], words: str) -> None:
+    for name in ("target", "duration"):
+        if named[name] is None:
+            raise click.UsageError(words.format(name))
+
+
+_AXES: dict[str, Any] = {"angle": _axis_of(parse_joint_angle), "time": _axis_of(parse_time)}
+_PATH = click.option(
+    "--path", type=INPUT,
+    help="A CSV file with the joint's path in columns such as time_s and angle_deg, in the "
+    "place of start, target and duration.",
+)  # fmt: skip
+
+task_options = _with_task(_task)
+"""The command gets a `task`."""
+task_or_fastest_options = _with_task(
+    _task_or_fastest,
+    time=_time_or(FASTEST),
+    words="Travelling time, or `fastest`: the least in the limits.",
+    wait=_time_or(BEST),
+    until=", or `best`: of least energy, up to a period",
+)
+"""It gets `fastest`, too, and as `best_after` the plan after which the best wait is looked for."""
+task_or_durations_options = _with_task(
+    _task_or_durations,
+    time=Parsed("time", _range),
+    words="Travelling time; with --over duration two, as 600ms:1.4s.",
+)
+"""The duration may be a range: it gets the ends of that as `durations`, too, or None."""
+task_or_path_options = options(_with_task(_task_or_path, required=False), _PATH)
+"""A file may have the path: it gets that as `recorded`, too, or None."""
+own_task_options = _with_task(_task_or_none, required=False)
+"""PLANT may be left out: `task` is then None."""
+task_grid_options = options(_with_task(_grid, **_AXES), robust_option)
+"""Start, target, duration and parameters may be axes: it gets a `grid`."""
+own_grid_options = options(
+    _with_task(_grid_or_problems, required=False, plant=False, **_AXES), robust_option
+)
+"""The same where the first of `problems` may be a plant: else the `grid` is None."""
 
 
 def _grid_of(named: dict[str, Any]) -> Grid:
@@ -232,52 +267,6 @@ def _grid_of(named: dict[str, Any]) -> Grid:
     return Grid(_task_of(named), tuple(axes))
 
 
-def task_or_path_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The same where a file may have the path: the command gets it as `recorded`, or None."""
-
-    @wraps(command)
-    def with_task(*positional: Any, path: Path | None, **named: Any) -> Any:
-        if path is None:
-            for name in ("target", "duration"):
-                if named[name] is None:
-                    raise click.UsageError(f"Missing option '--{name}'.")
-            return command(*positional, task=_task_of(named), recorded=None, **named)
-        for name in ("start", "target", "duration"):
-            if typed(name):
-                raise click.UsageError(f"--{name} is in the file of --path; leave it out")
-        if typed("after"):
-            raise click.UsageError("--after is not for a --path; give what rings as --initial")
-        from quietarm.studies.reading.path import read_path
-
-        recorded = read_path(path)
-        named |= {name: getattr(recorded, name) for name in ("start", "target", "duration")}
-        return command(*positional, task=_task_of(named), recorded=recorded, **named)
-
-    path = click.option(
-        "--path", type=INPUT,
-        help="A CSV file with the joint's path in columns such as time_s and angle_deg, in the "
-        "place of start, target and duration.",
-    )  # fmt: skip
-    return _task_options(required=False)(path(with_task))
-
-
-def own_task_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The same where PLANT may be left out: `task` is then None."""
-
-    @wraps(command)
-    def with_task(*positional: Any, **named: Any) -> Any:
-        if named["plant"] is None and named["plant_file"] is None:
-            return command(*positional, task=_no_task(named), **named)
-        for name in ("target", "duration"):
-            if named[name] is None:
-                raise click.UsageError(
-                    f"give --{name} with the plant, or no plant for the paper's tasks"
-                )
-        return command(*positional, task=_task_of(named), **named)
-
-    return _task_options(required=False)(with_task)
-
-
 def _task_of(named: dict[str, Any]) -> PointToPoint:
     kind, own, parameters = (named.pop(name) for name in ("plant", "plant_file", "parameters"))
     plant = uncertain(chosen_plant(kind, own, parameters), named.pop("robust", ()), kind)
@@ -291,9 +280,7 @@ def _task_of(named: dict[str, Any]) -> PointToPoint:
 
 def _left_by(file: Path, wait: float, plant: Plant) -> dict[str, Any]:
     """Where an earlier plan of the same plant has ended, and what rings there a while [s] later."""
-    for name in ("start", "initial"):
-        if typed(name):
-            raise ValueError(f"--{name} follows from the plan of --after; leave it out")
+    refuse_typed(("start", "initial"), "follows from the plan of --after; leave it out")
     from quietarm.studies.reading.saved import load_plans
 
     (earlier,) = load_plans([file]).values()
@@ -304,11 +291,3 @@ def _left_by(file: Path, wait: float, plant: Plant) -> dict[str, Any]:
             "plant and parameters"
         )
     return {"start": earlier.task.target, "initial": earlier.state_after(wait)}
-
-
-def _no_task(named: dict[str, Any]) -> None:
-    for name in ("plant", "plant_file", "parameters", *_OF_A_MOVE, *_EARLIER):
-        if typed(name):
-            option = "set" if name == "parameters" else name.replace("_", "-")
-            raise click.UsageError(f"--{option} is for a task of your own: give its plant as well")
-        del named[name]

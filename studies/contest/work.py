@@ -72,7 +72,7 @@ def imported_run(
         front=front,
         file=path.name,
         digest=digest,
-        claims=tuple(claim.line() for claim in claims if claim.differ),
+        claims=tuple(claim.words for claim in claims if claim.differs),
     )
 
 

@@ -37,8 +37,7 @@ def bars(console: Console, quiet: bool, *columns: ProgressColumn) -> Iterator[Pr
 def working(what: str, console: Console, *, quiet: bool = False) -> Iterator[None]:
     """Show that work goes on that has no measure of progress."""
     columns = SpinnerColumn(), TextColumn(what, markup=False), TimeElapsedColumn()
-    hidden = quiet or not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=hidden) as shown:
+    with bars(console, quiet, *columns) as shown:
         shown.add_task("", total=None)
         yield
 

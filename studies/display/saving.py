@@ -22,23 +22,21 @@ def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
     def write(path: Path) -> None:
         from quietarm.studies.display.pictures import save_figure
 
-        try:
-            figure = draw()
-        except UnicodeDecodeError:  # what matplotlib reads when it is loaded
-            raise ValueError(
-                f"{path} cannot be drawn: matplotlibrc is no text in UTF-8; save it so, or take it "
-                "away"
-            ) from None
-        save_figure(figure, path)
+        save_figure(draw(), path)
 
     return write
 
 
-def inside(folder: Path, writes: Mapping[str, Callable[[Path], object]]) -> list[File]:
-    """Files of a folder by their names; the folder is made when the first is written."""
+def inside(folder: Path | None, writes: Mapping[str, Callable[[Path], object]]) -> list[File]:
+    """Files of a folder by their names; the folder is made when the first is written.
+
+    None where no folder was asked for.
+    """
 
     def write_inside(write: Callable[[Path], object], path: Path) -> None:
-        folder.mkdir(exist_ok=True)
+        path.parent.mkdir(exist_ok=True)
         write(path)
 
-    return [(folder / name, partial(write_inside, write)) for name, write in writes.items()]
+    return [
+        (folder and folder / name, partial(write_inside, write)) for name, write in writes.items()
+    ]

@@ -1,7 +1,7 @@
 """Documents: blocks of text, tables, pictures and verdicts, written once and shown in three forms.
 
-`terminal.show` prints one, `markdown.markdown` and `page.page` make files of it. A new form is one
-more file beside these.
+`terminal.show` prints one, `files.markdown` and `files.page` make files of it. A new form is one
+more function beside these.
 """
 
 from __future__ import annotations
@@ -112,17 +112,14 @@ class Document:
     @property
     def pictures(self) -> list[Picture]:
         """Every picture, in order."""
-        return list(_pictures(self.blocks))
+        return [block for block in _flat(self.blocks) if isinstance(block, Picture)]
 
 
-def _pictures(blocks: Sequence[Block]) -> Iterator[Picture]:
+def _flat(blocks: Sequence[Block]) -> Iterator[Block]:
+    """Blocks, those of sections and grids in the place of these."""
     for block in blocks:
         match block:
-            case Picture():
-                yield block
-            case Grid(pictures):
-                yield from pictures
-            case Section(_, inner):
-                yield from _pictures(inner)
+            case Section(_, inner) | Grid(inner):
+                yield from _flat(inner)
             case _:
-                pass
+                yield block

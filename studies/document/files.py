@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def document_files(folder: Path, document: Document) -> list[File]:
+def document_files(folder: Path | None, document: Document) -> list[File]:
     """The report, a CSV file for each table of its data, and its pictures; what writes each."""
     writes: dict[str, Callable[[Path], object]] = {
         "report.md": lambda path: write_whole(path, markdown(document))
@@ -89,16 +89,11 @@ def _bullets(lines: Sequence[str]) -> str:
 
 def page(document: Document) -> str:
     """The document as a page, which is well-formed XML as well."""
-    from jinja2 import Environment, PackageLoader
+    from quietarm.studies.display.templates import templates
 
-    templates = Environment(
-        loader=PackageLoader("quietarm.studies", "document"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    templates.filters.update(kind=lambda block: type(block).__name__, svg=_svg, anchor=_anchor)
-    return templates.get_template("page.html").render(document=document) + "\n"
+    pages = templates(autoescape=True)
+    pages.filters.update(kind=lambda block: type(block).__name__, svg=_svg, anchor=_anchor)
+    return pages.get_template("document/page.html").render(document=document) + "\n"
 
 
 def _anchor(title: str) -> str:

@@ -5,19 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from numpy import median
+from quietarm.studies.display.templates import templates
 from quietarm.studies.display.words import millimetres
 
 
 def told(template: str, **figures: object) -> list[str]:
     """The paragraphs of a template in this package with its figures, each in a line."""
-    texts = Environment(
-        loader=PackageLoader("quietarm.studies", ""),
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )
+    texts = templates()
     texts.filters.update(mm=millimetres, percents=percents, listed=listed, median=median)
     text = texts.get_template(template).render(figures)
     return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text) if part.strip()]

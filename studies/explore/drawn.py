@@ -79,29 +79,19 @@ def robustness_curves(explored: Explored) -> list[Curve]:
 
 @dataclass(frozen=True)
 class Film:
-    """The structure in motion.
-
-    Attributes
-    ----------
-    frames : int
-        How many there are.
-    xs, ys : list of list of float
-        Coordinates of every body [m], frame after frame.
-    looks : dict of str to list
-        Colour and width of every body.
-    paths, corners : list of list
-        Coordinates x and y of where each tip goes, and the least and largest of all [m].
-    scale : float
-        How many times larger deflections are drawn than they are.
-    """
+    """The structure in motion."""
 
     frames: int
     xs: list[Numbers]
     ys: list[Numbers]
+    """Coordinates of every body [m], frame after frame."""
     looks: dict[str, list[Any]]
+    """Colour and width of every body."""
     paths: list[list[Numbers]]
     corners: list[Numbers]
+    """Coordinates x and y of where each tip goes, and the least and largest of all [m]."""
     scale: float
+    """How many times larger deflections are drawn than they are."""
 
 
 def film(plan: Plan) -> Film:

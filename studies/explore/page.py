@@ -8,6 +8,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from html import escape
 from itertools import chain
+from pathlib import Path
 from typing import Any
 
 from bokeh.document import Document
@@ -31,27 +32,11 @@ _WORK = ThreadPoolExecutor(1, "explore")
 _DIGITS = "0[.][0000]"
 """Of a field."""
 _WIDE: Mapping[str, Any] = {"sizing_mode": "stretch_width"}
-_SAVE = """
-const link = document.createElement("a");
-link.href = URL.createObjectURL(new Blob([file.data.text[0]], {type: "text/plain"}));
-link.download = file.data.name[0];
-link.click();
-URL.revokeObjectURL(link.href);
-"""
+_SAVE = Path(__file__).with_name("save.js").read_text()
 
 
 class Page:
-    """One visitor's page.
-
-    Parameters
-    ----------
-    document : Document
-        What the browser shows; it is filled here.
-    explored : Explored
-        The motion in hand.
-    plants : mapping of str to Plant
-        Plants that can be chosen, by what the menu calls them.
-    """
+    """One visitor's page: the motion in hand, and plants that can be chosen by their words."""
 
     def __init__(self, document: Document, explored: Explored, plants: Mapping[str, Plant]) -> None:
         self._document, self._explored, self._plants = document, explored, plants

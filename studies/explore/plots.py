@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from bokeh.document import Document
@@ -29,32 +30,14 @@ _POINT = "residual", "energy"
 _HAND_OUT = "JSON.parse(news.data.text[0]).forEach((columns, i) => { sources[i].data = columns; });"
 """One message for all plots, so that the browser draws once; Bokeh looks at every number of a list,
 and not into a text."""
-_PLAY = """
-const play = () => {
-    const {xs, ys, colour, width, frames, words} = film.data;
-    const now = Math.floor(performance.now() / 1000 * rate) % (frames[0] + rate);
-    const at = Math.min(now, frames[0] - 1);
-    const current = (all) => {
-        const points = all.length / frames[0];
-        return all.slice(at * points, (at + 1) * points);
-    };
-    shown.data = {xs: xs.map(current), ys: ys.map(current), colour, width};
-    title.text = `${words[0]}, t = ${(at / rate).toFixed(2)} s`;
-};
-setInterval(play, 1000 / rate);
-"""
+_PLAY = Path(__file__).with_name("play.js").read_text()
 """The frame of the moment, and the last one for a second."""
 
 
 class Plots:
     """The structure in motion, the front, the robustness, and the quantities over time.
 
-    Parameters
-    ----------
-    document : Document
-        In whose browser they are.
-    pick : callable
-        Is told the number of a point of the front that is clicked.
+    `pick` is told the number of a point of the front that is clicked.
     """
 
     def __init__(self, document: Document, pick: Callable[[int], None]) -> None:

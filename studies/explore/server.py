@@ -20,19 +20,7 @@ def serve(
     tell: Callable[[str], object],
     browser: bool = True,
 ) -> None:
-    """Show the page until Ctrl-C.
-
-    Parameters
-    ----------
-    explored : Explored
-        What every visitor begins with.
-    plants : mapping of str to Plant
-        Plants that can be chosen.
-    tell : callable
-        Is told the page's address.
-    browser : bool
-        Whether a browser is opened on it.
-    """
+    """Show the page, which begins with `explored`, until Ctrl-C; `tell` is told its address."""
 
     def fill(document: Document) -> None:
         Page(document, explored, plants)

@@ -37,8 +37,7 @@ _ANGLE, _SHORTEST, _LONGEST = 360.0, 0.1, 5.0
 """Ranges of the sliders [deg, s, s]."""
 _LEAST, _MOST = 1e-3, 1e4
 """Range of a limit, in the unit that is shown."""
-_FACTORS = {"rad": degrees(1.0), "m": 1e3}
-_SHOWN = {"rad": "deg", "m": "mm"}
+_SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
 FILES = ("plan.json", "move.csv", "move.c", "move.h")
 """What can be downloaded."""
@@ -46,32 +45,22 @@ FILES = ("plan.json", "move.csv", "move.c", "move.h")
 
 @dataclass(frozen=True)
 class Dial:
-    """A number that is set by hand.
-
-    Attributes
-    ----------
-    label : str
-        What it is, and the unit in which it is shown.
-    least, most : float
-        Its range, in this unit.
-    factor : float
-        From SI to this unit.
-    optional : bool
-        Whether it may be empty, as a limit.
-    """
+    """A number that is set by hand: what it is and its range, in the unit that is shown."""
 
     label: str
     least: float
     most: float
     factor: float = 1.0
+    """From SI to this unit."""
     optional: bool = False
+    """Whether it may be empty, as a limit."""
 
     @classmethod
     def of(cls, words: str, unit: str, least: float, most: float, optional: bool = False) -> Dial:
         """A dial in the unit that is shown for this one of SI; the range is in the shown unit."""
-        shown = _SHOWN.get(unit, unit)
+        shown, factor = _SHOWN.get(unit, (unit, 1.0))
         label = words if unit == "-" else f"{words} [{shown}]"
-        return cls(label, least, most, _FACTORS.get(unit, 1.0), optional)
+        return cls(label, least, most, factor, optional)
 
     def held(self, shown: float | None) -> float | None:
         """The nearest value in the range, in SI; None stays None where that may be."""
@@ -82,28 +71,19 @@ class Dial:
 
 @dataclass(frozen=True, eq=False)
 class Explored:
-    """A move that is changed by hand; every change gives a new one.
-
-    Attributes
-    ----------
-    plan : Plan
-        The move and the motion in hand, with the figures of CVODES.
-    residual_limit, bound : float or None
-        What the gradient is asked for, as by `plan_move`.
-    library : MoveLibrary or None
-        Where coefficients come from when the move is changed; else they stay as they are.
-    front : Front or None
-        The front of this move, where it was asked for.
-    reach : float
-        Range of the coefficients by hand, on either side of 0.
-    """
+    """A move that is changed by hand; every change gives a new one."""
 
     plan: Plan
+    """The move and the motion in hand, with the figures of CVODES."""
     residual_limit: float | None = None
     bound: float | None = None
+    """What the gradient is asked for, as by `plan_move`."""
     library: MoveLibrary | None = None
+    """Where coefficients come from when the move is changed; else they stay as they are."""
     front: Front | None = None
+    """The front of this move, where it was asked for."""
     reach: float = 1.0
+    """Range of the coefficients by hand, on either side of 0."""
 
     def __post_init__(self) -> None:
         furthest = max(map(abs, self.plan.coefficients), default=0.0)
@@ -123,21 +103,18 @@ class Explored:
     def dials(self) -> dict[str, Dial]:
         """What can be set, by name."""
         task, axes = self.task, self.library.grid.axes if self.library else ()
-        angle = Dial.of("start", "rad", -_ANGLE, _ANGLE)
+        longest = max(_LONGEST, task.duration)
         dials = {
-            "start": angle,
-            "target": replace(angle, label="target [deg]"),
-            "duration": Dial.of(
-                "duration", "s", min(_SHORTEST, task.duration), max(_LONGEST, task.duration)
-            ),
+            "start": Dial.of("start", "rad", -_ANGLE, _ANGLE),
+            "target": Dial.of("target", "rad", -_ANGLE, _ANGLE),
+            "duration": Dial.of("duration", "s", min(_SHORTEST, task.duration), longest),
         }
         for axis in axes:
-            factor = _FACTORS.get(axis.unit, 1.0)
+            _, factor = _SHOWN.get(axis.unit, ("", 1.0))
             ends = factor * min(axis.values), factor * max(axis.values)
             dials[axis.name] = Dial.of(axis.name, axis.unit, *ends)
         for name, quantity in QUANTITIES.items():
-            limit = Dial.of(name, quantity.unit, _LEAST, _MOST, optional=True)
-            dials[quantity.limit] = limit
+            dials[quantity.limit] = Dial.of(name, quantity.unit, _LEAST, _MOST, optional=True)
         dials["residual_limit"] = Dial.of("residual", "m", 0.0, _MOST, optional=True)
         dials["bound"] = Dial.of("coefficient", "-", _LEAST, _MOST, optional=True)
         return dials | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
@@ -160,12 +137,7 @@ class Explored:
     def changed(self, shown: Mapping[str, float | None]) -> Explored:
         """The same with some dials set, each held within its range.
 
-        Raises
-        ------
-        ValueError
-            When there is no such move, or the library has none.
-        SolverFailedError
-            When CVODES cannot follow the motion.
+        It raises ValueError where there is no such move, or the library has none.
         """
         held = {name: self.dials[name].held(value) for name, value in shown.items()}
         values: dict[str, Any] = {**self._values, **held}

@@ -3,46 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import casadi as ca
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.studies.display.templates import templates
 from quietarm.studies.display.words import move_of, plant_words
 
-_HEADER = """/* {name}: {move}. By quietarm {version}; {figures}. */
-#ifndef {guard}
-#define {guard}
-
-/* How long the move takes [s], and where the joint rests before and after it [rad]. */
-#define {guard}_DURATION {duration}
-#define {guard}_START {start}
-#define {guard}_TARGET {target}
-
-/* The joint's angle [rad], speed [rad/s] and acceleration [rad/s^2], a time [s] after the start. */
-void {name}_at(double time, double *angle, double *speed, double *acceleration);
-
-#endif
-"""
-_SOURCE = """/* {name}: {move}. By quietarm {version}. */
-#include "{name}.h"
-
-#include <math.h>
-
-void {name}_at(double time, double *angle, double *speed, double *acceleration)
-{{
-    double t, {variables};
-
-    if (time <= 0.0 || time >= {guard}_DURATION) {{
-        *angle = time <= 0.0 ? {guard}_START : {guard}_TARGET;
-        *speed = 0.0;
-        *acceleration = 0.0;
-        return;
-    }}
-    t = time / {guard}_DURATION;
-{lines}
-}}
-"""
 _OPERATIONS = {
     ca.OP_ADD: "{0} + {1}", ca.OP_SUB: "{0} - {1}", ca.OP_MUL: "{0} * {1}", ca.OP_DIV: "{0} / {1}",
     ca.OP_NEG: "-{0}", ca.OP_SQ: "{0} * {0}", ca.OP_TWICE: "2.0 * {0}", ca.OP_INV: "1.0 / {0}",
@@ -60,30 +28,16 @@ _RESULTS = ("*angle", "*speed", "*acceleration")
 
 
 def c_files(plan: Plan, name: str) -> tuple[str, str]:
-    """Header and source whose function is called after a file's name.
-
-    Raises
-    ------
-    ValueError
-        When no function of C can be called so.
-    """
+    """Header and source whose function is called after a file's name."""
     name_in_c(name)
-    start, target, duration = plan.task.move
     given = [*plan.coefficients, *plan.task.move]
-    variables, lines = statements(plan.profile, ["t", *map(number, given)])
-    words = {
-        "name": name,
-        "guard": name.upper(),
-        "move": f"{plant_words(plan.task.plant)}, {move_of(plan.task)}".replace("*/", ""),
-        "version": plan.provenance.versions.get("quietarm", ""),
-        "figures": f"energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
-        "duration": number(duration),
-        "start": number(start),
-        "target": number(target),
-        "variables": ", ".join(variables),
-        "lines": "\n".join(f"    {line}" for line in lines),
-    }
-    return _HEADER.format(**words), _SOURCE.format(**words)
+    return rendered(
+        "move", name, *statements(plan.profile, ["t", *map(number, given)]),
+        move=f"{plant_words(plan.task.plant)}, {move_of(plan.task)}".replace("*/", ""),
+        version=plan.provenance.versions.get("quietarm", ""),
+        figures=f"energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
+        values=plan.task.move,
+    )  # fmt: skip
 
 
 def name_in_c(name: str) -> None:
@@ -93,6 +47,19 @@ def name_in_c(name: str) -> None:
             f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
             "of letters, digits and _ that begins with a letter"
         )
+
+
+def rendered(
+    template: str, name: str, variables: Sequence[str], lines: Sequence[str], **words: object
+) -> tuple[str, str]:
+    """Header and source of a template beside this file."""
+    texts = templates(keep_trailing_newline=True)
+    texts.filters.update(c=number, row=_row)
+    words |= {"name": name, "guard": name.upper(), "variables": variables, "lines": lines}
+    header, source = (
+        texts.get_template(f"export/templates/{template}.{kind}").render(words) for kind in "hc"
+    )
+    return header, source
 
 
 def statements(profile: JointProfile, inputs: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -127,3 +94,7 @@ def statements(profile: JointProfile, inputs: Sequence[str]) -> tuple[list[str],
 def number(value: float) -> str:
     """A constant of C with every digit."""
     return repr(float(value))
+
+
+def _row(values: Iterable[float]) -> str:
+    return ", ".join(map(number, values))

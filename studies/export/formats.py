@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,60 +9,23 @@ from quietarm.ocp import Plan
 from quietarm.ocp.checks import positive, unknown
 from quietarm.ocp.files import write_whole
 from quietarm.studies.export.c_source import c_files
-from quietarm.studies.export.tables import (
-    USUAL,
-    columns_of,
-    csv_text,
-    mat_bytes,
-    ros_text,
-    table,
-)
+from quietarm.studies.export.tables import columns_of, csv_text, mat_bytes, ros_text, table
 
-
-@dataclass(frozen=True)
-class Wishes:
-    """What a controller wants; see `export_plan`."""
-
-    columns: str = ",".join(USUAL)
-    rate: float = 1000.0
-    joint: str = "joint"
-
-
-Files = dict[Path, str | bytes]
-
-
-def _csv(plan: Plan, path: Path, wishes: Wishes) -> Files:
-    return {path: csv_text(table(plan, columns_of(wishes.columns), wishes.rate))}
-
-
-def _c(plan: Plan, path: Path, wishes: Wishes) -> Files:
-    header, source = c_files(plan, path.stem)
-    return {path.with_suffix(".h"): header, path: source}
-
-
-def _ros(plan: Plan, path: Path, wishes: Wishes) -> Files:
-    return {path: ros_text(plan, wishes.joint, wishes.rate)}
-
-
-def _mat(plan: Plan, path: Path, wishes: Wishes) -> Files:
-    columns = table(plan, columns_of(wishes.columns), wishes.rate)
-    facts = {"coefficients": plan.coefficients, "duration_s": plan.task.duration}
-    return {path: mat_bytes(columns, facts)}
+COLUMNS, RATE, JOINT = "time,angle,speed,acceleration", 1000.0, "joint"
 
 
 class Format(NamedTuple):
-    """The endings of a form's files, what makes them, and which wishes it takes."""
+    """The endings of a form's files, and what of `export_plan` it takes."""
 
     endings: tuple[str, ...]
-    make: Callable[[Plan, Path, Wishes], Files]
-    takes: tuple[str, ...]
+    takes: tuple[str, ...] = ()
 
 
 FORMATS = {
-    "csv": Format((".csv",), _csv, ("columns", "rate")),
-    "c": Format((".c",), _c, ()),
-    "ros": Format((".yaml", ".yml"), _ros, ("rate", "joint")),
-    "mat": Format((".mat",), _mat, ("columns", "rate")),
+    "csv": Format((".csv",), ("columns", "rate")),
+    "c": Format((".c",)),
+    "ros": Format((".yaml", ".yml"), ("rate", "joint")),
+    "mat": Format((".mat",), ("columns", "rate")),
 }
 
 
@@ -81,36 +42,21 @@ def format_of(path: Path) -> str:
 
 
 def export_moves(dataset: Path, path: Path, format: str | None = None) -> list[Path]:  # noqa: A002
-    """Write the moves of a sweep's dataset as C: a table, and what interpolates it.
-
-    Parameters
-    ----------
-    dataset : Path
-        Of `quietarm sweep`.
-    path : Path
-        The C source; its header is written beside it.
-    format : {"c"}, optional
-        The only form that there is.
-
-    Returns
-    -------
-    list of Path
-        What was written.
-
-    Raises
-    ------
-    ValueError
-        When another form is asked for, or no function of C can be called after the file.
-    """
+    """Write the moves of a sweep's dataset as C: a table, and what interpolates it."""
     from quietarm.studies.export.c_table import c_table_files
     from quietarm.studies.sweep.library import MoveLibrary
 
     if (format or format_of(path)) != "c" or path.suffix != ".c":
         raise ValueError(f"{dataset} has many moves, which are exported as C alone; give a .c file")
-    header, source = c_table_files(MoveLibrary(dataset), path.stem)
-    for file, content in ((path.with_suffix(".h"), header), (path, source)):
+    return _write_c(path, c_table_files(MoveLibrary(dataset), path.stem))
+
+
+def _write_c(path: Path, contents: tuple[str, str]) -> list[Path]:
+    """Write header and source, the header first."""
+    files = [path.with_suffix(".h"), path]
+    for file, content in zip(files, contents, strict=True):
         write_whole(file, content)
-    return [path.with_suffix(".h"), path]
+    return files
 
 
 def export_plan(
@@ -118,9 +64,9 @@ def export_plan(
     path: str | Path,
     format: str | None = None,  # noqa: A002  # as other libraries call it
     *,
-    columns: str = Wishes.columns,
-    rate: float = Wishes.rate,
-    joint: str = Wishes.joint,
+    columns: str = COLUMNS,
+    rate: float = RATE,
+    joint: str = JOINT,
 ) -> list[Path]:
     """Write a plan in a form that a controller reads.
 
@@ -154,11 +100,18 @@ def export_plan(
     name = format or format_of(path)
     if name not in FORMATS:
         raise ValueError(unknown("format", name, FORMATS))
-    form = FORMATS[name]
     if path.suffix and format_of(path) != name:
-        raise ValueError(f"{path} is no name for {name}; end it in {form.endings[0]}")
-    wishes = Wishes(columns, positive("sample rate", rate, "Hz"), joint)
-    files = form.make(plan, path, wishes)
-    for file, content in files.items():
-        write_whole(file, content)
-    return list(files)
+        raise ValueError(f"{path} is no name for {name}; end it in {FORMATS[name].endings[0]}")
+    rate = positive("sample rate", rate, "Hz")
+    if name == "c":
+        return _write_c(path, c_files(plan, path.stem))
+    write_whole(path, _content(plan, name, columns, rate, joint))
+    return [path]
+
+
+def _content(plan: Plan, name: str, columns: str, rate: float, joint: str) -> str | bytes:
+    if name == "ros":
+        return ros_text(plan, joint, rate)
+    rows = table(plan, columns_of(columns), rate)
+    facts = {"coefficients": plan.coefficients, "duration_s": plan.task.duration}
+    return csv_text(rows) if name == "csv" else mat_bytes(rows, facts)

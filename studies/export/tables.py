@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from quietarm.ocp import Plan, Trajectory
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.plan.answer import ticks_of_move
+from quietarm.studies.display.templates import templates
 
 Array = NDArray[np.float64]
 _ANGLE = {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi}
@@ -26,29 +27,26 @@ UNITS: Mapping[str, Mapping[str, float]] = {
     "power": {"W": 1.0, "mW": 1e3},
 }
 """What a column may hold, and its units; the first is that where none is given."""
-USUAL = ("time", "angle", "speed", "acceleration")
 
 
-def columns_of(text: str) -> dict[str, tuple[str, float]]:
+def columns_of(
+    text: str, known: Mapping[str, Mapping[str, float]] = UNITS, what: str = "column"
+) -> dict[str, tuple[str, float]]:
     """Columns as `time:ms,angle:deg,speed`: their units and the factors to these.
 
-    Raises
-    ------
-    ValueError
-        When a column or a unit is unknown, or a column comes twice.
+    ValueError where one or its unit is unknown, or one comes twice.
     """
     found: dict[str, tuple[str, float]] = {}
     for one in text.split(","):
-        name, _, unit = one.strip().partition(":")
-        if name not in UNITS:
-            raise ValueError(unknown("column", name, UNITS))
+        name, _, unit = (part.strip() for part in one.partition(":"))
+        if name not in known:
+            raise ValueError(unknown(what, name, known))
         if name in found:
-            raise ValueError(f"column {name} is given twice; give it once")
-        units = UNITS[name]
-        unit = unit or next(iter(units))
-        if unit not in units:
-            raise ValueError(unknown(f"unit of {name}", unit, units))
-        found[name] = unit, units[unit]
+            raise ValueError(f"{what} {name} is given twice; give it once")
+        unit = unit or next(iter(known[name]))
+        if unit not in known[name]:
+            raise ValueError(unknown(f"unit of {name}", unit, known[name]))
+        found[name] = unit, known[name][unit]
     return found
 
 
@@ -102,25 +100,15 @@ def mat_bytes(columns: Mapping[str, Array], facts: Mapping[str, Any]) -> bytes:
 def ros_text(plan: Plan, joint: str, rate: float) -> str:
     """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, for one joint."""
     motion = sampled(plan, rate)
-    lines = ["joint_names:", f"- {_quoted(joint)}", "points:"]
-    for time, (angle, speed, acceleration) in zip(motion.time, motion.joint, strict=True):
-        seconds, nanoseconds = divmod(round(time * 1e9), 1_000_000_000)
-        lines += [
-            f"- positions: [{_decimal(angle)}]",
-            f"  velocities: [{_decimal(speed)}]",
-            f"  accelerations: [{_decimal(acceleration)}]",
-            "  time_from_start:",
-            f"    sec: {seconds}",
-            f"    nanosec: {nanoseconds}",
-        ]
-    return "\n".join([*lines, ""])
+    points = [
+        (divmod(round(time * 1e9), 1_000_000_000), map(_decimal, moving))
+        for time, moving in zip(motion.time, motion.joint, strict=True)
+    ]
+    name = joint.replace("'", "''")  # as YAML reads it back
+    texts = templates(keep_trailing_newline=True)
+    return texts.get_template("export/templates/move.yaml").render(joint=f"'{name}'", points=points)
 
 
 def _decimal(value: float) -> str:
     """Twelve digits with a point: ROS takes no whole number for a real one."""
     return repr(float(f"{value:.12g}"))
-
-
-def _quoted(name: str) -> str:
-    """A name as YAML reads it back."""
-    return "'" + name.replace("'", "''") + "'"

@@ -70,8 +70,7 @@ def legend_below(figure: Figure, axes: Sequence[Axes], columns: int, size: float
 
 def name_objectives(ax: Axes) -> None:
     """Label the axes of a front."""
-    ax.set_xlabel("residual F1 [mm]")
-    ax.set_ylabel("energy F2 [J]")
+    ax.set(xlabel="residual F1 [mm]", ylabel="energy F2 [J]")
 
 
 def legend_of(axes: Sequence[Axes]) -> tuple[list[Artist], list[str]]:

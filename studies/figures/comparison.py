@@ -12,7 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
-from quietarm.studies.comparison.measures import Comparison, Group
+from quietarm.studies.comparison.measures import Comparison as Comparison
+from quietarm.studies.comparison.measures import Group
+from quietarm.studies.comparison.measures import compare_fronts as compare_fronts
 from quietarm.studies.comparison.staircase import within
 from quietarm.studies.display.words import title_of
 from quietarm.studies.figures.axes import (

@@ -15,14 +15,11 @@ def durations_figure(found: OverDuration) -> Figure:
     energy, residual = figure.subplots(1, 2)
     times = [one.duration for one in found.points]
     plans = [one.plan for one in found.points]
-
-    def or_nan(values: list[float | None]) -> list[float]:
-        return [np.nan if value is None else value for value in values]
-
     cycloids = [one.cycloid for one in found.points]
-    spent = or_nan([plan and plan.energy for plan in plans])
-    left = or_nan([plan and 1e3 * plan.residual for plan in plans])
-    floors = or_nan([one.floor for one in found.points])
+    # None becomes NaN
+    spent = np.array([plan and plan.energy for plan in plans], float)
+    left = np.array([plan and 1e3 * plan.residual for plan in plans], float)
+    floors = np.array([one.floor for one in found.points], float)
     energy.plot(times, [one.energy for one in cycloids], "s-", color=GREY, label="plain cycloid")
     energy.plot(times, spent, "o-", color=BLUE, label="plan")
     energy.plot(times, floors, "--", color=GREEN, label="floor")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
@@ -36,7 +34,8 @@ def grid_figure(store: Store) -> Figure:
     axes = store.sweep.grid.axes
     if len(axes) == 1:
         return _over_one(store, axes[0])
-    slices, variables = [*_slices(store)], _variables(store)
+    places = [*np.ndindex(*store.sweep.grid.shape[:-2])][:_MOST_SLICES]
+    slices, variables = [(place, _words(axes, place)) for place in places], _variables(store)
     count = len(variables) + 1
     figure = new_figure(0.6 + 3.6 * count, 0.6 + 3.1 * len(slices))
     panels = figure.subplots(len(slices), count, squeeze=False, sharex=True, sharey=True)
@@ -52,7 +51,7 @@ def grid_figure(store: Store) -> Figure:
                 ax.text(0.5, 0.5, words, transform=ax.transAxes, ha="center", color="white")
         if (values > least).any():
             _colour_bar(figure, panels[:, column], norm)
-    _states(figure, panels[:, -1], x, y, store, [place for place, _ in slices])
+    _states(figure, panels[:, -1], x, y, store, places)
     for row, (_, words) in zip(panels, slices, strict=True):
         row[0].set_ylabel(f"{words}\n{y_name}" if words else y_name)
     for ax in panels[-1]:
@@ -108,13 +107,6 @@ def _variables(store: Store) -> list[tuple[str, Array, float]]:
         for name, (label, factor, least) in _SHOWN.items()
     ]
     return [one for one in every if np.isfinite(one[1]).any()] or every[:1]
-
-
-def _slices(store: Store) -> Iterator[tuple[tuple[int, ...], str]]:
-    """Places on the axes before the last two, and what they are, the first ones."""
-    axes = store.sweep.grid.axes
-    for place in [*np.ndindex(*store.sweep.grid.shape[:-2])][:_MOST_SLICES]:
-        yield place, _words(axes, place)
 
 
 def _words(axes: tuple[Axis, ...], place: tuple[int, ...]) -> str:

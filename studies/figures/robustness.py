@@ -53,8 +53,7 @@ def draw_robustness(plans: Mapping[str, Robustness], name: str, ax: Axes | None 
             ends = [100 * end for end, is_open in both if not is_open]
             ax.plot(ends, [limit] * len(ends), how.mark, color=how.colour, markersize=5)
     ax.axhline(limit, color="0.3", linewidth=0.8, linestyle="--", label=f"{limit:g} %")
-    ax.set_xlabel(f"error of {name} [%]")
-    ax.set_ylabel("residual [% of the plain cycloid's]")
+    ax.set(xlabel=f"error of {name} [%]", ylabel="residual [% of the plain cycloid's]")
     ax.set_ylim(bottom=0)
     ax.margins(x=0)
     return ax

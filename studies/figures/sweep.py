@@ -106,8 +106,7 @@ def draw_savings(before: Front, polish: Polish, ax: Axes | None = None) -> Axes:
     ax = axes_or_new(ax)
     gains = [(1e3 * gain.residual, 100 * gain.share) for gain in polish.gains if gain.tried]
     ax.plot(*np.reshape(gains, (-1, 2)).T, "o", color=BLUE, markersize=3)
-    ax.set_xlabel("residual F1 [mm]")
-    ax.set_ylabel("energy saved [%]")
+    ax.set(xlabel="residual F1 [mm]", ylabel="energy saved [%]")
     ax.set_ylim(bottom=0)
     scale_residuals(ax, _residuals(before, polish))
     return ax

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,8 @@ from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.record import REST, Setting
-from quietarm.studies.reading.foreign import MOST_MOTIONS, Found
+from quietarm.studies.reading.foreign import Found
+from quietarm.studies.reading.numbers import MOST_ROWS
 
 Array = NDArray[np.float64]
 
@@ -23,32 +25,11 @@ _NEAR_REST = 1e-6
 """They leave more than it does by this much [m] as well: near rest a share says little."""
 
 
-@dataclass(frozen=True)
-class Claim:
+class Claim(NamedTuple):
     """How what a file states of one figure compares with what its coefficients give."""
 
-    figure: str
-    unit: str
-    stated: int
-    differ: int
-    row: int
-    theirs: float
-    ours: float
-    factor: float
-
-    def line(self) -> str:
-        """In words."""
-        if not self.differ:
-            motions = "its motion" if self.stated == 1 else f"all {self.stated} motions"
-            return f"the file's {self.figure} is right for {motions}"
-        hint = ""
-        if abs(self.factor / 1000 - 1) < 0.05:
-            hint = f"; is it in m{self.unit}? name the column {self.figure}_m{self.unit}"
-        return (
-            f"the file's {self.figure} is wrong for {self.differ} of {self.stated} motions, most "
-            f"for motion {self.row}: {self.theirs:.4g} {self.unit} in the file, {self.ours:.4g} "
-            f"{self.unit} by its coefficients{hint}"
-        )
+    differs: bool
+    words: str
 
 
 def import_front(
@@ -61,7 +42,7 @@ def import_front(
 ) -> tuple[Front, list[Claim]]:
     """The front of coefficients from elsewhere, and how its claims compare."""
     table = found.coefficients
-    whole("number of motions", len(table), 1, MOST_MOTIONS)
+    whole("number of motions", len(table), 1, MOST_ROWS)
     if evaluations is not None:
         evaluations = whole("evaluations", evaluations, len(table))
     rows = np.array([_checked(i, row, profile, task) for i, row in enumerate(table, start=1)])
@@ -129,20 +110,24 @@ def _not_beaten(F: Array) -> NDArray[np.bool_]:
 
 def _claims(stated: Array, figures: Array) -> list[Claim]:
     found: list[Claim] = []
-    for column, (figure, unit, least) in enumerate(FIGURES):
-        theirs, ours = stated[:, column], figures[:, column]
+    for theirs, ours, (figure, unit, least) in zip(stated.T, figures.T, FIGURES, strict=True):
         known = ~np.isnan(theirs)
+        wrong = known & ~agrees(theirs, ours, least)
         if not known.any():
             continue
-        gap = np.where(known, np.abs(theirs - ours) - least, 0.0)
-        wrong = known & ~agrees(theirs, ours, least)
-        worst = int(np.argmax(np.where(wrong, gap / np.maximum(np.abs(ours), 1e-300), -1.0)))
+        if not wrong.any():
+            motions = "its motion" if known.sum() == 1 else f"all {known.sum()} motions"
+            found.append(Claim(False, f"the file's {figure} is right for {motions}"))
+            continue
+        gaps = (np.abs(theirs - ours) - least) / np.maximum(np.abs(ours), 1e-300)
+        worst = int(np.argmax(np.where(wrong, gaps, -1.0)))
         telling = known & (ours > 100 * REST)
-        factor = float(np.median(theirs[telling] / ours[telling])) if telling.any() else np.nan
-        found.append(
-            Claim(
-                figure, unit, int(known.sum()), int(wrong.sum()), worst + 1,
-                float(theirs[worst]), float(ours[worst]), factor,
-            )
-        )  # fmt: skip
+        hint = ""
+        if telling.any() and abs(np.median(theirs[telling] / ours[telling]) / 1000 - 1) < 0.05:
+            hint = f"; is it in m{unit}? name the column {figure}_m{unit}"
+        found.append(Claim(True, (
+            f"the file's {figure} is wrong for {wrong.sum()} of {known.sum()} motions, most for "
+            f"motion {worst + 1}: {theirs[worst]:.4g} {unit} in the file, {ours[worst]:.4g} {unit} "
+            f"by its coefficients{hint}"
+        )))  # fmt: skip
     return found

@@ -34,23 +34,12 @@ class RecordedPath:
 
 
 def read_path(path: Path) -> RecordedPath:
-    """Read a CSV file with columns such as time_s and angle_deg.
-
-    Raises
-    ------
-    FileFormatError
-        When the file has no such columns, times do not increase, the path jumps, or the numbers
-        cannot be an angle in the stated unit.
-    """
+    """Read a CSV file with columns such as time_s and angle_deg."""
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
     table = read_table(path)
-    time, angle = (
-        column_in(
-            path, table, column_of(path, table, quantity, UNITS[quantity]), "", UNITS[quantity]
-        )
-        for quantity in ("time", "angle")
-    )
+    names = {one: column_of(path, table, one, UNITS[one]) for one in ("time", "angle")}
+    time, angle = (column_in(path, table, names[one], "", UNITS[one]) for one in names)
     _check(path, time, angle)
     spline = CubicSpline(time - time[0], angle, bc_type="clamped")
     jerk, acceleration, *_ = spline.c

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 from quietarm.ocp import FileFormatError, Recording
-from quietarm.ocp.checks import unknown
 from quietarm.studies.export.tables import UNITS as OF_MOVES
+from quietarm.studies.export.tables import columns_of
 from quietarm.studies.reading.table import Units, column_in, column_of, read_table
 
 UNITS: Mapping[str, Units] = {
@@ -20,55 +20,29 @@ UNITS: Mapping[str, Units] = {
 
 def units_of(text: str) -> dict[str, str]:
     """Read units of quantities, `time:ms,angle:deg`; ValueError when one is unknown."""
-    found: dict[str, str] = {}
-    for one in text.split(","):
-        quantity, _, unit = (part.strip() for part in one.partition(":"))
-        if quantity not in UNITS:
-            raise ValueError(unknown("quantity", quantity, UNITS))
-        if unit not in UNITS[quantity]:
-            raise ValueError(unknown(f"unit of {quantity}", unit, UNITS[quantity]))
-        found[quantity] = unit
-    return found
+    return {name: unit for name, (unit, _) in columns_of(text, UNITS, "quantity").items()}
 
 
 def read_recording(
     path: Path, columns: Mapping[str, Sequence[str]], units: Mapping[str, str], name: str
 ) -> Recording:
-    """Read a recording.
+    """Read a recording from the columns of a file, named by quantity of `UNITS`.
 
-    Parameters
-    ----------
-    path : Path
-        The file, as of `read_table`.
-    columns : mapping of str to sequence of str
-        Names of its columns by quantity, of `UNITS`; the time's is found where it is not named.
-    units : mapping of str to str
-        Units by quantity where the columns' names do not end in them.
-    name : str
-        What the recording is called.
-
-    Raises
-    ------
-    FileFormatError
-        When a column is missing, or they are no recording.
+    The time's column is found where it is not named. Units are those where the columns' names do
+    not end in one.
     """
     table = read_table(path)
     times = columns.get("time") or [column_of(path, table, "time", UNITS["time"])]
     signals = {
-        quantity: np.stack(
-            [
-                column_in(path, table, name, units.get(quantity, ""), UNITS[quantity])
-                for name in names
-            ],
-            axis=1,
-        )
+        quantity: np.column_stack([
+            column_in(path, table, name, units.get(quantity, ""), UNITS[quantity])
+            for name in names
+        ])
         for quantity, names in {**columns, "time": times}.items()
         if names
-    }
-    for quantity in ("time", "angle", "torque"):
-        if quantity in signals:
-            signals[quantity] = signals[quantity][:, 0]
+    }  # fmt: skip
+    flat = {one: signals[one][:, 0] for one in ("time", "angle", "torque") if one in signals}
     try:
-        return Recording(**signals, name=name)
+        return Recording(**{**signals, **flat}, name=name)
     except ValueError as error:
         raise FileFormatError(str(error)) from None

@@ -1,8 +1,7 @@
-"""Columns of numbers by their names, from text, NumPy's arrays and MATLAB's files."""
+"""Columns of numbers by their names, and their units."""
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.checks import unknown
-from quietarm.ocp.files import read_bytes
+from quietarm.studies.reading.numbers import read_numbers
 
 Array = NDArray[np.float64]
 Units = Mapping[str, float]
@@ -19,33 +18,8 @@ Units = Mapping[str, float]
 
 
 def read_table(path: Path) -> dict[str, Array]:
-    """Columns by name, of a file by its ending: .npy, .mat (version 5), and text for any other.
-
-    The first line of text names its columns, after a # or not; those of an array are 0, 1, ...
-    Nothing in a file is run.
-
-    Raises
-    ------
-    FileFormatError
-        When the file is no such table.
-    """
-    content, kind = read_bytes(path), path.suffix.lower()
-    try:
-        if kind == ".npy":
-            return _of_array(np.load(io.BytesIO(content), allow_pickle=False))
-        if kind == ".mat":
-            from scipy.io import loadmat  # takes long to load
-
-            return _of_variables(loadmat(io.BytesIO(content), squeeze_me=True))
-        return _of_text(content.decode("utf-8-sig"))
-    except UnicodeDecodeError:
-        reason = "it is no text"
-    except Exception as error:  # whatever their parsers make of a damaged file
-        reason = str(error)
-    raise FileFormatError(
-        f"{path} is no table of numbers under a heading ({reason}); write columns such as time_s "
-        "and angle_rad, separated by commas"
-    )
+    """Columns by name, of a file as of `read_numbers`; without names they are 0, 1, ..."""
+    return read_numbers(path, _by_columns, _vectors, marked=True)
 
 
 def column_in(path: Path, table: Mapping[str, Array], name: str, unit: str, units: Units) -> Array:
@@ -73,43 +47,23 @@ def column_of(path: Path, table: Mapping[str, Array], quantity: str, units: Unit
     raise FileFormatError(f"{path} has no column {wanted}; its columns are {', '.join(table)}")
 
 
-def _of_text(text: str) -> dict[str, Array]:
-    lines = [line for line in text.splitlines() if line.strip()]
-    between = next((mark for mark in (";", "\t", ",") if mark in lines[0]), None)
-    heading = [name.strip().strip('"') for name in lines[0].lstrip("#% ").split(between)]
-    rows = [line for line in lines[1:] if not line.startswith(("#", "%"))]
-    try:
-        float(heading[0])
-    except ValueError:
-        pass
-    else:
-        raise ValueError("its first line has numbers and names no columns")
-    if not rows:
-        raise ValueError("it has no rows below its first line")
-    if between == ";":
-        rows = [row.replace(",", ".") for row in rows]
-    cells = [row.split(between) for row in rows]
-    for number, row in enumerate(cells, start=2):
-        if len(row) != len(heading):
-            raise ValueError(f"line {number} has {len(row)} columns, the first {len(heading)}")
-    return dict(zip(heading, np.array(cells, float).T, strict=True))
+def _by_columns(names: list[str] | None, rows: Array) -> dict[str, Array]:
+    if rows.ndim != 2:
+        raise FileFormatError(f"the array has {rows.ndim} dimensions; give columns")
+    if names is None:
+        columns = rows if rows.shape[0] < rows.shape[1] else rows.T
+        return {str(k): column for k, column in enumerate(columns)}
+    if not len(rows):
+        raise FileFormatError("it has no rows below its first line; write some")
+    return dict(zip(names, rows.T, strict=True))
 
 
-def _of_array(values: Any) -> dict[str, Array]:
-    if values.dtype.names:
-        return {name: np.asarray(values[name], float) for name in values.dtype.names}
-    if values.ndim != 2:
-        raise ValueError(f"the array has {values.ndim} dimensions")
-    columns = values if values.shape[0] < values.shape[1] else values.T
-    return {str(k): np.asarray(column, float) for k, column in enumerate(columns)}
-
-
-def _of_variables(values: Mapping[str, Array]) -> dict[str, Array]:
+def _vectors(values: Mapping[str, Any]) -> dict[str, Array]:
     numbers = {
-        name: np.asarray(value, float)
+        name: np.squeeze(value).astype(float)
         for name, value in values.items()
-        if isinstance(value, np.ndarray) and value.dtype.kind in "fiu" and value.ndim == 1
+        if np.asarray(value).dtype.kind in "fiu" and np.squeeze(value).ndim == 1
     }
     if not numbers:
-        raise ValueError("it has no vectors of numbers")
+        raise FileFormatError("it has no vectors of numbers; save the time and what rings as such")
     return numbers

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.floor.search import energy_floor
+from quietarm.studies import figures
 from quietarm.studies.comparison.measures import Comparison
 from quietarm.studies.comparison.tables import how_to_read, runs_table, summary, tables, units
 from quietarm.studies.display.words import title_of
@@ -37,12 +38,10 @@ def comparison_document(comparison: Comparison) -> Document:
     """A row a method, tables, how to read them, the picture; every run with all of its figures."""
     shown = tables(comparison)
     lines = [*how_to_read(comparison), *units(comparison)]
+    terms = {run.front.profile.size for run in comparison.runs}
 
     def picture() -> Figure:
-        from quietarm.studies.figures import comparison_figure
-
-        terms = {run.front.profile.size for run in comparison.runs}
-        return comparison_figure(comparison, paper_points(comparison.task, terms))
+        return figures.comparison_figure(comparison, paper_points(comparison.task, terms))
 
     return Document(
         f"Fronts compared: {title_of(comparison.task)}",

@@ -101,10 +101,7 @@ def _verified_row(plan: Plan) -> Row:
 
 def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
     """The move and its limits, and where the motion breaks one."""
-    limits = ", ".join(
-        f"{name} {_quantity(name, value)}{_broken(name, motion.peak(name), value)}"
-        for name, value in task.limits.items()
-    )
+    limits = ", ".join(_limit(name, most, motion.peak(name)) for name, most in task.limits.items())
     return [
         ("move", f"{plant_words(task.plant)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
@@ -181,10 +178,8 @@ def _tip(task: PointToPoint) -> str:
     )
 
 
-def _quantity(name: str, value: float) -> str:
-    return f"{value:g} {QUANTITIES[name].unit}"
-
-
-def _broken(name: str, peak: float, limit: float) -> str:
-    """How a limit is broken; nothing where it is kept to the README's tolerance."""
-    return "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {QUANTITIES[name].unit})"
+def _limit(name: str, limit: float, peak: float) -> str:
+    """A limit, and how it is broken; nothing where it is kept to the README's tolerance."""
+    unit = QUANTITIES[name].unit
+    broken = "" if peak <= limit * 1.001 else f" (broken: {peak:.4g} {unit})"
+    return f"{name} {limit:g} {unit}{broken}"

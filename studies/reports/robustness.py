@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Mapping
 
-import numpy as np
-from numpy.typing import NDArray
 from quietarm.ocp import Plan, Robustness, Sweep
 from quietarm.ocp.robustness.measures import TOLERATED
+from quietarm.studies import figures
 from quietarm.studies.display.words import REST, move_of, plant_words
 from quietarm.studies.document.blocks import Bullets, Document, Picture, Section
 from quietarm.studies.document.table import Cell, Column, Table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _SHARES = {50: "median of the samples", 95: "95 % of them within", 100: "largest of them"}
 _DIGITS, _LENGTH = "{:.5g}".format, "{:.3g}".format
@@ -23,16 +18,15 @@ Figured = Mapping[str, tuple[Plan, Robustness]]
 """Every plan with its figures, by what it is called."""
 
 
-def robustness_table(plans: Figured) -> Table:
+def _table(plans: Figured) -> Table:
     """The figures of every plan."""
-    lines = _lines(next(iter(plans.values()))[1])
     columns = [Column("plan"), Column("plant"), Column("move"), Column("profile")]
+    columns += [column for column, _ in _figures(next(iter(plans.values()))[1])]
     rows: list[list[Cell]] = []
     for label, (plan, found) in plans.items():
-        task = plan.task
-        row: list[Cell] = [label, plant_words(task.plant), move_of(task), plan.profile.label]
-        rows.append([*row, *(cell(found) for _, cell in lines)])
-    return Table("", [*columns, *(column for column, _ in lines)], rows)
+        task, cells = plan.task, (cell for _, cell in _figures(found))
+        rows.append([label, plant_words(task.plant), move_of(task), plan.profile.label, *cells])
+    return Table("", columns, rows)
 
 
 def _summary(plans: Figured) -> Table:
@@ -50,68 +44,40 @@ def _summary(plans: Figured) -> Table:
     return Table("", [Column(column) for column in columns], rows).turned()
 
 
-_Line = tuple[Column, Callable[[Robustness], float | None]]
+def _figures(found: Robustness) -> Iterator[tuple[Column, Cell]]:
+    """Every figure of a plan, and its column."""
+    yield Column("plain cycloid leaves [mm]", _LENGTH, "cycloid_residual_mm"), 1e3 * found.cycloid
+    yield from _of_samples(found, "residual", "mm", 1e3, _LENGTH)
+    for sweep in found.sweeps:
+        yield from _of_sweep(sweep)
+    yield from _of_samples(found, "energy", "J", 1.0, _DIGITS)
+    yield from _of_samples(found, "peak_torque", "N m", 1.0, _DIGITS)
 
 
-def _lines(some: Robustness) -> list[_Line]:
-    """Every figure, with how it is read off the figures of a plan."""
-    lines: list[_Line] = [
-        (Column("plain cycloid leaves [mm]", _LENGTH, "cycloid_residual_mm"),
-         lambda found: 1e3 * found.cycloid),
-    ]  # fmt: skip
-    lines += _of_figure("residual", "mm", 1e3, _LENGTH)
-    for i in range(len(some.sweeps)):
-        lines += _of_sweep(i, some.sweeps[i])
-    lines += _of_figure("energy", "J", 1.0, _DIGITS)
-    lines += _of_figure("peak_torque", "N m", 1.0, _DIGITS)
-    return lines
-
-
-def _of_figure(name: str, unit: str, scale: float, form: Callable[[float], str]) -> list[_Line]:
+def _of_samples(
+    found: Robustness, name: str, unit: str, scale: float, form: Callable[[float], str]
+) -> Iterator[tuple[Column, Cell]]:
     words, key = name.replace("_", " "), f"{name}_{unit.replace(' ', '')}"
-
-    def percentile(share: float) -> Callable[[Robustness], float]:
-        return lambda found: scale * found.percentile(name, share)
-
-    return [
-        (Column(f"{words} [{unit}]", form, key),
-         lambda found: scale * float(getattr(found.assumed, name)[0])),
-        *((Column(f"  {word}", form, f"{key}_p{share}"), percentile(share))
-          for share, word in _SHARES.items()),
-    ]  # fmt: skip
+    yield Column(f"{words} [{unit}]", form, key), scale * float(getattr(found.assumed, name)[0])
+    for share, word in _SHARES.items():
+        yield Column(f"  {word}", form, f"{key}_p{share}"), scale * found.percentile(name, share)
 
 
-def _of_sweep(number: int, sweep: Sweep) -> list[_Line]:
+def _of_sweep(sweep: Sweep) -> Iterator[tuple[Column, Cell]]:
     name, size = sweep.name, f"{100 * float(sweep.errors[-1]):g} %"
-
-    def residual(pick: Callable[[NDArray[np.float64]], float]) -> Callable[[Robustness], float]:
-        return lambda found: 1e3 * float(pick(found.sweeps[number].figures.residual))
-
-    def end(which: int) -> Callable[[Robustness], float | None]:
-        def read(found: Robustness) -> float | None:
-            ends = found.sweeps[number].insensitivity
-            return None if ends is None else 100 * ends[which]
-
-        return read
-
-    return [
-        (Column(f"  {name} -{size}", _LENGTH, f"residual_{name}_lower_mm"), residual(_first)),
-        (Column(f"  {name} +{size}", _LENGTH, f"residual_{name}_higher_mm"), residual(_last)),
-        (Column("    largest between", _LENGTH, f"residual_{name}_largest_mm"), residual(np.max)),
-        (Column(f"    {_TOLERATED} from [%]", _LENGTH, f"{name}_tolerated_from_percent"), end(0)),
-        (Column("      to [%]", _LENGTH, f"{name}_tolerated_to_percent"), end(1)),
-    ]  # fmt: skip
+    left, ends = 1e3 * sweep.figures.residual, sweep.insensitivity
+    low, high = (None, None) if ends is None else (100 * end for end in ends)
+    for words, key, cell in (
+        (f"  {name} -{size}", f"residual_{name}_lower_mm", float(left[0])),
+        (f"  {name} +{size}", f"residual_{name}_higher_mm", float(left[-1])),
+        ("    largest between", f"residual_{name}_largest_mm", float(left.max())),
+        (f"    {_TOLERATED} from [%]", f"{name}_tolerated_from_percent", low),
+        ("      to [%]", f"{name}_tolerated_to_percent", high),
+    ):
+        yield Column(words, _LENGTH, key), cell
 
 
-def _first(values: NDArray[np.float64]) -> float:
-    return values[0]
-
-
-def _last(values: NDArray[np.float64]) -> float:
-    return values[-1]
-
-
-def how_to_read(plans: Figured) -> list[str]:
+def _how_to_read(plans: Figured) -> list[str]:
     """What the figures mean, a sentence or two each."""
     some = next(iter(plans.values()))[1]
     return [
@@ -128,20 +94,18 @@ def how_to_read(plans: Figured) -> list[str]:
 
 def robustness_document(plans: Figured) -> Document:
     """The table, how to read it, the picture; and every curve and sample."""
-
-    def picture() -> Figure:
-        from quietarm.studies.figures.robustness import robustness_figure
-
-        return robustness_figure({label: figures for label, (_, figures) in plans.items()})
-
-    table = robustness_table(plans)
+    table, measured = _table(plans), {label: found for label, (_, found) in plans.items()}
     return Document(
         "Robustness",
         [
             *([_summary(plans)] if len(plans) > 1 else []),
             table,
-            Section("How to read it", [Bullets(how_to_read(plans), soft=True)]),
-            Picture("robustness.png", picture, "Residual over errors"),
+            Section("How to read it", [Bullets(_how_to_read(plans), soft=True)]),
+            Picture(
+                "robustness.png",
+                lambda: figures.robustness_figure(measured),
+                "Residual over errors",
+            ),
         ],
         {"robustness": table, "sweeps": _sweeps(plans), "samples": _samples(plans)},
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -33,79 +34,61 @@ _LEAST_SHARE = 0.02
 
 @dataclass(frozen=True)
 class Rival:
-    """What one way to move makes of a move.
-
-    Attributes
-    ----------
-    name : str
-        What it is called.
-    motion : Motion or None
-        Its figures, by CVODES on the assumed plant; None where it cannot be.
-    worst : float or None
-        The largest residual within the errors [m]; None where there are no errors.
-    why : str
-        Why it cannot be.
-    """
+    """What one way to move makes of a move: its figures by CVODES, or why it cannot be."""
 
     name: str
     motion: Motion | None = None
     worst: float | None = None
+    """The largest residual within the errors [m]; None where there are none."""
     why: str = ""
 
 
 def rivals(
     task: PointToPoint, profile: JointProfile, residual_limit: float | None = None
 ) -> Iterator[Rival]:
-    """Every way to make a move, one after another.
+    """Every way to make a move, one after another; with errors of the plant a robust plan, too.
 
-    Parameters
-    ----------
-    task : PointToPoint
-        The move. Of an uncertain plant there is a robust plan as well, and the worst within its
-        errors; limits are for the plans and for ruckig.
-    profile : JointProfile
-        Of the plans.
-    residual_limit : float, optional
-        Of the robust plan; see `plan_move`.
+    The residual limit is of that; those of the task are for the plans and for ruckig.
     """
+    for name, joint_of in _ways(task, profile, residual_limit):
+        try:
+            rival = _judged(name, task, joint_of())
+        except (QuietarmError, ValueError) as error:
+            rival = Rival(name, why=str(error))
+        yield rival
+
+
+def _ways(
+    task: PointToPoint, profile: JointProfile, residual_limit: float | None
+) -> Iterator[tuple[str, Callable[[], PiecewiseMotion]]]:
+    """What moves the joint, by its name."""
     certain = task.nominal
-    yield _planned("plan", task, lambda: plan_move(certain, profile))
+
+    def along(plan: Plan) -> PiecewiseMotion:
+        return PiecewiseMotion.of_profile(certain, plan.profile, plan.coefficients)
+
+    def shaped_by(shaper: str) -> PiecewiseMotion:
+        own = shaped_cycloid(certain, shaper)
+        return along(evaluate_coefficients(certain, [], profile=own))
+
+    yield "plan", lambda: along(plan_move(certain, profile))
     if task.errors:
-        yield _planned(
-            "robust plan", task, lambda: plan_move(task, profile, residual_limit=residual_limit)
-        )
-    yield _planned("plain cycloid", task, lambda: evaluate_coefficients(certain, []))
+        limit = residual_limit
+        yield "robust plan", lambda: along(plan_move(task, profile, residual_limit=limit))
+    yield "plain cycloid", lambda: along(evaluate_coefficients(certain, []))
     for name in SHAPERS:
-        yield _planned(
-            f"{name}, cycloid", task,
-            lambda name=name: evaluate_coefficients(
-                certain, [], profile=shaped_cycloid(certain, name)
-            ),
-        )  # fmt: skip
-    for name in ("", *SHAPERS):
-        yield _by_ruckig(task, name)
+        yield f"{name}, cycloid", partial(shaped_by, name)
+    yield "ruckig", partial(_by_ruckig, certain, Impulses((1.0,), (0.0,)))
+    for name in SHAPERS:
+        yield f"{name}, ruckig", lambda name=name: _by_ruckig(certain, _impulses(task, name))
 
 
-def _planned(name: str, task: PointToPoint, plan_of: Callable[[], Plan]) -> Rival:
-    try:
-        plan = plan_of()
-    except (QuietarmError, ValueError) as error:
-        return Rival(name, why=str(error))
-    joint = PiecewiseMotion.of_profile(task.nominal, plan.profile, plan.coefficients)
-    return _judged(name, task, joint)
-
-
-def _by_ruckig(task: PointToPoint, shaper: str) -> Rival:
-    name = f"{shaper}, ruckig" if shaper else "ruckig"
-    try:
-        impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
-        left = task.duration - impulses.times[-1]
-        if left < _LEAST_SHARE * task.duration:
-            return Rival(name, why=f"the shaper alone takes {impulses.times[-1]:.3g} s")
-        free = shaped(ruckig_motion(replace(task.nominal, duration=left)), impulses)
-    except (QuietarmError, ValueError) as error:
-        return Rival(name, why=str(error))
-    return _judged(name, task, PiecewiseMotion.of_free_motion(task.nominal, free))
+def _by_ruckig(task: PointToPoint, impulses: Impulses) -> PiecewiseMotion:
+    left = task.duration - impulses.times[-1]
+    if left < _LEAST_SHARE * task.duration:
+        raise ValueError(f"the shaper alone takes {impulses.times[-1]:.3g} s")
+    free = shaped(ruckig_motion(replace(task, duration=left)), impulses)
+    return PiecewiseMotion.of_free_motion(task, free)
 
 
 def _impulses(task: PointToPoint, shaper: str) -> Impulses:
@@ -116,10 +99,7 @@ def _impulses(task: PointToPoint, shaper: str) -> Impulses:
 def ruckig_motion(task: PointToPoint) -> FreeMotion:
     """The motion of constant jerk that ruckig finds within a task's limits, in its duration.
 
-    Raises
-    ------
-    ValueError
-        When ruckig is not installed, the task limits no acceleration, or the duration is too short.
+    ValueError where ruckig is not installed, the task limits no acceleration, or time is too short.
     """
     try:
         from ruckig import InputParameter, Ruckig, Trajectory
@@ -161,11 +141,8 @@ def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
 
 
 def _judged(name: str, task: PointToPoint, joint: PiecewiseMotion) -> Rival:
-    try:
-        found = resimulated(task.nominal, joint)
-        left = [resimulated(task.nominal, joint, one).residual for one in _errors(task.errors)]
-    except QuietarmError as error:
-        return Rival(name, why=str(error))
+    found = resimulated(task.nominal, joint)
+    left = [resimulated(task.nominal, joint, one).residual for one in _errors(task.errors)]
     return Rival(name, found.motion, max(left, default=None))
 
 

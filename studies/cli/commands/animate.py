@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 from quietarm.studies.cli.options import quiet_option
@@ -24,15 +25,7 @@ from quietarm.studies.cli.types import INPUT, SHARE, STATE, WHOLE
 @click.option("--width", type=WHOLE, default=800, show_default=True, help="In pixels.")
 @plant_file_option(expose_value=False)
 @quiet_option
-def animate(
-    plans: tuple[Path, ...],
-    output: Path,
-    speed: float,
-    deflection_scale: float | None,
-    frames_per_second: float,
-    width: int,
-    quiet: bool,
-) -> None:
+def animate(plans: tuple[Path, ...], output: Path, quiet: bool, **look: Any) -> None:
     """Draw structures in motion, side by side and on one clock.
 
     PLANs are files written by `quietarm plan` or `evaluate`, of any plants and durations; one alone
@@ -59,9 +52,6 @@ def animate(
     lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
     motions = lines if len(lines) > 1 else lines[0].plan
     with count(0, "frames", Console(stderr=True), quiet=quiet) as report:
-        film = draw(
-            motions, speed=speed, deflection_scale=deflection_scale, width=width,
-            frames_per_second=frames_per_second, format=kind, report=report,
-        )  # fmt: skip
+        film = draw(motions, format=kind, report=report, **look)
     size = f"{film.frames} frames, {film.seconds:.1f} s, {len(film.content) / 1e3:.0f} kB"
     finish([(output, film.save)], Document("", [Lines([size])]))

@@ -71,6 +71,5 @@ def compare(
         except KeyboardInterrupt:
             trouble = QuietarmError("interrupted; the comparison is kept, without the floor")
     document = comparison_document(comparison)
-    files = [] if output is None else document_files(output, document)
-    files = [*files, latex_file(latex, document)]
+    files = [*document_files(output, document), latex_file(latex, document)]
     finish(files, document, trouble=trouble, quiet=quiet)

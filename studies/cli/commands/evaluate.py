@@ -12,8 +12,8 @@ from quietarm.studies.cli.options import (
     profile_option,
     quiet_option,
     refuse_idle,
+    refuse_typed,
     sensitivities_option,
-    typed,
 )
 from quietarm.studies.cli.task import robust_option, task_or_path_options
 from quietarm.studies.cli.types import COEFFICIENTS
@@ -40,9 +40,7 @@ _NOT_OF_A_PATH = ("coefficients", "profile", "sensitive", "output", "csv_file", 
 @sensitivities_option
 @quiet_option
 @plan_file_options
-@click.pass_context
 def evaluate(
-    context: click.Context,
     task: PointToPoint,
     recorded: RecordedPath | None,
     profile: str,
@@ -62,18 +60,14 @@ def evaluate(
       quietarm evaluate flexible-beam --set omega=3.2Hz --path recorded.csv
     """  # noqa: D301  # \b is click's: do not rewrap
     if recorded is not None:
-        for name in _NOT_OF_A_PATH:
-            if typed(name):
-                option = "sensitivities" if name == "sensitive" else name.removesuffix("_file")
-                raise click.UsageError(f"--{option} is not for a --path")
+        refuse_typed(_NOT_OF_A_PATH, "is not for a --path")
         with working("integrating", Console(stderr=True), quiet=quiet):
             path = evaluated_path(task, recorded)
         finish([], path)
         return
     refuse_idle(profile, {"coefficients": list(FAMILIES)})
     if profile in FAMILIES and coefficients is None:
-        (option,) = (one for one in context.command.params if one.name == "coefficients")
-        raise click.MissingParameter(ctx=context, param=option)
+        raise click.UsageError("Missing option '--coefficients'.")
     numbers = coefficients or []
     family = FAMILIES.get(profile)
     motions = family.of_size(len(numbers)) if family else profile_of(profile, task)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 from quietarm.ocp import PointToPoint, energy_floor
 from quietarm.ocp.interrupts import note_interrupts
+from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import task_options
@@ -16,9 +17,6 @@ from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.reports.floor import floor_document, plan_beside
 from rich.console import Console
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @click.command()
@@ -34,14 +32,7 @@ if TYPE_CHECKING:
 @click.option("--figure", type=PICTURE, help="Draw it over the plan (.png, .pdf or .svg).")
 @quiet_option
 def floor(
-    task: PointToPoint,
-    smooth: bool,
-    starts: int,
-    seed: int,
-    tolerance: float,
-    output: Path | None,
-    figure: Path | None,
-    quiet: bool,
+    task: PointToPoint, output: Path | None, figure: Path | None, quiet: bool, **asked: Any
 ) -> None:
     """Find the least energy of a move over all joint motions, at rest on arrival.
 
@@ -56,17 +47,12 @@ def floor(
           --figure floor.png --output floor.json
     """  # noqa: D301  # \b is click's: do not rewrap
     with working("refining the grid", Console(stderr=True), quiet=quiet):
-        found = energy_floor(task, smooth=smooth, starts=starts, seed=seed, tolerance=tolerance)
+        found = energy_floor(task, **asked)
         with note_interrupts() as came:  # the floor is found, and the plan takes a moment
             plan = plan_beside(found) if found.complete else None
 
-    def picture() -> Figure:
-        from quietarm.studies.figures import floor_figure
-
-        return floor_figure(found, plan)
-
     finish(
-        [(output, found.save), (figure, drawing(picture))],
+        [(output, found.save), (figure, drawing(lambda: figures.floor_figure(found, plan)))],
         floor_document(found, plan),
         trouble=interruption(found.provenance.stopped) if came or not found.complete else None,
     )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from quietarm.metaheuristics.ensemble import LostSeedsError, search_many, seeds_of
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError, cross_check
+from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import (
     family_option,
@@ -38,13 +39,11 @@ from quietarm.studies.cli.types import (
 from quietarm.studies.display.progress import count
 from quietarm.studies.display.saving import STDOUT, drawing
 from quietarm.studies.display.search_progress import search_display
+from quietarm.studies.document.blocks import Document
 from quietarm.studies.registry.methods import METHODS, WEIGHTED, Kind, methods_of
 from quietarm.studies.registry.profiles import profile_of
 from quietarm.studies.reports.front import failure_lines, searches_document, sweep_document
 from rich.console import Console
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 GRADIENT = [method.name for method in methods_of(Kind.GRADIENT)]
 METAHEURISTICS = [method.name for method in methods_of(Kind.METAHEURISTIC)]
@@ -182,32 +181,46 @@ def front(
         raise click.UsageError("missing option --method; give one, as epsilon, or --over duration")
     refuse_idle(method, {"weights": [WEIGHTED.name], **dict.fromkeys(OF_GRADIENT, GRADIENT)})
     refuse_idle(method, dict.fromkeys(OF_SEARCHES, METAHEURISTICS), "a metaheuristic")
+    several = len(seeds_of(settings["seed"], settings["runs"])) > 1
+    for option, path in {"--output": output, "--csv": csv_file}.items():
+        if several and path is STDOUT:
+            raise ValueError(f"{option} - is for one run; with --runs give the name of a file")
     idle = OF_SEARCHES if method in GRADIENT else (*OF_GRADIENT, "weights")
     settings = {name: value for name, value in settings.items() if name not in idle}
     settings["profile"] = profile_of(profile, task, terms)
-    files = output, csv_file, figure
-    if method in GRADIENT:
-        _by_gradient(task, method, files, quiet, **settings)
-    else:
-        _by_search(task, method, files, quiet, **settings)
+    find = _by_gradient if method in GRADIENT else _by_search
+    fronts, draw, document, trouble = find(task, method, quiet, **settings)
+
+    def path_of(path: Path | None, front: Front) -> Path | None:
+        """With several seeds front.json is front-seed3.json for seed 3."""
+        return path.with_stem(f"{path.stem}-seed{front.seed}") if path and several else path
+
+    finish(
+        [
+            *((path_of(output, front), front.save) for front in fronts),
+            *((path_of(csv_file, front), front.save_csv) for front in fronts),
+            (figure, drawing(draw)),
+        ],
+        document,
+        trouble=trouble,
+    )
 
 
-Files = tuple[Path | None, Path | None, Path | None]
-"""Of the front, of its points, of the picture; None where one is not asked for."""
+Found = tuple[list[Front], Callable[[], Any], Document, Exception | None]
+"""Fronts, what draws and what shows them, and what went wrong."""
 
 
 def _by_gradient(
     task: PointToPoint,
     method: str,
-    files: Files,
     quiet: bool,
     *,
     check: bool,
     weights: Sequence[tuple[float, float]],
     points: int,
     **settings: Any,
-) -> None:
-    """Sweep the front by the gradient, write what was found, and show it."""
+) -> Found:
+    """Sweep the front by the gradient."""
     if weights and typed("points"):
         raise ValueError("--points is for weights that the sweep chooses; leave it out")
     errors, asked = Console(stderr=True), {"weights": weights} if weights else {"points": points}
@@ -226,50 +239,33 @@ def _by_gradient(
                 checked = cross_check(front, _CHECKED, report)
         except KeyboardInterrupt:  # the front is there
             complete = False
-
-    def picture() -> Figure:
-        from quietarm.studies.figures import sweep_figure
-
-        return sweep_figure(front)
-
-    output, csv_file, figure = files
-    finish(
-        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
-        sweep_document(front, asked_for, checked),
-        trouble=None if complete else interruption(),
-    )
+    document = sweep_document(front, asked_for, checked)
+    trouble = None if complete else interruption()
+    return [front], lambda: figures.sweep_figure(front), document, trouble
 
 
 def _by_search(
     task: PointToPoint,
     method: str,
-    files: Files,
     quiet: bool,
     *,
     runs: int,
-    seed: int,
     setting: Sequence[tuple[str, str]],
-    workers: int,
     **settings: Any,
-) -> None:
-    """Search from every seed, write what was found, and show it."""
-    output, csv_file, figure = files
-    several = len(seeds_of(seed, runs)) > 1
-    if several and (settings["checkpoint"] or settings["resume"]):
+) -> Found:
+    """Search from every seed."""
+    if runs > 1 and (settings["checkpoint"] or settings["resume"]):
         raise ValueError(
             "--checkpoint and --resume are for one run, not with --runs; leave one of them out"
         )
-    for option, path in {"--output": output, "--csv": csv_file}.items():
-        if several and path is STDOUT:
-            raise ValueError(f"{option} - is for one run; with --runs give the name of a file")
     errors, lost, warnings = Console(stderr=True), None, list[str]()
-    warn_of_workers(errors, workers, runs)
-    settings |= {"settings": settings_of_one(setting), "seed": seed, "workers": workers}
+    warn_of_workers(errors, settings["workers"], runs)
+    settings["settings"] = settings_of_one(setting)
     with search_display(errors, quiet=quiet) as display:
         report: dict[str, Callable[..., object]] = {
             "report": lambda progress, seed: display(progress), "warn": warnings.append,
         }  # fmt: skip
-        if several:
+        if runs > 1:
             report = {"report": display, "done": display.finish}
         try:
             fronts = search_many(task, method, runs, **report, **settings)
@@ -281,26 +277,9 @@ def _by_search(
         if stopped:
             raise KeyboardInterrupt
         raise lost or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
-
-    def picture() -> Figure:
-        from quietarm.studies.figures import front_figure
-
-        return front_figure(fronts)
-
-    def path_of(path: Path | None, front: Front) -> Path | None:
-        """With several seeds front.json is front-seed3.json for seed 3."""
-        return path.with_stem(f"{path.stem}-seed{front.seed}") if path and several else path
-
-    trouble = "; ".join(filter(None, [stopped, *warnings]))
-    finish(
-        [
-            *((path_of(output, front), front.save) for front in fronts),
-            *((path_of(csv_file, front), front.save_csv) for front in fronts),
-            (figure, drawing(picture)),
-        ],
-        searches_document(fronts),
-        trouble=lost or (QuietarmError(trouble) if trouble else None),
-    )
+    words = "; ".join(filter(None, [stopped, *warnings]))
+    trouble = lost or (QuietarmError(words) if words else None)
+    return fronts, lambda: figures.front_figure(fronts), searches_document(fronts), trouble
 
 
 def _interruption(fronts: Sequence[Front], runs: int) -> str:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 from quietarm.models import Plant
 from quietarm.ocp import identify as identified
+from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.plants import chosen_plant
@@ -19,9 +19,6 @@ from quietarm.studies.display.saving import drawing
 from quietarm.studies.reading.recording import read_recording, units_of
 from quietarm.studies.reports.identify import identified_document
 from rich.console import Console
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @click.command()
@@ -51,16 +48,12 @@ def identify(
     plant: type[Plant],
     plant_file: Mapping[str, type[Plant]] | None,
     parameters: tuple[tuple[str, str], ...],
-    time: str | None,
-    angle: str | None,
-    tip: tuple[str, ...],
-    acceleration: tuple[str, ...],
-    torque: str | None,
     units: Mapping[str, str],
     free: list[str] | None,
     output: Path | None,
     figure: Path | None,
     quiet: bool,
+    **named: str | tuple[str, ...] | None,
 ) -> None:
     """Fit parameters of PLANT to each RECORDING of a machine: csv, npy, or MATLAB's up to v7.
 
@@ -74,10 +67,10 @@ def identify(
       quietarm plan arm.json --robust measured --target 60deg --duration 0.9
     """  # noqa: D301  # \b is click's: do not rewrap
     columns = {
-        "time": [time] if time else [], "angle": [angle] if angle else [], "tip": tip,
-        "acceleration": acceleration, "torque": [torque] if torque else [],
-    }  # fmt: skip
-    if not (tip or acceleration or torque):
+        quantity: [names] if isinstance(names, str) else list(names or ())
+        for quantity, names in named.items()
+    }
+    if not any(columns[one] for one in ("tip", "acceleration", "torque")):
         raise click.UsageError("give the column of what rings: --tip, --acceleration or --torque")
     short = len({path.name for path in recordings}) == len(recordings)
     read = [
@@ -87,10 +80,5 @@ def identify(
     known = chosen_plant(plant, plant_file, parameters)
     with working("fitting", Console(stderr=True), quiet=quiet):
         found = identified(read, known, free)
-
-    def picture() -> Figure:
-        from quietarm.studies.figures import identification_figure
-
-        return identification_figure(found, read)
-
-    finish([(output, found.save), (figure, drawing(picture))], identified_document(found))
+    picture = drawing(lambda: figures.identification_figure(found, read))
+    finish([(output, found.save), (figure, picture)], identified_document(found))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from quietarm.ocp import PointToPoint
+from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import family_option, quiet_option
 from quietarm.studies.cli.task import task_options
@@ -18,9 +19,6 @@ from quietarm.studies.reading.importing import import_front
 from quietarm.studies.registry.profiles import FAMILIES
 from quietarm.studies.reports.front import searches_document
 from rich.console import Console
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @click.command("import")
@@ -72,33 +70,23 @@ def import_(
                 f"{file} has {columns} coefficients a motion, and {profile} of {terms} terms takes "
                 f"{size}; leave --terms out{turned}"
             )
-    try:
-        motions = FAMILIES[profile].of_size(columns)
-    except ValueError as error:
-        raise ValueError(f"{file}: {error}") from None
     settings: dict[str, Any] = {"imported": file.name}
-    if bound is not None:
-        settings["bound"] = bound
+    settings |= {} if bound is None else {"bound": bound}
     name = method or file.stem
     with working("evaluating", Console(stderr=True), quiet=quiet):
         try:
+            motions = FAMILIES[profile].of_size(columns)
             front, claims = import_front(task, motions, found, name, settings, evaluations)
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
 
-    def picture() -> Figure:
-        from quietarm.studies.figures import front_figure
-
-        return front_figure([front])
-
-    lines = [claim.line() for claim in claims]
-    if not claims:
-        lines.append(
-            "the file states neither residual nor energy in numbers: nothing to hold against"
-        )
+    lines = [claim.words for claim in claims] or [
+        "the file states neither residual nor energy in numbers: nothing to hold against"
+    ]
     if found.ignored:
         lines.append(f"ignored: {', '.join(found.ignored)[:200]}")
+    picture = drawing(lambda: figures.front_figure([front]))
     finish(
-        [(output, front.save), (csv_file, front.save_csv), (figure, drawing(picture))],
+        [(output, front.save), (csv_file, front.save_csv), (figure, picture)],
         searches_document([front], lines),
     )

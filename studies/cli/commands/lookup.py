@@ -10,8 +10,7 @@ from quietarm.ocp import Plan
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import quiet_option
-from quietarm.studies.cli.plants import units_of_plant
-from quietarm.studies.cli.quantities import once, parse_in
+from quietarm.studies.cli.plants import values_of_plant
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import ANGLE, INPUT, SETTING, TIME
 from quietarm.studies.display.progress import working
@@ -34,13 +33,11 @@ from rich.console import Console
 @plan_file_options
 def lookup(
     moves: Path,
-    start: float | None,
-    target: float | None,
-    duration: float | None,
     parameters: tuple[tuple[str, str], ...],
     solve: bool,
     quiet: bool,
     files_of: Callable[[Plan], list[File]],
+    **asked: float | None,
 ) -> None:
     """Take a move from the DATASET of quietarm sweep, by interpolation between its cells.
 
@@ -54,10 +51,7 @@ def lookup(
 
     with working("looking between the cells", Console(stderr=True), quiet=quiet):
         library = MoveLibrary(moves)
-        given = once(parameters, "--set ")
-        units = units_of_plant(library.grid.task.plant, given)
-        at = {name: parse_in(units[name], text, name) for name, text in given.items()}
-        asked = {"start": start, "target": target, "duration": duration}
+        at = values_of_plant(library.grid.task.plant, parameters)
         at |= {name: value for name, value in asked.items() if value is not None}
         found = library.plan(solve=solve, **at)
         between = None if found.status.solved else library.between()

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import click
 from quietarm.metaheuristics import search
@@ -22,9 +22,7 @@ from quietarm.ocp import (
     plan_after,
     plan_move,
 )
-from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.plan.robust import limit_of
-from quietarm.ocp.program.solving import Solver
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import (
@@ -42,7 +40,7 @@ from quietarm.studies.cli.types import RESIDUAL, WHOLE, Named
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import File
 from quietarm.studies.display.search_progress import search_display
-from quietarm.studies.registry.methods import METHODS, Kind, Method, methods_of
+from quietarm.studies.registry.methods import METHODS, Kind, methods_of
 from quietarm.studies.registry.profiles import FAMILIES, profile_of
 from quietarm.studies.reports.plan import plan_document
 from rich.console import Console
@@ -83,17 +81,13 @@ def plan(
     best_after: Path | None,
     profile: str,
     terms: int | None,
-    bound: float | None,
-    residual_limit: float | None,
-    starts: int,
-    seed: int,
-    solver: Solver,
     method: str,
     setting: tuple[tuple[str, str], ...],
     polish: bool,
     sensitive: bool,
     quiet: bool,
     files_of: Callable[[Plan], list[File]],
+    **asked: Any,
 ) -> None:
     """Find the move of least energy whose residual vibration is within a limit.
 
@@ -125,37 +119,26 @@ def plan(
             "give a time"
         )
     motions, notes, complete = profile_of(profile, task, terms), list[str](), True
-    if fastest:
+    if method != GRADIENT:
+        found = _by_search(task, method, motions, settings_of_one(setting), polish, quiet, **asked)
+        if not (polish or asked["residual_limit"] or found.worst):
+            notes = [
+                "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; "
+                "--polish does"
+            ]
+    elif fastest:
+        del asked["starts"]
         with working("looking for the shortest duration", Console(stderr=True), quiet=quiet):
-            shortest = fastest_move(
-                task, motions, residual_limit=residual_limit, bound=bound, seed=seed, solver=solver
-            )
+            shortest = fastest_move(task, motions, **asked)
         found, complete = shortest.plan, shortest.complete
         notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
     elif best_after:
         with working("looking for the best wait", Console(stderr=True), quiet=quiet):
-            wait, found = plan_after(
-                Plan.load(best_after), task, None, motions, residual_limit=residual_limit,
-                bound=bound, starts=starts, seed=seed, solver=solver,
-            )  # fmt: skip
+            wait, found = plan_after(Plan.load(best_after), task, None, motions, **asked)
         notes = [f"wait: {wait:.4g} s after the arrival of {best_after}"]
-    elif method == GRADIENT:
-        with working("solving", Console(stderr=True), quiet=quiet):
-            found = plan_move(
-                task, motions, residual_limit=residual_limit, bound=bound, starts=starts, seed=seed,
-                solver=solver,
-            )  # fmt: skip
     else:
-        found = _by_search(
-            task, METHODS[method], motions, bound, residual_limit, seed, polish, quiet,
-            settings_of_one(setting),
-        )  # fmt: skip
-
-    if method != GRADIENT and not (polish or residual_limit or found.worst):
-        notes = [
-            "residual limit 0 stands for 1 mm here: no search arrives exactly at rest; --polish "
-            "does"
-        ]
+        with working("solving", Console(stderr=True), quiet=quiet):
+            found = plan_move(task, motions, **asked)
     complete = complete and found.complete
     stopped = None if complete else interruption(found.provenance.stopped)
     finish(files_of(found), plan_document(found, notes, sensitive), trouble=stopped)
@@ -163,23 +146,23 @@ def plan(
 
 def _by_search(
     task: PointToPoint,
-    method: Method,
+    method: str,
     profile: JointProfile,
-    bound: float | None,
-    residual_limit: float | None,
-    seed: int,
+    settings: Mapping[str, object],
     polish: bool,
-    quiet: bool = False,
-    settings: Mapping[str, object] | None = None,
+    quiet: bool,
+    *,
+    residual_limit: float | None,
+    **asked: Any,
 ) -> Plan:
     """The cheapest point of a metaheuristic's front within the residual limit, as a plan."""
+    bound, seed = asked["bound"], asked["seed"]
     limit = limit_of(task, residual_limit) or SEARCH_RESIDUAL
     SolveSettings(residual_limit=limit, seed=seed)  # refused before the search, not after
     with search_display(Console(stderr=True), quiet=quiet) as report:
         front = search(
-            task, method.name, profile=profile, bound=bound, settings=settings, seed=seed,
-            report=report,
-        )  # fmt: skip
+            task, method, profile=profile, bound=bound, settings=settings, seed=seed, report=report
+        )
     if not front.complete:
         raise QuietarmError(
             "interrupted; a plan needs a whole search, and nothing was written; `quietarm front` "
@@ -188,28 +171,25 @@ def _by_search(
     try:
         point = front.cheapest(limit)
     except ValueError as error:
-        raise SolverFailedError(f"{method.label} found no such plan: {error}") from None
+        raise SolverFailedError(f"{METHODS[method].label} found no such plan: {error}") from None
     used = {**front.settings, "seed": seed, "residual_limit": limit}
-    stopped = None
-    if polish:
-        try:
-            polished = plan_move(
-                task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
-                guess=point.coefficients,
-            )  # fmt: skip
-        except KeyboardInterrupt:
-            stopped = "the search, before its point was polished"
-        else:
-            provenance = replace(
-                polished.provenance,
-                method=f"{method.name}, polished by ipopt",
-                search=used,
-                seconds=front.seconds + polished.provenance.seconds,
-            )
-            return replace(polished, provenance=provenance)
-    with note_interrupts() if stopped else nullcontext():
-        found = evaluate_coefficients(
-            task, point.coefficients, profile=profile, method=method.name, settings=used
-        )
-    provenance = replace(found.provenance, seconds=front.seconds, stopped=stopped)
-    return replace(found, provenance=provenance)
+    found = evaluate_coefficients(
+        task, point.coefficients, profile=profile, method=method, settings=used
+    )
+    found = _told(found, seconds=front.seconds)
+    if not polish:
+        return found
+    try:
+        polished = plan_move(
+            task, profile, residual_limit=residual_limit, bound=bound, starts=1, seed=seed,
+            guess=point.coefficients,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        return _told(found, stopped="the search, before its point was polished")
+    seconds = front.seconds + polished.provenance.seconds
+    return _told(polished, method=f"{method}, polished by ipopt", search=used, seconds=seconds)
+
+
+def _told(plan: Plan, **changes: Any) -> Plan:
+    """The same plan with another record of how it was found."""
+    return replace(plan, provenance=replace(plan.provenance, **changes))

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 import numpy as np
 from quietarm.ocp import Front, Gain, polish_front
 from quietarm.ocp.checks import whole
+from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.task import plant_file_option
@@ -23,9 +23,6 @@ from quietarm.studies.document.table import Column, Table
 from quietarm.studies.reading.saved import load_front
 from quietarm.studies.reports.front import failure_lines
 from rich.console import Console
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _ROWS = 10
 """Points that the table on screen shows."""
@@ -74,16 +71,11 @@ def polish(
     if not gains:
         raise KeyboardInterrupt
 
-    def picture() -> Figure:
-        from quietarm.studies.figures import polish_figure
-
-        return polish_figure(given, polished)
-
     finish(
         [
             (output, polished.front.save),
             (csv_file, gains_table(gains).save_csv),
-            (figure, drawing(picture)),
+            (figure, drawing(lambda: figures.polish_figure(given, polished))),
         ],
         _gains_document(whole_front, given, polished.front, gains),
         trouble=interruption() if len(gains) < len(given.points) else None,

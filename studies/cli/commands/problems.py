@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 
 import click
@@ -51,30 +53,30 @@ def problems(
             raise ValueError("--verify writes nothing; leave --again and --output out")
         _verify(chosen, quiet)
         return
-    fronts, trouble = dict[str, Front](), None
-    if again and not _find_again(chosen, fronts, quiet):
+    if again:
+        fronts = _found_again(chosen, quiet)
         if not fronts:
             raise KeyboardInterrupt
-        trouble = interruption()
-    elif not again:
-        for problem in chosen:
-            fronts |= zip(problem.tasks(), problem.fronts(), strict=True)
+    else:
+        pairs = (zip(one.tasks(), one.fronts(), strict=True) for one in chosen)
+        fronts = dict(chain.from_iterable(pairs))
     certified = [
         f"{one.front}: version {problem.version}, {one.points} points, SHA-256 {one.checksum}"
         for problem in chosen
         for one in problem.certificates()
     ]
-    together = None
-    if output is not None and fronts:
-        writes = {f"{name}.json": front.save for name, front in fronts.items()}
-        together = Together(
-            "front" if len(writes) == 1 else "fronts", output, inside(output, writes)
-        )
+    lines = [*map(_line, chosen), *(certified if names else ())]
+    writes = {f"{name}.json": front.save for name, front in fronts.items()}
+    what = "front" if len(writes) == 1 else "fronts"
     finish(
-        [], Document("", [Lines([*map(_line, chosen), *(certified if names else ())])]),
-        trouble=trouble,
-        together=together, quiet=quiet,
+        [], Document("", [Lines(lines)]), quiet=quiet,
+        trouble=interruption() if len(fronts) < _number(chosen) else None,
+        together=output and Together(what, output, inside(output, writes)),
     )  # fmt: skip
+
+
+def _number(chosen: Sequence[NamedProblem]) -> int:
+    return sum(len(problem.tasks()) for problem in chosen)
 
 
 def _verify(chosen: Sequence[NamedProblem], quiet: bool) -> None:
@@ -82,27 +84,24 @@ def _verify(chosen: Sequence[NamedProblem], quiet: bool) -> None:
     from quietarm.studies.reports.certificates import certificates_document, not_holding
 
     kept = Certificates.kept()
-    total = sum(len(problem.tasks()) for problem in chosen)
-    with progress(total, Console(stderr=True), quiet=quiet) as begin:
+    with progress(_number(chosen), Console(stderr=True), quiet=quiet) as begin:
         found = [one for problem in chosen for one in certified(problem, begin)]
     failed = not_holding(found, kept)
     trouble = QuietarmError("; ".join(failed)) if failed else None
     finish([], certificates_document(found), trouble=trouble, quiet=quiet)
 
 
-def _find_again(chosen: Sequence[NamedProblem], fronts: dict[str, Front], quiet: bool) -> bool:
-    """Find fronts anew, whole ones alone; whether all were found before an interruption."""
-    total = sum(len(problem.tasks()) for problem in chosen)
-    with progress(total, Console(stderr=True), quiet=quiet) as begin:
+def _found_again(chosen: Sequence[NamedProblem], quiet: bool) -> dict[str, Front]:
+    """Fronts that are found anew, whole ones alone, until an interruption."""
+    fronts = dict[str, Front]()
+    words = _number(chosen), Console(stderr=True)
+    with suppress(KeyboardInterrupt), progress(*words, quiet=quiet) as begin:
         for problem in chosen:
-            try:
-                found = problem.find_again(begin)
-            except KeyboardInterrupt:
-                return False
+            found = problem.find_again(begin)
             if not all(front.complete for front in found.values()):
-                return False
+                break
             fronts |= found
-    return True
+    return fronts
 
 
 def _line(problem: NamedProblem) -> str:

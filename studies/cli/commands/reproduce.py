@@ -13,12 +13,9 @@ from rich.console import Console
 @click.command()
 @click.option("--output", type=FOLDER, help="Write Markdown, CSV and pictures to this folder.")
 @click.option(
-    "--seeds",
-    type=WHOLE,
-    default=1,
-    show_default=True,
+    "--seeds", type=WHOLE, default=1, show_default=True,
     help="Seeds of VEPSO and NSGA-II; 9 give medians and quartiles, in some 6 times the time.",
-)
+)  # fmt: skip
 @workers_at_hand_options
 @quiet_option
 def reproduce(
@@ -45,11 +42,8 @@ def reproduce(
 
     if workers is None:
         workers = cores_at_hand() if scheduler is None else 1
-    where, errors, pieces = (
-        Workers(workers, scheduler),
-        Console(stderr=True),
-        pieces_of_paper(seeds),
-    )
+    where, errors = Workers(workers, scheduler), Console(stderr=True)
+    pieces = pieces_of_paper(seeds)
     warn_of_workers(errors, workers, len(pieces))
     try:
         with progress(len(pieces), errors, quiet=quiet) as begin:
@@ -59,7 +53,7 @@ def reproduce(
             raise
         table = unfinished_table(pieces, stop.part)
         finish(
-            [] if output is None else inside(output, {"unfinished.csv": table.save_csv}),
+            inside(output, {"unfinished.csv": table.save_csv}),
             Document("", [Lines([table.csv().rstrip()])]),
             trouble=QuietarmError(
                 f"{stop.part.stopped}: {stop.part.number} of {len(pieces)} pieces of work are done"
@@ -67,8 +61,4 @@ def reproduce(
         )
     else:
         document = reproduction_document(result)
-        finish(
-            [] if output is None else document_files(output, document),
-            document,
-            quiet=quiet,
-        )
+        finish(document_files(output, document), document, quiet=quiet)

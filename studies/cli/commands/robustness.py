@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -11,6 +11,7 @@ from quietarm.ocp import Plan, Robustness, evaluate_robustness
 from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
+from quietarm.studies.cli.quantities import once
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import FOLDER, INPUT, SHARE, WHOLE
 from quietarm.studies.display.progress import count
@@ -61,13 +62,10 @@ def robustness(
       quietarm robustness plan.json zvd.json --frequency 20% --output robust
       quietarm robustness plan.json --omega 10% --alpha1 5% --samples 100000
     """  # noqa: D301  # \b is click's: do not rewrap
-    named: dict[str, float] = {}
-    for name, shares in {"frequency": frequency, "damping": damping}.items():
-        if len(shares) > 1:
-            raise ValueError(f"--{name} is given twice; give it once")
-        named.update((name, share) for share in shares)
+    pairs = [("frequency", share) for share in frequency]
+    pairs += [("damping", share) for share in damping]
     paths, others = _parted(context, words)
-    ranges = {**named, **others} or dict(DEFAULT_RANGES)
+    ranges = once([*pairs, *others], "--") or dict(DEFAULT_RANGES)
     plans = load_plans(paths)
     for path, plan in zip(paths, plans.values(), strict=True):
         try:
@@ -78,13 +76,14 @@ def robustness(
     if len(figured) < len(plans):
         trouble = interruption(f"{len(figured)} of {len(plans)} plans")
     document = robustness_document(figured)
-    files = [] if output is None else document_files(output, document)
-    finish(files, document, trouble=trouble, quiet=quiet)
+    finish(document_files(output, document), document, trouble=trouble, quiet=quiet)
 
 
-def _parted(context: click.Context, words: tuple[str, ...]) -> tuple[list[Path], dict[str, float]]:
-    """The plans among the words, and the errors of parameters by their names."""
-    paths, ranges, rest = list[Path](), dict[str, float](), list(words)
+def _parted(
+    context: click.Context, words: tuple[str, ...]
+) -> tuple[list[Path], list[tuple[str, float]]]:
+    """The plans among the words, and the errors of parameters with their names."""
+    paths, errors, rest = list[Path](), list[tuple[str, float]](), list(words)
     while rest:
         word = rest.pop(0)
         if not word.startswith("--"):
@@ -95,44 +94,33 @@ def _parted(context: click.Context, words: tuple[str, ...]) -> tuple[list[Path],
             paths.append(INPUT.convert(word, None, context))
             continue
         option, equals, share = word.partition("=")
-        name = option[2:].replace("-", "_")
-        if not equals:
-            if not rest:
-                raise ValueError(f"{option} has no value; give one, as {option} 10%")
-            share = rest.pop(0)
-        if name in ranges:
-            raise ValueError(f"{option} is given twice; give it once")
+        if not equals and not rest:
+            raise ValueError(f"{option} has no value; give one, as {option} 10%")
         try:
-            ranges[name] = SHARE.parse(share)
+            errors.append(
+                (option[2:].replace("-", "_"), SHARE.parse(share if equals else rest.pop(0)))
+            )
         except ValueError as error:
             raise ValueError(f"{option}: {error}") from None
-    return paths, ranges
-
-
-@contextmanager
-def _keeping(found: Mapping[str, object]) -> Iterator[None]:
-    """Let Ctrl-C end the block, but raise it where nothing was found."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        if not found:
-            raise
+    return paths, errors
 
 
 def _evaluated(
     plans: Mapping[str, Plan], ranges: Mapping[str, float], samples: int, seed: int, quiet: bool
 ) -> Figured:
     """The figures of every plan; after Ctrl-C those of the plans until then, if there are any."""
-    figured: dict[str, tuple[Plan, Robustness]] = {}
-    words = samples * len(plans), "evaluations", Console(stderr=True)
-    with _keeping(figured), count(*words, quiet=quiet) as report:
+    figured, several = dict[str, tuple[Plan, Robustness]](), len(plans)
+    words = samples * several, "evaluations", Console(stderr=True)
+    with suppress(KeyboardInterrupt), count(*words, quiet=quiet) as report:
         for number, (label, plan) in enumerate(plans.items()):
 
             def told(done: int, total: int, number: int = number) -> None:
-                report(number * total + done, len(plans) * total)
+                report(number * total + done, several * total)
 
             figured[label] = plan, evaluate_robustness(
                 plan.task, plan.profile, plan.coefficients, ranges,
                 samples=samples, seed=seed, report=told,
             )  # fmt: skip
+    if not figured:
+        raise KeyboardInterrupt
     return figured

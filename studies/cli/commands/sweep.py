@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from quietarm.ocp import QuietarmError, SolveSettings
@@ -69,11 +69,8 @@ def sweep(
     grid: Grid,
     profile: str,
     terms: int | None,
-    bound: float | None,
-    residual_limit: float,
     front: int | None,
     refine: float | None,
-    starts: int,
     part: tuple[int, int],
     yes: bool,
     output: Path,
@@ -81,6 +78,7 @@ def sweep(
     workers: int,
     scheduler: str | None,
     quiet: bool,
+    **settings: Any,
 ) -> None:
     """Plan every move of a grid: axes over start, target, duration and parameters of the plant.
 
@@ -104,7 +102,7 @@ def sweep(
     if refine is not None and part != (1, 1):
         raise ValueError("--refine is for a whole grid; leave --part out, or refine afterwards")
     motions, errors = profile_of(profile, grid.task, terms), Console(stderr=True)
-    asked = Sweep(grid, motions, SolveSettings(residual_limit, bound, starts), front or 0, refine)
+    asked = Sweep(grid, motions, SolveSettings(**settings), front or 0, refine)
     troubles = list[Exception]()
 
     def run(store: Store) -> bool:

@@ -58,7 +58,7 @@ def versus(
         raise KeyboardInterrupt
     document = versus_document(task, found)
     finish(
-        [] if output is None else document_files(output, document),
+        document_files(output, document),
         document,
         trouble=None if complete else interruption(f"{len(found)} motions"),
     )

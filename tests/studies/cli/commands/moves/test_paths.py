@@ -82,9 +82,9 @@ def test_a_path_that_cannot_be_is_refused(call, folder, change, words):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("hello\nworld", "no table of numbers under a heading"),
+        ("hello\nworld", "line 2: could not convert string to float: 'world'; give numbers"),
         ("time_s,position\n0,1\n", "no column angle_rad or angle_deg"),
-        ("time_s,angle_rad\n0,1\n1\n", "no table of numbers|rows of other length"),
+        ("time_s,angle_rad\n0,1\n1\n", "line 3 has 1 columns, the first 2; give as many"),
     ],
 )
 def test_a_file_that_is_no_path_is_refused(call, folder, text, words):

@@ -1,0 +1,15 @@
+"""The templates of jinja2 that stand beside the code that fills them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+
+def templates(**options: Any) -> Environment:
+    """The templates of `studies`, by their paths in it."""
+    return Environment(
+        loader=PackageLoader("quietarm.studies", ""), trim_blocks=True, lstrip_blocks=True,
+        undefined=StrictUndefined, **options,
+    )  # fmt: skip
