@@ -54,7 +54,8 @@ def _check_size(grid: Grid, yes: bool) -> None:
 @click.option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
               help="Find a front of so many points for every move as well.")  # fmt: skip
 @click.option("--refine", type=LENGTH,
-              help="Halve axes until moves between the cells leave no more than this.")  # fmt: skip
+              help="Halve axes until a hundred random moves between the cells leave no more than "
+              "this, and break limits by no more than 1 %.")  # fmt: skip
 @click.option("--starts", type=WHOLE, default=1, show_default=True, help="Starts of each cell.")
 @part_option("chunk")
 @click.option("--yes", is_flag=True, help="Do more than a million cells.")
