@@ -90,8 +90,13 @@ def parse_residual(text: str) -> float:
 
 
 def parse_time(text: str) -> float:
+    """Read a time: seconds, or with s or ms. ValueError when it is none."""
+    return _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")
+
+
+def parse_duration(text: str) -> float:
     """Read a time: beyond 100 s with its unit alone, as milliseconds are easily meant."""
-    time = _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")
+    time = parse_time(text)
     if math.isfinite(time) and time > 100 and is_number(text):
         raise ValueError(
             f"{text} is in seconds; were milliseconds meant? give {text}ms, or {text}s"

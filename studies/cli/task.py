@@ -13,7 +13,7 @@ from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, typed
 from quietarm.studies.cli.plants import chosen_plant, uncertain, units_of_plant
-from quietarm.studies.cli.quantities import parse_in, parse_joint_angle, parse_rate, parse_time
+from quietarm.studies.cli.quantities import parse_duration, parse_in, parse_joint_angle, parse_rate
 from quietarm.studies.cli.types import (
     ANGLE,
     ENERGY,
@@ -68,16 +68,16 @@ FASTEST = "fastest"
 """In the place of a duration: the shortest within the limits."""
 _BEGIN = 1.0
 """Duration [s] at which the shortest is begun to be looked for."""
-_TIME_OR_FASTEST = Parsed("time", lambda text: text if text == FASTEST else parse_time(text))
+_TIME_OR_FASTEST = Parsed("time", lambda text: text if text == FASTEST else parse_duration(text))
 BEST = "best"
 """In the place of a wait: the one of least energy."""
-_TIME_OR_BEST = Parsed("time", lambda text: text if text == BEST else parse_time(text))
+_TIME_OR_BEST = Parsed("time", lambda text: text if text == BEST else parse_duration(text))
 
 
 def _range(text: str) -> float | tuple[float, float]:
     """A time, or two with a colon between."""
     first, colon, last = text.partition(":")
-    return (parse_time(first), parse_time(last)) if colon else parse_time(text)
+    return (parse_duration(first), parse_duration(last)) if colon else parse_duration(text)
 
 
 _TIME_OR_RANGE = Parsed("time", _range)
@@ -93,7 +93,7 @@ def _task_options(
     time, words = TIME, "Travelling time."
     angle = _axis_of(parse_joint_angle) if axes else ANGLE
     if axes:
-        time = _axis_of(parse_time)
+        time = _axis_of(parse_duration)
     wait, until = TIME, "Time from that plan's arrival to this start"
     if ranged:
         time, words = _TIME_OR_RANGE, "Travelling time; with --over duration two, as 600ms:1.4s."

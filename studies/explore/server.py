@@ -29,7 +29,7 @@ def serve(
     plants : mapping of str to Plant
         Plants that can be chosen.
     tell : callable
-        Is told the page's address.
+        Is told the page's address, then how to end it.
     browser : bool
         Whether a browser is opened on it.
     """
@@ -43,6 +43,7 @@ def serve(
     server.start()
     address = f"http://localhost:{server.port}/"
     tell(address)
+    tell("Ctrl-C ends it")
     if browser:
         server.io_loop.add_callback(webbrowser.open, address)
     with suppress(KeyboardInterrupt):

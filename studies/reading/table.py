@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 Units = Mapping[str, float]
 """Units of a quantity a unit of SI; the first is that where none is given."""
 
+_WRITE = "write columns such as time_s and angle_rad under their names, separated by commas"
+_REMEDIES = {".npy": "save it again by numpy.save", ".mat": "save it again by MATLAB's save -v7"}
+
 
 def read_table(path: Path) -> dict[str, Array]:
     """Columns by name, of a file by its ending: .npy, .mat (version 5), and text for any other.
@@ -43,8 +46,7 @@ def read_table(path: Path) -> dict[str, Array]:
     except Exception as error:  # whatever their parsers make of a damaged file
         reason = str(error)
     raise FileFormatError(
-        f"{path} is no table of numbers under a heading ({reason}); write columns such as time_s "
-        "and angle_rad, separated by commas"
+        f"{path} is no table of numbers ({reason}); {_REMEDIES.get(kind, _WRITE)}"
     )
 
 
@@ -75,6 +77,8 @@ def column_of(path: Path, table: Mapping[str, Array], quantity: str, units: Unit
 
 def _of_text(text: str) -> dict[str, Array]:
     lines = [line for line in text.splitlines() if line.strip()]
+    if not lines:
+        raise ValueError("it is empty")
     between = next((mark for mark in (";", "\t", ",") if mark in lines[0]), None)
     heading = [name.strip().strip('"') for name in lines[0].lstrip("#% ").split(between)]
     rows = [line for line in lines[1:] if not line.startswith(("#", "%"))]

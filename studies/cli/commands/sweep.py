@@ -18,7 +18,7 @@ from quietarm.studies.cli.options import (
     workers_options,
 )
 from quietarm.studies.cli.task import task_grid_options
-from quietarm.studies.cli.types import FOLDER, LENGTH, PICTURE, RESIDUAL, WHOLE
+from quietarm.studies.cli.types import DATASET, LENGTH, PICTURE, RESIDUAL, WHOLE
 from quietarm.studies.display.progress import progress
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import profile_of
@@ -59,7 +59,7 @@ def _check_size(grid: Grid, yes: bool) -> None:
 @click.option("--starts", type=WHOLE, default=1, show_default=True, help="Starts of each cell.")
 @part_option("chunk")
 @click.option("--yes", is_flag=True, help="Do more than a million cells.")
-@click.option("--output", type=FOLDER, required=True,
+@click.option("--output", type=DATASET, required=True,
               help="The dataset, a folder as moves.zarr: the same line goes on where one was "
               "stopped.")  # fmt: skip
 @click.option("--figure", type=PICTURE, help="Draw energy, residual, price and feasibility over "

@@ -82,7 +82,7 @@ def test_a_path_that_cannot_be_is_refused(call, folder, change, words):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("hello\nworld", "no table of numbers under a heading"),
+        ("hello\nworld", "no table of numbers"),
         ("time_s,position\n0,1\n", "no column angle_rad or angle_deg"),
         ("time_s,angle_rad\n0,1\n1\n", "no table of numbers|rows of other length"),
     ],
