@@ -57,7 +57,8 @@ def versus(
             complete = not came
     if not found:
         raise KeyboardInterrupt
-    allowed = limit_of(task, residual_limit) if task.errors else None
+    robust = any(rival.name == "robust plan" and rival.motion for rival in found)
+    allowed = limit_of(task, residual_limit) if robust else None
     document = versus_document(task, found, allowed)
     finish(
         [] if output is None else document_files(output, document),
