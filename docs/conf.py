@@ -132,6 +132,15 @@ def _fill(app, docname, source):
             source[0] += "```\n"
 
 
+def _as_code(app, ctx, lines):
+    """Set a command's examples as code: sphinx-click makes verse of what click leaves unwrapped."""
+    for k in reversed(range(len(lines))):
+        if lines[k].startswith("|   "):
+            lines[k] = f"  {lines[k]}".replace("|", "", 1)
+        elif lines[k].startswith("| "):
+            lines[k : k + 1] = [lines[k][2:], "", ".. code-block:: text", ""]
+
+
 def setup(app):
     """Equations as MathML, notebooks executed, and the two pages that are made here."""
     app.add_html_math_renderer(
@@ -139,3 +148,4 @@ def setup(app):
     )
     app.connect("builder-inited", _executed)
     app.connect("source-read", _fill)
+    app.connect("sphinx-click-process-description", _as_code)

@@ -79,6 +79,11 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"did you mean {near[0]!r}? " if near else ""
 
 
+def install(extra: str) -> str:
+    """How to install what an extra of this project holds."""
+    return f"install it: pip install 'quietarm[{extra}]', or '.[{extra}]' in a clone"
+
+
 def _question(name: str, known: list[str]) -> str:
     question = nearest(name, known).rstrip()
     return f"; {question}" if question else ""

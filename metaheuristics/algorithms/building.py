@@ -14,6 +14,7 @@ from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 from quietarm.metaheuristics.algorithms.settings import Value
 from quietarm.metaheuristics.algorithms.velocity import VelocityRule
+from quietarm.ocp.checks import install
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.algorithms.presets import Preset  # which loads this file late
@@ -32,10 +33,7 @@ def built(preset: Preset, population: int, values: Mapping[str, Value]) -> Algor
     run.
     """
     if preset.needs and find_spec(preset.needs) is None:
-        raise ValueError(
-            f"{preset.name} needs {preset.needs}; install it by pip install "
-            f"'quietarm[{preset.needs}]'"
-        )
+        raise ValueError(f"{preset.name} needs {preset.needs}; {install(preset.needs)}")
     arguments = dict[str, Any]()
     operators = dict[str, dict[str, Value]]()
     for setting in preset.settings:

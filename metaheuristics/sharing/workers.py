@@ -6,10 +6,9 @@ import os
 from dataclasses import dataclass
 from importlib.util import find_spec
 
-from quietarm.ocp.checks import whole
+from quietarm.ocp.checks import install, whole
 
 MOST_WORKERS = 1000
-_EXTRA = "pip install 'quietarm[cluster]'"
 _FEW = 4
 """More processes than this are started only where they are asked for: each takes memory."""
 
@@ -31,7 +30,7 @@ class Workers:
             )
         if not self.here and find_spec("distributed") is None:
             asked = f"workers is {self.number}" if self.scheduler is None else "a scheduler"
-            raise ValueError(f"{asked} needs dask: {_EXTRA}, or leave it out")
+            raise ValueError(f"{asked} needs dask; leave it out, or {install('cluster')}")
 
     @property
     def here(self) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import MISSING, fields, replace
 from quietarm.models import Plant, known_plants
 from quietarm.ocp import Identified, UncertainPlant
 from quietarm.ocp.checks import has_no, unknown
-from quietarm.studies.cli.quantities import once, parse_in, parse_share
+from quietarm.studies.cli.quantities import is_number, once, parse_in, parse_share
 
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
@@ -52,7 +52,10 @@ def parse_error(text: str) -> tuple[str, float]:
     name, equals, share = (part.strip() for part in text.partition("="))
     if not (equals and name and share):
         raise ValueError(f"{text!r} is no error; give a name and its share, as frequency=10%")
-    return name.replace("-", "_"), parse_share(share)
+    size = parse_share(share)
+    if size > 1 and is_number(share):
+        raise ValueError(f"{text} is {100 * size:g} %; was {share} % meant? give {name}={share}%")
+    return name.replace("-", "_"), size
 
 
 def uncertain(
@@ -75,7 +78,11 @@ def units_of_plant(plant: Plant | type[Plant], names: Iterable[str]) -> dict[str
     known = {entry.name: entry.metadata.get("unit", "-") for entry in fields(plant)}
     for name in names:
         if name not in known:
-            raise ValueError(has_no(plant.name, "parameter", name, known))
+            its = [
+                entry.name for entry in fields(plant) if name in entry.metadata.get("meaning", "")
+            ]
+            meant = f"; the {name} is {' or '.join(its)}" if its else ""
+            raise ValueError(has_no(plant.name, "parameter", name, known) + meant)
     return {name: known[name] for name in names}
 
 

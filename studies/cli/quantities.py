@@ -94,6 +94,16 @@ def parse_time(text: str) -> float:
     return _with_unit(text, _TIMES, "a time", "seconds (0.8) or 800ms")
 
 
+def parse_duration(text: str) -> float:
+    """Read a time: beyond 100 s with its unit alone, as milliseconds are easily meant."""
+    time = parse_time(text)
+    if math.isfinite(time) and time > 100 and is_number(text):
+        raise ValueError(
+            f"{text} is in seconds; were milliseconds meant? give {text}ms, or {text}s"
+        )
+    return time
+
+
 def parse_torque(text: str) -> float:
     """Read a torque: newton metres, or with Nm or mNm. ValueError when it is none."""
     return _with_unit(text, _TORQUES, "a torque", "newton metres (1.5) or 200mNm")

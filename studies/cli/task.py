@@ -13,7 +13,7 @@ from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, refuse_typed, typed
 from quietarm.studies.cli.plants import chosen_plant, uncertain, units_of_plant
-from quietarm.studies.cli.quantities import parse_in, parse_joint_angle, parse_rate, parse_time
+from quietarm.studies.cli.quantities import parse_duration, parse_in, parse_joint_angle, parse_rate
 from quietarm.studies.cli.types import (
     ANGLE,
     ENERGY,
@@ -74,13 +74,13 @@ BEST = "best"
 
 
 def _time_or(word: str) -> Parsed:
-    return Parsed("time", lambda text: text if text == word else parse_time(text))
+    return Parsed("time", lambda text: text if text == word else parse_duration(text))
 
 
 def _range(text: str) -> float | tuple[float, float]:
     """A time, or two with a colon between."""
     first, colon, last = text.partition(":")
-    return (parse_time(first), parse_time(last)) if colon else parse_time(text)
+    return (parse_duration(first), parse_duration(last)) if colon else parse_duration(text)
 
 
 def _axis_of(parse: Callable[[str], float]) -> Parsed:
@@ -212,7 +212,7 @@ def _need_move(named: dict[str, Any], words: str) -> None:
             raise click.UsageError(words.format(name))
 
 
-_AXES: dict[str, Any] = {"angle": _axis_of(parse_joint_angle), "time": _axis_of(parse_time)}
+_AXES: dict[str, Any] = {"angle": _axis_of(parse_joint_angle), "time": _axis_of(parse_duration)}
 _PATH = click.option(
     "--path", type=INPUT,
     help="A CSV file with the joint's path in columns such as time_s and angle_deg, in the "

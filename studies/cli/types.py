@@ -15,13 +15,13 @@ from quietarm.ocp.files import check_folder, check_writable
 from quietarm.studies.cli.plants import parse_error, parse_plant, parse_setting
 from quietarm.studies.cli.quantities import (
     parse_coefficients,
+    parse_duration,
     parse_energy,
     parse_joint_angle,
     parse_length,
     parse_residual,
     parse_share,
     parse_state,
-    parse_time,
     parse_torque,
     parse_weights,
     parse_whole,
@@ -112,6 +112,12 @@ def _in_place(check: Callable[[str], Path], text: str) -> Path:
     return check(text)
 
 
+def _is_dataset(text: str) -> Path:
+    if Path(text).suffix not in (".zarr", ""):
+        raise ValueError(f"{text} becomes a folder of Zarr; end its name in .zarr")
+    return check_folder(text)
+
+
 PLANT = Parsed("plant", parse_plant)
 PLANT_FILE = Parsed("file", load_plant_file)
 SETTING = Parsed("parameter=value", partial(parse_setting, what="a parameter", example="omega=9"))
@@ -123,7 +129,7 @@ ENERGY = Parsed("energy", parse_energy)
 ANGLE = Parsed("angle", parse_joint_angle)
 LENGTH = Parsed("length", parse_length)
 RESIDUAL = Parsed("length", parse_residual)
-TIME = Parsed("time", parse_time)
+TIME = Parsed("time", parse_duration)
 TORQUE = Parsed("torque", parse_torque)
 SHARE = Parsed("share", parse_share)
 MODES = Parsed("W:W'", parse_state)
@@ -137,4 +143,5 @@ JSON_FILE = FileName("file", partial(_ends_in, (".json", ""), "JSON"), WRITTEN)
 CSV_FILE = FileName("file", partial(_ends_in, (".csv", ".txt", ""), "a table as CSV"), WRITTEN)
 PAGE = FileName("page", partial(_ends_in, (".html", ".htm"), "a page of HTML"), WRITTEN)
 PICTURE = FileName("picture", check_figure, WRITTEN)
+DATASET = FileName("folder", partial(_in_place, _is_dataset), WRITTEN)
 FOLDER = FileName("folder", partial(_in_place, check_folder), WRITTEN)

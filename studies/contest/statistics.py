@@ -9,6 +9,7 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.checks import install
 from quietarm.studies.contest.measures import Arena, Field, methods_in
 
 Array = NDArray[np.float64]
@@ -79,7 +80,7 @@ class Pair:
 def why_none(arenas: Sequence[Arena]) -> str:
     """Why there are no statistics at all, in a line; empty where there are some."""
     if find_spec("scipy") is None:
-        return "statistics need scipy: pip install 'quietarm[contest]'; they are left out"
+        return f"statistics are left out, as they need scipy; {install('contest')}"
     if len({field.method for arena in arenas for field in arena.alike}) < 2:
         return "one method alone is not compared: statistics are left out"
     if not any(len(_with_enough(arena)) > 1 for arena in arenas):

@@ -20,7 +20,7 @@ def serve(
     tell: Callable[[str], object],
     browser: bool = True,
 ) -> None:
-    """Show the page, which begins with `explored`, until Ctrl-C; `tell` is told its address."""
+    """Show the page, which begins with `explored`, until Ctrl-C; `tell` is told its address and how to end it."""
 
     def fill(document: Document) -> None:
         Page(document, explored, plants)
@@ -31,6 +31,7 @@ def serve(
     server.start()
     address = f"http://localhost:{server.port}/"
     tell(address)
+    tell("Ctrl-C ends it")
     if browser:
         server.io_loop.add_callback(webbrowser.open, address)
     with suppress(KeyboardInterrupt):

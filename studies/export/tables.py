@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import Plan, Trajectory
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import install, unknown
 from quietarm.ocp.plan.answer import ticks_of_move
 from quietarm.studies.display.templates import templates
 
@@ -89,9 +89,7 @@ def mat_bytes(columns: Mapping[str, Array], facts: Mapping[str, Any]) -> bytes:
     try:
         from scipy.io import savemat
     except ImportError:
-        raise ValueError(
-            "MATLAB files need scipy, which is not installed; install quietarm[mat], or give csv"
-        ) from None
+        raise ValueError(f"MATLAB files need scipy; give csv, or {install('mat')}") from None
     file = io.BytesIO()
     savemat(file, {**facts, **columns}, oned_as="column")
     return file.getvalue()

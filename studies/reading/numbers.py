@@ -75,7 +75,7 @@ def _columns_in(text: str) -> tuple[list[str] | None, Array]:
     lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), start=1)]
     lines = [(i, line) for i, line in lines if line and not line.startswith(("#", "%"))]
     if not lines:
-        raise FileFormatError("it is empty; give a row for each motion")
+        raise FileFormatError("it is empty; give rows of numbers")
     if len(lines) > 1 + MOST_ROWS:  # told before a minute is spent on their numbers
         raise FileFormatError(f"it has {len(lines)} lines; give at most {MOST_ROWS} motions")
     between = next((mark for mark in (";", "\t", ",") if mark in lines[0][1]), None)

@@ -26,7 +26,7 @@ def plan_document(plan: Plan, notes: Sequence[str] = (), sensitive: bool = False
     """A plan's coefficients, figures and verification; where asked for, its sensitivities."""
     motion, back = plan.motion, plan.turns_back
     rows = [
-        *move_rows(plan.task, motion),
+        *move_rows(plan.task, motion, _residual_limit(plan)),
         _choice(plan),
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
         *figure_rows(plan.task, motion),
@@ -99,14 +99,21 @@ def _verified_row(plan: Plan) -> Row:
     )
 
 
-def move_rows(task: PointToPoint, motion: Motion) -> list[Row]:
+def _residual_limit(plan: Plan) -> float:
+    """What a plan was allowed to leave [m]; 0 at rest, and where that was not asked."""
+    settings, search = plan.provenance.settings, plan.provenance.search
+    return settings.residual_limit if settings else float(search.get("residual_limit") or 0)
+
+
+def move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and where the motion breaks one."""
-    limits = ", ".join(_limit(name, most, motion.peak(name)) for name, most in task.limits.items())
+    limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
+    limits += [_limit(name, most, motion.peak(name)) for name, most in task.limits.items()]
     return [
         ("move", f"{plant_words(task.plant)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
         *([("wanted", f"{state_words(task.final)} on arrival")] if task.final else []),
-        *([("limits", limits)] if limits else []),
+        *([("limits", ", ".join(limits))] if limits else []),
     ]
 
 

@@ -44,7 +44,7 @@ class Sweep:
     front : int
         Points of a front for every move; 0 for none.
     refine : float or None
-        Largest residual [m] between the cells, for which axes are halved.
+        Residual [m] between the cells down to which axes are halved.
     """
 
     grid: Grid

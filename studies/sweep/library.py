@@ -18,6 +18,7 @@ from quietarm.ocp import (
     plan_move,
     plan_moves,
 )
+from quietarm.ocp.plan.verification import OVERRUN
 from quietarm.studies.sweep.asked import COEFFICIENTS, JUMP
 from quietarm.studies.sweep.grid import Grid
 from quietarm.studies.sweep.interpolation import Interpolation
@@ -30,7 +31,7 @@ _SAMPLES = 100
 
 @dataclass(frozen=True)
 class Between:
-    """What moves between the cells leave and cost: the worst of some random ones.
+    """What moves between the cells leave, cost and ask: the worst of some random ones.
 
     Attributes
     ----------
@@ -38,21 +39,28 @@ class Between:
         F1 [m], by CVODES.
     excess : float
         Share of the energy above that of a plan of the same move.
+    of_limits : float
+        Peak over its limit, of the limit that is kept worst; 0 without limits.
     samples : int
         How many moves were looked at.
     """
 
     residual: float
     excess: float
+    of_limits: float
     samples: int
 
     @property
     def words(self) -> str:
         """All of it in a line."""
-        return (
-            f"between the cells: {1e3 * self.residual:.3g} mm at most and {self.excess:.2%} more "
-            f"energy than plans of their own, of {self.samples} random moves"
-        )
+        beyond = self.of_limits - 1
+        kept = f"limits broken by {beyond:.1%}" if beyond > OVERRUN else "limits kept"
+        return ", ".join([
+            f"between the cells: {1e3 * self.residual:.3g} mm left",
+            f"{self.excess:.2%} more energy than plans of their own",
+            *([kept] if self.of_limits else []),
+            f"each the largest of {self.samples} random moves",
+        ])  # fmt: skip
 
 
 class BeyondError(ValueError):
@@ -115,7 +123,7 @@ class MoveLibrary:
                 worst = values.ravel()[np.argmax(np.abs(values - (low + high) / 2))]
                 raise BeyondError(
                     f"{axis.name} is {worst:g} {axis.unit}, and the grid has {low:g} to {high:g}; "
-                    "sweep a wider one, or solve"
+                    "sweep a wider one, or add --solve"
                 )
         places = np.stack(
             np.broadcast_arrays(*(np.asarray(at[axis.name], float) for axis in self.grid.axes)),
@@ -125,7 +133,7 @@ class MoveLibrary:
         if not np.isfinite(found).all():
             raise BeyondError(
                 "the move is next to a cell without a plan, or where the least energy jumps from "
-                "one motion to another; solve it, or sweep a finer grid"
+                "one motion to another; add --solve, or sweep a finer grid"
             )
         return found.reshape(*places.shape[:-1], -1)
 
@@ -145,21 +153,24 @@ class MoveLibrary:
         """The move that is looked up, with its figures by CVODES.
 
         One that the library has no coefficients for is planned by `plan_move` where `solve` says
-        so, else refused.
+        so, else refused; so is one that breaks a limit, else it is returned as it is.
         """
         task, settings = self.task(**at), self.store.sweep.settings
         try:
-            found = self.coefficients(**at)
+            coefficients = self.coefficients(**at)
         except BeyondError:
             if not solve:
                 raise
-            limit = settings.residual_limit or (None if task.errors else 0.0)
-            return plan_move(task, self.profile, residual_limit=limit, bound=settings.bound)
-        return evaluate_coefficients(task, found, profile=self.profile, method="lookup")
+        else:
+            found = evaluate_coefficients(task, coefficients, profile=self.profile, method="lookup")
+            if not (solve and found.motion.passed(task.limits, OVERRUN)):
+                return found
+        limit = settings.residual_limit or (None if task.errors else 0.0)
+        return plan_move(task, self.profile, residual_limit=limit, bound=settings.bound)
 
     def between(self, samples: int = _SAMPLES) -> Between:
         """What random moves between the cells leave and cost; kept in the dataset."""
-        known = self.store.noted("between")
+        known = self.store.noted("between the cells")
         if known.get("samples") == samples:
             return Between(**known)
         random, tasks, plans = np.random.default_rng(0), list[PointToPoint](), list[Plan]()
@@ -180,8 +191,9 @@ class MoveLibrary:
         least = self._least(tasks)
         energies = np.array([plan.energy for plan in plans])
         worst = max(plan.residual for plan in plans)
-        found = Between(worst, float(np.nanmax(energies / least - 1)), len(tasks))
-        self.store.note("between", vars(found))
+        peaks = [max(one.motion.passed(one.task.limits, -1).values(), default=0.0) for one in plans]
+        found = Between(worst, float(np.nanmax(energies / least - 1)), max(peaks), len(tasks))
+        self.store.note("between the cells", vars(found))
         return found
 
     def _least(self, tasks: Sequence[PointToPoint]) -> Array:

@@ -51,7 +51,8 @@ def sweep(
     front : int
         Points of a front for every move; 0 for none.
     refine : float, optional
-        Halve axes until moves between the cells leave no more than this [m].
+        Halve axes until a hundred random moves between the cells leave no more than this [m], and
+        break limits by no more than 1 %.
     workers, scheduler : int, str, optional
         Processes of this machine, or the address of a dask scheduler.
 

@@ -1,4 +1,4 @@
-"""Finer grids, until what moves between the cells leave is little enough."""
+"""Finer grids, until moves between the cells leave little enough and keep the limits."""
 
 from __future__ import annotations
 
@@ -16,6 +16,10 @@ from quietarm.studies.sweep.grid import Axis, Grid
 from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.library import Between, MoveLibrary
 from quietarm.studies.sweep.store import Store, lay_out
+
+_OF_LIMITS = 1.01
+"""Peaks over their limits up to which no axis is halved: where a limit begins to act, coefficients
+have a kink, and halving an axis brings little."""
 
 
 def finer_beside(path: Path) -> Path:
@@ -42,7 +46,7 @@ def swept(
     whole, between = run(store), None
     while asked.refine is not None and whole:
         between = MoveLibrary(path).between()
-        if between.residual <= asked.refine:
+        if between.residual <= asked.refine and between.of_limits <= _OF_LIMITS:
             break
         if not finer.exists():
             grid = halved(store)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError, QuietarmError
+from quietarm.ocp.checks import install
 from quietarm.ocp.record import versions
 from quietarm.studies.sweep.asked import COEFFICIENTS, JUMP, STATES, STATUS, Sweep
 from quietarm.studies.sweep.branches import jumps
@@ -162,13 +163,15 @@ def _zarr() -> Any:
     try:
         import zarr
     except ImportError:
-        raise ValueError("the dataset of a sweep needs zarr: install quietarm[sweep]") from None
+        raise ValueError(f"the dataset of a sweep needs zarr; {install('sweep')}") from None
     return zarr
 
 
 def _opened(path: Path) -> zarr.Group:
     """The Zarr group of a sweep; FileFormatError where it is none."""
     zarr = _zarr()
+    if not path.exists():
+        raise FileFormatError(f"{path}: there is no such dataset; sweep it, or give another name")
     try:
         group = zarr.open_group(path, mode="r+")
         known = group.attrs.get("format") == "quietarm-sweep"

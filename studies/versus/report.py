@@ -7,7 +7,7 @@ from functools import partial
 
 from matplotlib.figure import Figure
 from quietarm.ocp import PointToPoint
-from quietarm.studies.display.words import REST, move_of, title_of
+from quietarm.studies.display.words import REST, millimetres, move_of, title_of
 from quietarm.studies.document.blocks import Bullets, Document, Picture, Text
 from quietarm.studies.document.table import Cell, Column, Table
 from quietarm.studies.figures.axes import axes_or_new, logarithmic, new_figure
@@ -18,9 +18,19 @@ _OVERRUN = 2e-3
 """A limit that is passed by no more than this share is kept."""
 
 
-def versus_document(task: PointToPoint, found: Sequence[Rival]) -> Document:
-    """A row each, what cannot be and why, and what they leave and take as a picture."""
-    missing = [f"{rival.name}: {rival.why}" for rival in found if rival.why]
+def versus_document(
+    task: PointToPoint, found: Sequence[Rival], allowed: float | None = None
+) -> Document:
+    """A row each, what cannot be and why, and what they leave and take as a picture.
+
+    What the robust plan is `allowed` to leave [m] is said where there is one.
+    """
+    reasons = {rival.why: [r.name for r in found if r.why == rival.why] for rival in found}
+    reasons.pop("", None)
+    missing = [f"{'; '.join(names)}: {why}" for why, names in reasons.items()]
+    if allowed:
+        words = f"may leave {millimetres(allowed)}; --residual-limit asks for less"
+        missing.insert(0, f"robust plan: {words}")
     missing += [
         f"{rival.name} breaks: {', '.join(b)}" for rival in found if (b := _broken(task, rival))
     ]

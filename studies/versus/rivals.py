@@ -18,6 +18,7 @@ from quietarm.ocp import (
     plan_move,
     shaped_cycloid,
 )
+from quietarm.ocp.checks import install
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shapers import SHAPERS, Impulses, convolved
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
@@ -104,7 +105,7 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
     try:
         from ruckig import InputParameter, Ruckig, Trajectory
     except ImportError:
-        raise ValueError("ruckig is not installed; install quietarm[ruckig]") from None
+        raise ValueError(f"ruckig is not installed; {install('ruckig')}") from None
     if task.acceleration_limit is None:
         raise ValueError("ruckig needs an acceleration limit")
     asked, found, free = InputParameter(1), Trajectory(1), float("inf")
@@ -115,7 +116,10 @@ def ruckig_motion(task: PointToPoint) -> FreeMotion:
     asked.minimum_duration = task.duration
     Ruckig(1).calculate(asked, found)
     if found.duration > task.duration * (1 + 1e-6):
-        raise ValueError(f"within the limits it takes {found.duration:.4g} s")
+        raise ValueError(
+            f"within the limits it takes {found.duration:.4g} s, more than the "
+            f"{task.duration:.4g} s that it has"
+        )
     one = found.profiles[0][0]
     lengths = np.array(one.t)
     there = lengths > _SHORTEST

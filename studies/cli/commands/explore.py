@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 from quietarm.models import Plant, known_plants
+from quietarm.ocp.checks import install
 from quietarm.studies.cli.plants import chosen_plant, parse_plant
 from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import SETTING
@@ -43,9 +44,7 @@ def explore(
     try:
         from quietarm.studies.explore.server import serve
     except ImportError:
-        raise ValueError(
-            "the page needs bokeh, which is not installed; install quietarm[explore]"
-        ) from None
+        raise ValueError(f"the page needs bokeh; {install('explore')}") from None
 
     if what is not None and is_file(what):
         if parameters:

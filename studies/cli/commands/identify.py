@@ -7,13 +7,14 @@ from pathlib import Path
 
 import click
 from quietarm.models import Plant
+from quietarm.ocp import Identified
 from quietarm.ocp import identify as identified
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import quiet_option
-from quietarm.studies.cli.plants import chosen_plant
+from quietarm.studies.cli.plants import chosen_plant, parse_plant
 from quietarm.studies.cli.task import plant_file_option
-from quietarm.studies.cli.types import INPUT, JSON_FILE, PICTURE, PLANT, SETTING, Parsed
+from quietarm.studies.cli.types import INPUT, JSON_FILE, PICTURE, SETTING, Parsed
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.reading.recording import read_recording, units_of
@@ -21,9 +22,16 @@ from quietarm.studies.reports.identify import identified_document
 from rich.console import Console
 
 
+def _plant_at_the_end(name: str) -> type[Plant] | Identified:
+    try:
+        return parse_plant(name)
+    except ValueError as error:
+        raise ValueError(f"{error}; PLANT comes last, after the recordings") from None
+
+
 @click.command()
 @click.argument("recordings", type=INPUT, nargs=-1, required=True, metavar="RECORDING...")
-@click.argument("plant", type=PLANT, metavar="PLANT")
+@click.argument("plant", type=Parsed("plant", _plant_at_the_end), metavar="PLANT")
 @plant_file_option()
 @click.option("--set", "parameters", type=SETTING, multiple=True,
               help="What is known of the plant, as length=0.6 (SI); may be repeated.")  # fmt: skip

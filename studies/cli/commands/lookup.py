@@ -6,7 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import click
-from quietarm.ocp import Plan
+from quietarm.ocp import InfeasibleTaskError, Plan
+from quietarm.ocp.plan.verification import OVERRUN
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import quiet_option
@@ -27,8 +28,11 @@ from rich.console import Console
 @click.option("--duration", type=TIME, help="Travelling time.")
 @click.option("--set", "parameters", type=SETTING, multiple=True,
               help="A parameter of the plant that is an axis, as tip_mass=150g.")  # fmt: skip
-@click.option("--solve", is_flag=True,
-              help="Plan the move where the dataset does not have it.")  # fmt: skip
+@click.option(
+    "--solve",
+    is_flag=True,
+    help="Plan the move where the dataset does not have it within its limits.",
+)
 @quiet_option
 @plan_file_options
 def lookup(
@@ -41,7 +45,9 @@ def lookup(
 ) -> None:
     """Take a move from the DATASET of quietarm sweep, by interpolation between its cells.
 
-    It says what such moves leave and cost more than plans of their own, by a hundred random ones.
+    It says what such moves leave, how much more they cost than plans of their own and how far they
+    break limits, each the largest of a hundred random ones. A move that breaks a limit is written,
+    and ends with status 1.
 
     \b
     Examples:
@@ -56,4 +62,9 @@ def lookup(
         found = library.plan(solve=solve, **at)
         between = None if found.status.solved else library.between()
     notes = ["planned: the dataset does not have it"] if between is None else [between.words]
-    finish(files_of(found), plan_document(found, notes))
+    broken = " and ".join(found.motion.passed(found.task.limits, OVERRUN))
+    trouble = InfeasibleTaskError(
+        f"between the cells the move breaks its limit of {broken}; add --solve for a plan that "
+        "keeps it"
+    )
+    finish(files_of(found), plan_document(found, notes), trouble=trouble if broken else None)

@@ -18,7 +18,7 @@ from quietarm.studies.cli.options import (
     workers_options,
 )
 from quietarm.studies.cli.task import task_grid_options
-from quietarm.studies.cli.types import FOLDER, LENGTH, PICTURE, RESIDUAL, WHOLE
+from quietarm.studies.cli.types import DATASET, LENGTH, PICTURE, RESIDUAL, WHOLE
 from quietarm.studies.display.progress import progress
 from quietarm.studies.display.saving import drawing
 from quietarm.studies.registry.profiles import profile_of
@@ -54,11 +54,12 @@ def _check_size(grid: Grid, yes: bool) -> None:
 @click.option("--front", type=click.IntRange(2, _MOST_POINTS), metavar="POINTS",
               help="Find a front of so many points for every move as well.")  # fmt: skip
 @click.option("--refine", type=LENGTH,
-              help="Halve axes until moves between the cells leave no more than this.")  # fmt: skip
+              help="Halve axes until a hundred random moves between the cells leave no more than "
+              "this, and break limits by no more than 1 %.")  # fmt: skip
 @click.option("--starts", type=WHOLE, default=1, show_default=True, help="Starts of each cell.")
 @part_option("chunk")
 @click.option("--yes", is_flag=True, help="Do more than a million cells.")
-@click.option("--output", type=FOLDER, required=True,
+@click.option("--output", type=DATASET, required=True,
               help="The dataset, a folder as moves.zarr: the same line goes on where one was "
               "stopped.")  # fmt: skip
 @click.option("--figure", type=PICTURE, help="Draw energy, residual, price and feasibility over "

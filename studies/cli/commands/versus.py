@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.interrupts import hear_interrupts
+from quietarm.ocp.plan.robust import limit_of
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option, terms_option
 from quietarm.studies.cli.task import robust_option, task_options
@@ -56,7 +57,9 @@ def versus(
             complete = not came
     if not found:
         raise KeyboardInterrupt
-    document = versus_document(task, found)
+    robust = any(rival.name == "robust plan" and rival.motion for rival in found)
+    allowed = limit_of(task, residual_limit) if robust else None
+    document = versus_document(task, found, allowed)
     finish(
         document_files(output, document),
         document,

@@ -6,7 +6,8 @@
 #define {{ guard }}_COEFFICIENTS {{ size }}
 
 /* Coefficients of the move at {{ values | join(", ") }}.
-   0, or 1 beyond the grid, or 2 next to a cell without a plan or at a change of motion. */
+   Returns 0; or, without writing any, 1 beyond the grid and 2 next to a cell without a plan or
+   at a change of motion. */
 int {{ name }}_plan(double {{ names | join(", double ") }}, double coefficients[{{ size }}]);
 
 /* The joint's angle [rad], speed [rad/s] and acceleration [rad/s^2] on such a move, a time [s]

@@ -35,7 +35,11 @@ def address():
         said = process.stdout.readline()
         yield said.strip()
         process.send_signal(signal.SIGINT)
-        assert (*process.communicate(timeout=GUARD), process.returncode) == ("", "", 0)
+        assert (*process.communicate(timeout=GUARD), process.returncode) == (
+            "Ctrl-C ends it\n",
+            "",
+            0,
+        )
     finally:
         process.kill()
         process.communicate()

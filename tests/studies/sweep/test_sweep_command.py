@@ -158,6 +158,7 @@ def test_python_makes_the_same_dataset(call, folder):
         (FEW.replace("0.8,1.2", "1:2:0.0000001"), "cells, some 28 hours on a core"),
         (f"{FEW} --set omga=1,2", "did you mean 'omega'"),
         (f"{FEW} --part 3/2", "'3/2' is no part"),
+        (FEW.replace(".zarr", ".json"), "end its name in .zarr"),
         (f"{FEW} --part 1/2 --refine 1mm", "--refine is for a whole grid"),
     ],
 )

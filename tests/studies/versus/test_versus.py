@@ -1,6 +1,7 @@
 """Plans against shapers and ruckig on the same move."""
 
 import csv
+import re
 from dataclasses import replace
 from math import pi
 
@@ -31,7 +32,10 @@ def test_everything_that_is_used_is_there_or_says_why(found):
         if rival.motion:
             assert rival.worst >= rival.motion.residual * (1 - 1e-6)
     # its impulses take two periods of 0.3125 s, and the rest is too short for 60 degrees
-    assert "within the limits it takes" in found["3hump-ei, ruckig"].why
+    why = found["3hump-ei, ruckig"].why
+    assert re.fullmatch(
+        r"within the limits it takes 0.\d+ s, more than the 0.\d+ s that it has", why
+    )
 
 
 def test_the_robust_plan_is_what_it_promises(found):
@@ -89,7 +93,7 @@ def test_the_command_writes_a_row_each(call, tmp_path, monkeypatch):
     line = "versus flexible-beam --set omega=3.2Hz --target 60deg --duration 0.7"
     code, out, err = call(f"{line} --terms 2 --output against")
     assert (code, err) == (0, "")
-    assert "ruckig: ruckig needs an acceleration limit" in out
+    assert out.count("ruckig needs an acceleration limit") == 1
     rows = list(csv.DictReader((tmp_path / "against" / "versus.csv").read_text().splitlines()))
     assert [row["motion"] for row in rows][:3] == ["plan", "plain cycloid", "zv, cycloid"]
     assert float(rows[0]["residual_mm"]) < 1e-5
