@@ -20,7 +20,7 @@ def serve(
     tell: Callable[[str], object],
     browser: bool = True,
 ) -> None:
-    """Show the page, which begins with `explored`, until Ctrl-C; `tell` is told its address and how to end it."""
+    """Show the page, which begins with `explored`, until Ctrl-C, of which `tell` tells."""
 
     def fill(document: Document) -> None:
         Page(document, explored, plants)

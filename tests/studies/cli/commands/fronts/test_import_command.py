@@ -158,7 +158,7 @@ BAD = [
     ("a_1,x1\n0.1,0.1\n", "coefficient 1 has two columns; leave one"),
     ("time,energy\n0.1,0.1\n", "no column is a coefficient; name them a_1, a_2"),
     ("a_1,a_2\n", "holds no coefficients; give a row for each motion"),
-    ("", "it is empty; give a row for each motion"),
+    ("", "it is empty; give rows of numbers"),
     ("1\n" * 1_000_002, "it has 1000002 lines; give at most 1000000 motions"),
     (b"\xff\xfe\x00", "it is no text"),
     ("a_1,a_2\nnan,0.1\n", "motion 1: coefficient 1 is nan; give a finite number"),
