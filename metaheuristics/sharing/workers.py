@@ -9,7 +9,6 @@ from importlib.util import find_spec
 from quietarm.ocp.checks import whole
 
 MOST_WORKERS = 1000
-_EXTRA = "pip install 'quietarm[cluster]'"
 _FEW = 4
 """More processes than this are started only where they are asked for: each takes memory."""
 
@@ -29,9 +28,10 @@ class Workers:
                 f"workers is {self.number} and the scheduler {self.scheduler} has its own; give "
                 "one of them"
             )
-        if not self.here and find_spec("distributed") is None:
-            asked = f"workers is {self.number}" if self.scheduler is None else "a scheduler"
-            raise ValueError(f"{asked} needs dask: {_EXTRA}, or leave it out")
+        if self.scheduler is not None and find_spec("distributed") is None:
+            raise ValueError(
+                "a scheduler needs dask: pip install 'quietarm[cluster]', or leave it out"
+            )
 
     @property
     def here(self) -> bool:
@@ -44,11 +44,8 @@ class Workers:
 
 
 def cores_at_hand() -> int:
-    """How many processes share long work best: the cores of this process, a few at most.
-
-    1 without dask, which starts them.
-    """
-    return 1 if find_spec("distributed") is None else min(cores_here(), _FEW)
+    """How many processes share long work best: the cores of this process, a few at most."""
+    return min(cores_here(), _FEW)
 
 
 def cores_here() -> int:
