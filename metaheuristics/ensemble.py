@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
-from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.search import search
 from quietarm.metaheuristics.sharing.pieces import (
@@ -150,7 +149,7 @@ def search_many(
     runs : int
         Number of seeds, from `seed` on.
     workers : int
-        Processes of this machine that share the seeds, by dask; 1 runs in this one.
+        Processes of this machine that share the seeds; 1 runs in this one.
     scheduler : str, optional
         Address of a dask scheduler whose workers share the seeds instead, as
         ``tcp://host:8786``.
@@ -173,7 +172,7 @@ def search_many(
     ------
     ValueError
         When `runs` or `workers` is below 1, a setting is out of range, several runs are to share a
-        checkpoint or an algorithm of your own, dask is not installed or no scheduler answers.
+        checkpoint, or no scheduler answers.
     LostSeedsError
         When a seed cost its worker time and again, as where memory runs out, or the scheduler is
         gone; it holds the fronts of the other seeds.
@@ -181,11 +180,6 @@ def search_many(
         When it was interrupted before anything was found.
     """
     seeds, where = seeds_of(seed, runs), Workers(workers, scheduler)
-    if not isinstance(method, str):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise ValueError(
-            f"method is {type(method).__name__}; give one of {', '.join(PRESETS)}, or call "
-            "`search` once a seed with an algorithm of your own"
-        )
     _refuse_checkpoints(settings, runs, where)
     pieces = [
         Piece(one, f"seed {one}", partial(one_seed, task, method, settings, one)) for one in seeds

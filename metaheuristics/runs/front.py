@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,14 @@ from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.runs.loop import Loop
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.runs.settings import search_versions
-from quietarm.ocp import Front, FrontPoint, JointProfile, PointToPoint, non_dominated
+from quietarm.ocp import (
+    Front,
+    FrontPoint,
+    JointProfile,
+    PointToPoint,
+    non_dominated,
+    reference_corner,
+)
 from quietarm.ocp.simulation.rollout import default_steps
 
 WITHIN = 1e-6
@@ -44,32 +52,26 @@ class HandingOver:
 
 def front_of(loop: Loop) -> Front:
     """What a search has found so far, with figures of a finer rollout."""
-    spec, threads = loop.spec, loop.problem.objective.threads
-    return Front(
-        task=spec.task,
-        profile=spec.profile,
-        points=verified_points(spec.task, spec.profile, loop.found()[0], threads),
-        method=spec.method,
-        settings={**asdict(spec.settings), **spec.algorithm},
-        seed=spec.seed,
-        reference=loop.reference,
-        evaluations=loop.evaluations,
-        failed=loop.problem.failed,
-        infeasible=loop.problem.infeasible,
-        history=tuple(loop.history),
-        versions=search_versions(),
-        seconds=loop.seconds,
-    )
+    spec, problem = loop.spec, loop.problem
+    return front_through(
+        loop.found()[0], spec.task, spec.profile, problem.objective.threads,
+        method=spec.method, settings={**asdict(spec.settings), **spec.algorithm}, seed=spec.seed,
+        seconds=loop.seconds, evaluations=loop.evaluations, failed=problem.failed,
+        infeasible=problem.infeasible, history=tuple(loop.history),
+    )  # fmt: skip
 
 
-def verified_points(
-    task: PointToPoint, profile: JointProfile, X: NDArray[np.float64], threads: int = 1
-) -> tuple[FrontPoint, ...]:
-    """The points of a front, with figures of a finer rollout than that of the search."""
+def front_through(
+    X: NDArray[np.float64], task: PointToPoint, profile: JointProfile, threads: int = 1, **rest: Any
+) -> Front:
+    """The front of a search's motions, with figures of a finer rollout than that of the search."""
     fine = PopulationObjective(task, profile, steps=default_steps(task), threads=threads)
     values = fine(X)
     kept = np.flatnonzero((values.violations <= WITHIN).all(axis=1)).tolist()
-    return non_dominated(
+    points = non_dominated(
         FrontPoint(tuple(X[i].tolist()), float(values.residual[i]), float(values.energy[i]))
         for i in kept
+    )
+    return Front(
+        task, profile, points, reference=reference_corner(task), versions=search_versions(), **rest
     )
