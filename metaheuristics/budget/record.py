@@ -101,17 +101,7 @@ def marks_of(budget: int) -> tuple[int, ...]:
 
 
 class Record:
-    """What a search has found, measured at the marks of its budget.
-
-    Parameters
-    ----------
-    budget : int
-        Evaluations of the whole search.
-    scale : Scale
-        The exact front's extent.
-    variables : int
-        Coefficients of a candidate.
-    """
+    """What a search has found, measured at the marks of its budget of evaluations."""
 
     def __init__(self, budget: int, scale: Scale, variables: int) -> None:
         self.budget, self.scale = budget, scale

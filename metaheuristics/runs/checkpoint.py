@@ -33,16 +33,9 @@ CHECKPOINT_SECONDS, _SHARE = 2.0, 0.05
 
 @dataclass(frozen=True)
 class Known:
-    """What a search computed.
+    """What a search computed: residual, energy and violations of every candidate, a row each.
 
-    Attributes
-    ----------
-    figures : ndarray, shape (candidates, 2 + limits)
-        Residual, energy and violations.
-    digest : str
-        SHA-256 of coefficients and figures.
-    seconds : float
-        How long it took.
+    And the SHA-256 of their coefficients and figures, and how long it took.
     """
 
     figures: NDArray[np.float64]

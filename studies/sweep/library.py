@@ -30,16 +30,9 @@ _SAMPLES = 100
 
 @dataclass(frozen=True)
 class Between:
-    """What moves between the cells leave and cost: the worst of some random ones.
+    """What moves between the cells leave [m] and cost: the worst of some random ones, by CVODES.
 
-    Attributes
-    ----------
-    residual : float
-        F1 [m], by CVODES.
-    excess : float
-        Share of the energy above that of a plan of the same move.
-    samples : int
-        How many moves were looked at.
+    Cost is the share of the energy above that of a plan of the same move.
     """
 
     residual: float
