@@ -102,7 +102,7 @@ def search(
     from quietarm.metaheuristics.objective.population import PopulationObjective
     from quietarm.metaheuristics.objective.problem import MoveProblem
     from quietarm.metaheuristics.runs.checkpoint import Keeper, KeptProblem, load_checkpoint
-    from quietarm.metaheuristics.runs.front import HandingOver, front_of
+    from quietarm.metaheuristics.runs.front import front_of, handing_over
     from quietarm.metaheuristics.runs.loop import Loop
 
     profile = CycloidPolynomial() if profile is None else profile
@@ -132,7 +132,7 @@ def search(
     # checkpoint holds whole generations, and the front is worked out to the end.
     reports = [report] if keeper is None else [report, keeper.after_generation]
     if found is not None:  # before the report, so that what is heard of can be kept
-        reports.insert(0, HandingOver(loop, found).after_generation)
+        reports.insert(0, handing_over(loop, found))
     with note_interrupts() as interrupts:
         loop.run(interrupts, *reports)
         trouble = keeper.write(loop.seconds) if keeper and loop.history else ""

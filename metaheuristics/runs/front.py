@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.runs.loop import Loop
-from quietarm.metaheuristics.runs.progress import SearchProgress
+from quietarm.metaheuristics.runs.progress import Report, SearchProgress, now_and_then
 from quietarm.metaheuristics.runs.settings import search_versions
 from quietarm.ocp import (
     Front,
@@ -27,27 +26,13 @@ WITHIN = 1e-6
 """Share by which a peak of the finer rollout may exceed its limit: the search kept it exactly."""
 
 
-_HAND_OVER_PAUSE = (1.0, 5.0)
-_HAND_OVER_SHARE = 0.05
-"""Shortest and longest time [s] between fronts that are handed over, and the share of it that they
-take between these."""
+def handing_over(loop: Loop, found: Callable[[Front], None]) -> Report:
+    """Hand over the front so far: after the first generation, and every second or so."""
 
+    def hand_over(progress: SearchProgress) -> None:
+        found(replace(front_of(loop), complete=False))
 
-class HandingOver:
-    """Hands over the front so far: after the first generation, and every second or so."""
-
-    def __init__(self, loop: Loop, found: Callable[[Front], None]) -> None:
-        self._loop, self._found, self._due = loop, found, 0.0
-
-    def after_generation(self, progress: SearchProgress) -> None:
-        """Hand over the front if the last one is old enough."""
-        began = time.perf_counter()
-        if began >= self._due:
-            self._found(replace(front_of(self._loop), complete=False))
-            ended = time.perf_counter()
-            shortest, longest = _HAND_OVER_PAUSE
-            pause = (ended - began) / _HAND_OVER_SHARE  # the first takes long: casadi builds
-            self._due = ended + min(max(pause, shortest), longest)
+    return now_and_then(hand_over, shortest=1.0, longest=5.0, begin=0.0)
 
 
 def front_of(loop: Loop) -> Front:

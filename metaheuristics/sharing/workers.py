@@ -33,11 +33,6 @@ class Workers:
                 "a scheduler needs dask: pip install 'quietarm[cluster]', or leave it out"
             )
 
-    @property
-    def here(self) -> bool:
-        """Whether all is done in this process."""
-        return self.scheduler is None and self.number == 1
-
     def local(self, pieces: int) -> int:
         """How many processes are started here for so many pieces."""
         return 0 if self.scheduler is not None else min(self.number, pieces)

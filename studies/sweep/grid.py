@@ -26,7 +26,7 @@ class Axis:
 
 
 def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
-    """Read values: one, several as ``0.6,0.8,1.2``, or from, to and step as ``10deg:90deg:5deg``."""
+    """Read values: one, several as ``0.6,0.8,1.2``, or from, to, step as ``10deg:90deg:5deg``."""
     if ":" in text:
         ends = text.split(":")
         if len(ends) != 3:
