@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from quietarm.metaheuristics.runs.progress import SearchProgress
@@ -29,14 +29,6 @@ SEARCH_RESIDUAL = 1e-3
 MOST_RUNS = 10_000
 
 _REMEDY = "where memory ran short, give fewer workers or a smaller population"
-
-
-class Report(Protocol):
-    """Called as searches go on."""
-
-    def __call__(self, progress: SearchProgress, seed: int) -> None:
-        """Hear where the search of this seed is."""
-        ...
 
 
 class LostSeedsError(QuietarmError):
@@ -134,7 +126,7 @@ def search_many(
     workers: int = 1,
     scheduler: str | None = None,
     seed: int = 0,
-    report: Report = lambda progress, seed: None,
+    report: Callable[[SearchProgress, int], None] = lambda progress, seed: None,
     done: Callable[[Front], None] = lambda front: None,
     **settings: Any,
 ) -> list[Front]:

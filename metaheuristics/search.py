@@ -110,7 +110,7 @@ def search(
     if evaluations is not None:
         generations = _generations(algorithm, population, generations, evaluations, warn)
     given = population, generations, settings
-    method, chosen, *asked, own = (
+    method, chosen, population, generations, own = (
         _known(algorithm, task, *given) if isinstance(algorithm, str) else _own(algorithm, *given)
     )
     if bound is None:
@@ -118,7 +118,7 @@ def search(
         raise ValueError(
             f"{method} searches a box: give a bound on the coefficients (the paper used {papers})"
         )
-    asked = SearchSettings(bound, *asked)
+    asked = SearchSettings(bound, population, generations)
     spec = SearchSpec(task, profile, method, asked, seed, own)
     objective = PopulationObjective(task, profile, threads=threads)
     problem, keeper, known = MoveProblem(objective, asked.bound), None, None

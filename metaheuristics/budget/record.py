@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from operator import add
 
 import moocore
 import numpy as np
@@ -85,12 +86,7 @@ class Visits:
 
     def __add__(self, other: Visits) -> Visits:
         """The sum of both."""
-        return Visits(
-            self.still + other.still,
-            self.middle + other.middle,
-            self.cheap + other.cheap,
-            self.outside + other.outside,
-        )
+        return Visits(*map(add, astuple(self), astuple(other)))
 
 
 def marks_of(budget: int) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from concurrent.futures import CancelledError, Future
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from queue import SimpleQueue
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.sharing.pieces import (
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from quietarm.metaheuristics.sharing.processes import Processes
     from quietarm.metaheuristics.sharing.scheduler import Scheduler
 
-    Crew = Processes | Scheduler | "_Here"
+    Crew: TypeAlias = "Processes | Scheduler | _Here"
 
 
 def run_pieces(
