@@ -107,6 +107,11 @@ class Record:
         self._waiting: list[tuple[Array, Array]] = []
 
     @property
+    def left(self) -> int:
+        """Evaluations that are left."""
+        return self.budget - self.spent
+
+    @property
     def until_mark(self) -> int:
         """Evaluations until the next mark; 0 once all are spent."""
         return self._ahead[-1] - self.spent if self._ahead else 0

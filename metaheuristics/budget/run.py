@@ -112,13 +112,13 @@ def search_within(
         attempt(min(budget, _REHEARSAL * stated.get("population", 100)))
         _rehearsed.add((task, profile, method))
     problem, gradient = attempt(budget)
-    seconds = problem.seconds
+    seconds, record = problem.seconds, problem.record
     front = front_through(
-        problem.record.non_dominated()[0], task, profile,
-        method=method, settings=stated, seed=seed, seconds=seconds, evaluations=problem.spent,
-        iterations=gradient.iterations, failed=problem.failed, infeasible=problem.infeasible,
+        record.non_dominated()[0], task, profile,
+        method=method, settings=stated, seed=seed, seconds=seconds, evaluations=record.spent,
+        iterations=gradient.sweep.iterations, failed=problem.failed, infeasible=problem.infeasible,
     )  # fmt: skip
-    return BudgetRun(front, tuple(problem.record.marks), problem.record.visits)
+    return BudgetRun(front, tuple(record.marks), record.visits)
 
 
 def check_method(
@@ -154,7 +154,8 @@ def _run(
 
     set_up(algorithm, problem, MaximumFunctionCallTermination(until), seed)
     machinery: Any = algorithm  # for the type checker: pymoo declares much as optional
-    while problem.spent < until and algorithm.has_next():  # as `Algorithm.next`, with the rows
+    # as `Algorithm.next`, with the rows
+    while problem.record.spent < until and algorithm.has_next():
         infills: Any = algorithm.infill()
         if infills is None:
             algorithm.advance()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.budget.record import Mark, Record, Scale, Visits
-from quietarm.metaheuristics.objective.problem import UNUSABLE
+from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.runs.front import front_through
 from quietarm.ocp import Front

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.termination import Termination
 from pymoo.termination.max_gen import MaximumGenerationTermination
-from quietarm.metaheuristics.objective.problem import UNUSABLE, MoveProblem
+from quietarm.metaheuristics.objective.population import UNUSABLE
+from quietarm.metaheuristics.objective.problem import MoveProblem
 from quietarm.metaheuristics.runs.progress import Report, SearchProgress
 from quietarm.metaheuristics.runs.settings import SearchSpec
 from quietarm.ocp import Generation, reference_corner
