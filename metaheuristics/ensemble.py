@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.runs.progress import SearchProgress
 from quietarm.metaheuristics.search import search
 from quietarm.metaheuristics.sharing.pieces import (
@@ -30,14 +29,6 @@ SEARCH_RESIDUAL = 1e-3
 MOST_RUNS = 10_000
 
 _REMEDY = "where memory ran short, give fewer workers or a smaller population"
-
-
-class Report(Protocol):
-    """Called as searches go on."""
-
-    def __call__(self, progress: SearchProgress, seed: int) -> None:
-        """Hear where the search of this seed is."""
-        ...
 
 
 class LostSeedsError(QuietarmError):
@@ -135,7 +126,7 @@ def search_many(
     workers: int = 1,
     scheduler: str | None = None,
     seed: int = 0,
-    report: Report = lambda progress, seed: None,
+    report: Callable[[SearchProgress, int], None] = lambda progress, seed: None,
     done: Callable[[Front], None] = lambda front: None,
     **settings: Any,
 ) -> list[Front]:
@@ -150,7 +141,7 @@ def search_many(
     runs : int
         Number of seeds, from `seed` on.
     workers : int
-        Processes of this machine that share the seeds, by dask; 1 runs in this one.
+        Processes of this machine that share the seeds; 1 runs in this one.
     scheduler : str, optional
         Address of a dask scheduler whose workers share the seeds instead, as
         ``tcp://host:8786``.
@@ -173,7 +164,7 @@ def search_many(
     ------
     ValueError
         When `runs` or `workers` is below 1, a setting is out of range, several runs are to share a
-        checkpoint or an algorithm of your own, dask is not installed or no scheduler answers.
+        checkpoint, or no scheduler answers.
     LostSeedsError
         When a seed cost its worker time and again, as where memory runs out, or the scheduler is
         gone; it holds the fronts of the other seeds.
@@ -181,11 +172,6 @@ def search_many(
         When it was interrupted before anything was found.
     """
     seeds, where = seeds_of(seed, runs), Workers(workers, scheduler)
-    if not isinstance(method, str):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise ValueError(
-            f"method is {type(method).__name__}; give one of {', '.join(PRESETS)}, or call "
-            "`search` once a seed with an algorithm of your own"
-        )
     _refuse_checkpoints(settings, runs, where)
     pieces = [
         Piece(one, f"seed {one}", partial(one_seed, task, method, settings, one)) for one in seeds

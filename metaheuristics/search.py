@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING
 
 from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, preset_of
 from quietarm.metaheuristics.runs.progress import Report
-from quietarm.metaheuristics.runs.settings import SearchSettings, SearchSpec
+from quietarm.metaheuristics.runs.settings import (
+    SearchSettings,
+    SearchSpec,
+    number_of_individuals,
+)
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint
 from quietarm.ocp.files import check_writable
 from quietarm.ocp.interrupts import note_interrupts
@@ -98,14 +102,23 @@ def search(
     from quietarm.metaheuristics.objective.population import PopulationObjective
     from quietarm.metaheuristics.objective.problem import MoveProblem
     from quietarm.metaheuristics.runs.checkpoint import Keeper, KeptProblem, load_checkpoint
-    from quietarm.metaheuristics.runs.front import HandingOver, front_of
+    from quietarm.metaheuristics.runs.front import front_of, handing_over
     from quietarm.metaheuristics.runs.loop import Loop
 
     profile = CycloidPolynomial() if profile is None else profile
     bound = profile.default_bound if bound is None else bound
     if evaluations is not None:
         generations = _generations(algorithm, population, generations, evaluations, warn)
-    method, chosen, asked, own = _chosen(algorithm, task, bound, population, generations, settings)
+    given = population, generations, settings
+    method, chosen, population, generations, own = (
+        _known(algorithm, task, *given) if isinstance(algorithm, str) else _own(algorithm, *given)
+    )
+    if bound is None:
+        papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
+        raise ValueError(
+            f"{method} searches a box: give a bound on the coefficients (the paper used {papers})"
+        )
+    asked = SearchSettings(bound, population, generations)
     spec = SearchSpec(task, profile, method, asked, seed, own)
     objective = PopulationObjective(task, profile, threads=threads)
     problem, keeper, known = MoveProblem(objective, asked.bound), None, None
@@ -119,7 +132,7 @@ def search(
     # checkpoint holds whole generations, and the front is worked out to the end.
     reports = [report] if keeper is None else [report, keeper.after_generation]
     if found is not None:  # before the report, so that what is heard of can be kept
-        reports.insert(0, HandingOver(loop, found).after_generation)
+        reports.insert(0, handing_over(loop, found))
     with note_interrupts() as interrupts:
         loop.run(interrupts, *reports)
         trouble = keeper.write(loop.seconds) if keeper and loop.history else ""
@@ -147,53 +160,43 @@ def _generations(
     return preset.generations_for(evaluations, population)
 
 
-def _chosen(
-    algorithm: str | Algorithm,
+_Chosen = tuple[str, "Algorithm", int | None, int, Mapping[str, object]]
+"""Name, algorithm, population, generations, and its own settings, defaults as well."""
+
+
+def _known(
+    name: str,
     task: PointToPoint,
-    bound: float | None,
     population: int | None,
     generations: int | None,
     settings: Mapping[str, object] | None,
-) -> tuple[str, Algorithm, SearchSettings, Mapping[str, object]]:
-    """Name, algorithm, what every method is asked, and its own settings, defaults as well."""
-    if not isinstance(algorithm, str):
-        if settings:
-            raise ValueError("settings are set in the algorithm that you give, not beside it")
-        return _own(algorithm, bound, population, generations)
-    preset = preset_of(algorithm)
+) -> _Chosen:
+    preset = preset_of(name)
     if task.limits and not preset.keeps_limits:
         raise ValueError(
             f"{preset.name} cannot search a task with limits; choose another method, or leave "
             "the limits out"
         )
-    bound = _required(bound, preset.name)
-    population = preset.population if population is None else population
+    population = number_of_individuals(preset.population if population is None else population)
     generations = preset.generations if generations is None else generations
-    asked = SearchSettings(bound, population, generations)
-    size = asked.population or 0
-    return preset.name, preset.build(size, settings), asked, preset.checked(size, settings)
+    chosen, own = preset.build(population, settings), preset.checked(population, settings)
+    return preset.name, chosen, population, generations, own
 
 
 def _own(
-    algorithm: Algorithm, bound: float | None, population: int | None, generations: int | None
-) -> tuple[str, Algorithm, SearchSettings, Mapping[str, object]]:
+    algorithm: Algorithm,
+    population: int | None,
+    generations: int | None,
+    settings: Mapping[str, object] | None,
+) -> _Chosen:
     from quietarm.metaheuristics.algorithms.own import own_algorithm
     from quietarm.metaheuristics.algorithms.provenance import settings_of
 
     chosen = own_algorithm(algorithm)
     method = type(chosen).__name__
-    bound = _required(bound, method)
-    if population is not None:
-        raise ValueError("population is set in the algorithm that you give, not beside it")
+    for name, value in (("population", population), ("settings", settings)):
+        if value:
+            raise ValueError(f"{name} is set in the algorithm that you give, not beside it")
     if generations is None:
         raise ValueError(f"give the number of generations for {method}")
-    return method, chosen, SearchSettings(bound, None, generations), settings_of(chosen)
-
-
-def _required(bound: float | None, method: str) -> float:
-    if bound is None:
-        papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
-        raise ValueError(
-            f"{method} searches a box: give a bound on the coefficients (the paper used {papers})"
-        )
-    return bound
+    return method, chosen, None, generations, settings_of(chosen)

@@ -5,16 +5,10 @@ from __future__ import annotations
 import copy
 
 from pymoo.core.algorithm import Algorithm
-from quietarm.metaheuristics.algorithms.presets import PRESETS
 
 
-def own_algorithm(algorithm: object) -> Algorithm:
+def own_algorithm(algorithm: Algorithm) -> Algorithm:
     """A copy to run, so that the one given stays as it is."""
-    if not isinstance(algorithm, Algorithm):
-        raise ValueError(
-            f"algorithm is {algorithm!r}; give {', '.join(PRESETS)}, or an instance of one of "
-            "pymoo's algorithms"
-        )
     name = type(algorithm).__name__
     # pymoo says nowhere else how many objectives an algorithm is for, and some would run on
     if any(kind.__module__.startswith("pymoo.algorithms.soo") for kind in type(algorithm).__mro__):

@@ -13,15 +13,7 @@ from pymoo.util.display.multi import MultiObjectiveOutput
 
 
 class RandomSearch(Algorithm):
-    """Every generation is drawn anew; what no candidate dominates is kept.
-
-    Parameters
-    ----------
-    population : int
-        Candidates a generation.
-    sampling : Sampling, optional
-        What draws them; uniformly over the box by default.
-    """
+    """Every generation is drawn anew, uniformly over the box; what none dominates is kept."""
 
     pop: Any  # for the type checker: pymoo declares these as optional
     opt: Any

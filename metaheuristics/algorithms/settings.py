@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from quietarm.ocp.checks import finite, has_no, nearest, positive, whole
+from quietarm.ocp.checks import finite, has_no, nearest, whole
 
 Value = float | int | bool | str | None
 MOST_KEPT = 100_000
@@ -24,26 +24,21 @@ class Setting:
     check: Callable[[str, Any], Value]
 
 
-def share(name: str, value: object) -> float:
-    """A number from 0 to 1."""
-    number = finite(name, value)
-    if not 0 <= number <= 1:
-        raise ValueError(f"{name} is {number:g}; give a number from 0 to 1")
-    return number
+def _number(wanted: str, fits: Callable[[float], bool]) -> Callable[[str, object], float]:
+    def check(name: str, value: object) -> float:
+        number = finite(name, value)
+        if not fits(number):
+            raise ValueError(f"{name} is {number:g}; give {wanted}")
+        return number
+
+    return check
 
 
-def index_of_spread(name: str, value: object) -> float:
-    """The index eta of a crossover or a mutation: pymoo allows 1 to 100, both left out."""
-    number = finite(name, value)
-    if not 1 < number < 100:
-        raise ValueError(f"{name} is {number:g}; give a number between 1 and 100")
-    return number
-
-
-def positive_share(name: str, value: object) -> float:
-    """A number above 0, up to 1."""
-    number = share(name, value)
-    return positive(name, number)
+share = _number("a number from 0 to 1", lambda number: 0 <= number <= 1)
+positive_share = _number("a positive number up to 1", lambda number: 0 < number <= 1)
+scale = _number("a positive number up to 2", lambda number: 0 < number <= 2)
+index_of_spread = _number("a number between 1 and 100", lambda number: 1 < number < 100)
+"""Of a crossover or a mutation: pymoo allows 1 to 100, both left out."""
 
 
 def yes_or_no(name: str, value: object) -> bool:
@@ -68,14 +63,6 @@ def one_of(*choices: str) -> Callable[[str, object], str]:
 def count(least: int, most: int = MOST_KEPT) -> Callable[[str, object], int]:
     """A check for a whole number."""
     return lambda name, value: whole(name, value, least, most)
-
-
-def scale(name: str, value: object) -> float:
-    """The factor of a difference in differential evolution: above 0, at most 2."""
-    number = positive(name, value)
-    if number > 2:
-        raise ValueError(f"{name} is {number:g}; give a number up to 2")
-    return number
 
 
 def with_defaults(

@@ -31,7 +31,7 @@ from quietarm.metaheuristics.algorithms.velocity import (
     Array,
     VelocityRule,
 )
-from quietarm.metaheuristics.objective.problem import UNUSABLE
+from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.ocp.checks import positive, whole
 
 
@@ -105,13 +105,14 @@ class VEPSO(Algorithm):
         options.setdefault("output", MultiObjectiveOutput())
         super().__init__(**options)
         self.particles = whole("particles", particles, 2)
-        self.archive_size = _count_or_none("archive_size", archive_size, 2)
-        self.iterations = _count_or_none("iterations", iterations, 1)
+        self.archive_size, self.iterations = archive_size, iterations
+        if archive_size is not None:
+            self.archive_size = whole("archive_size", archive_size, 2)
+        if iterations is not None:
+            self.iterations = whole("iterations", iterations, 1)
         self.rule, self.boundary = rule, boundary
         self.velocity_limit = positive("velocity_limit", velocity_limit)
         self.sampling = FloatRandomSampling() if sampling is None else sampling
-        if not isinstance(rule, VelocityRule):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise ValueError(f"rule is {rule!r}; give a VelocityRule, such as CONSTRICTION")
         if boundary not in tuple(BOUNDARIES):
             raise ValueError(f"boundary is {boundary!r}; give one of {', '.join(BOUNDARIES)}")
 
@@ -136,10 +137,8 @@ class VEPSO(Algorithm):
         self.best_merit = np.full((swarms, self.particles, 1 + swarms), np.inf)
         self.swarm_best = np.zeros(swarms, dtype=int)
         self.external_archive, self.archive_F = Population.empty(), np.empty((0, swarms))
-        self.asked = False  # whether objectives of candidates are waited for
 
     def _initialize_infill(self) -> Population:
-        self.asked = True
         rows = (self.shape[0] * self.particles, self.shape[2])
         sampling = Initialization(self.sampling)
         X = sampling.do(self.problem, rows[0], random_state=self.random_state).get("X")
@@ -151,7 +150,6 @@ class VEPSO(Algorithm):
         return Population.new(X=X.astype(float))  # new, so that none counts as evaluated already
 
     def _infill(self) -> Population:
-        self.asked = True
         rule, x = self.rule, self.pop.get("X").reshape(self.shape)
         passed = min((self.iteration - 1) / max(self.horizon - 2, 1), 1.0)
         inertia = rule.inertia_start + (rule.inertia_end - rule.inertia_start) * passed
@@ -169,12 +167,7 @@ class VEPSO(Algorithm):
     def _advance(self, infills: Any = None, **kwargs: Any) -> None:
         swarms, particles, _ = self.shape
         X, F = infills.get("X", "F")
-        if not self.asked or F.shape != (swarms * particles, swarms):
-            raise ValueError(
-                f"the objectives have shape {F.shape}; evaluate all candidates that ask() gave, "
-                "and pass them to tell() once"
-            )
-        self.pop, self.velocities, self.asked = infills, self.moved, False
+        self.pop, self.velocities = infills, self.moved
         violation = _violations(infills, F)
         merit = np.take_along_axis(F.reshape(swarms, particles, -1), self.ring[:, None], axis=2)
         merit = np.concatenate([violation.reshape(swarms, particles, 1), merit], axis=2)
@@ -206,10 +199,6 @@ class VEPSO(Algorithm):
         """In plain numbers and words."""
         names = ("particles", "boundary", "velocity_limit", "archive_size", "iterations")
         return {**{name: getattr(self, name) for name in names}, **asdict(self.rule)}
-
-
-def _count_or_none(name: str, value: object, least: int) -> int | None:
-    return None if value is None else whole(name, value, least)
 
 
 def _violations(candidates: Any, F: Array) -> Array:

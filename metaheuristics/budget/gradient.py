@@ -25,22 +25,17 @@ class Gradient:
     def __init__(self, problem: BudgetProblem, bound: float, seed: int) -> None:
         objective = problem.objective
         settings = SolveSettings(bound=bound, starts=1, seed=seed)
-        self._sweep = Sweep(objective.task, objective.profile, settings)
+        self.sweep = Sweep(objective.task, objective.profile, settings)
         self._problem, self._random = problem, np.random.default_rng(seed)
         self._lower, self._upper = objective.profile.box(bound)
 
-    @property
-    def iterations(self) -> int:
-        """Iterations until now."""
-        return self._sweep.iterations
-
     def solve(self, start: Array, residual_limit: float) -> Solution:
         """The least energy within a residual limit [m], from one start."""
-        before = self.iterations
-        found = self._sweep.best([start], self._sweep.ask(residual_limit))
+        before = self.sweep.iterations
+        found = self.sweep.best([start], self.sweep.ask(residual_limit))
         size = len(start)
         an_iteration = 1 + size + size * (size + 1) // 2
-        self._problem.spend((self.iterations - before) * an_iteration)
+        self._problem.spend((self.sweep.iterations - before) * an_iteration)
         if found.status.solved:
             inside = np.clip(found.coefficients, self._lower, self._upper)
             self._problem.evaluate(inside[None, :])
@@ -79,7 +74,7 @@ class Gradient:
             found = self.solve(self.random_start(), limit)
             if found.status.solved:
                 reach = max(reach, found.residual)
-            if self._problem.left == 0:
+            if self._problem.record.left == 0:
                 return
 
 

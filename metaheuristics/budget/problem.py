@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.budget.record import Record, Scale
-from quietarm.metaheuristics.objective.population import PopulationObjective
-from quietarm.metaheuristics.objective.problem import UNUSABLE, MoveProblem
+from quietarm.metaheuristics.objective.population import UNUSABLE, PopulationObjective
+from quietarm.metaheuristics.objective.problem import MoveProblem
 
 
 class BudgetSpentError(Exception):
@@ -35,26 +35,17 @@ class BudgetProblem(MoveProblem):
         """Processor time of the search until now, without that of the record [s]."""
         return time.thread_time() - self._began - self._recording
 
-    @property
-    def spent(self) -> int:
-        """Evaluations until now."""
-        return self.record.spent
-
-    @property
-    def left(self) -> int:
-        """Evaluations that are left."""
-        return self.record.budget - self.record.spent
-
     def spend(self, evaluations: int) -> None:
         """Count work that is no candidate of this problem, as iterations of a solver."""
-        seconds, until = self.seconds, self.spent + evaluations
-        while self.left and self.spent < until:
-            self.record.move_on(min(self.record.until_mark, until - self.spent), seconds)
-        if self.spent < until:
+        record, seconds = self.record, self.seconds
+        until = record.spent + evaluations
+        while record.left and record.spent < until:
+            record.move_on(min(record.until_mark, until - record.spent), seconds)
+        if record.spent < until:
             raise BudgetSpentError
 
     def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any):
-        afforded = x[: self.left]
+        afforded = x[: self.record.left]
         if len(afforded):
             super()._evaluate(afforded, out, *args, **kwargs)
             seconds = self.seconds

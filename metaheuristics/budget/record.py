@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from operator import add
 
 import moocore
 import numpy as np
@@ -85,12 +86,7 @@ class Visits:
 
     def __add__(self, other: Visits) -> Visits:
         """The sum of both."""
-        return Visits(
-            self.still + other.still,
-            self.middle + other.middle,
-            self.cheap + other.cheap,
-            self.outside + other.outside,
-        )
+        return Visits(*map(add, astuple(self), astuple(other)))
 
 
 def marks_of(budget: int) -> tuple[int, ...]:
@@ -101,17 +97,7 @@ def marks_of(budget: int) -> tuple[int, ...]:
 
 
 class Record:
-    """What a search has found, measured at the marks of its budget.
-
-    Parameters
-    ----------
-    budget : int
-        Evaluations of the whole search.
-    scale : Scale
-        The exact front's extent.
-    variables : int
-        Coefficients of a candidate.
-    """
+    """What a search has found, measured at the marks of its budget of evaluations."""
 
     def __init__(self, budget: int, scale: Scale, variables: int) -> None:
         self.budget, self.scale = budget, scale
@@ -119,6 +105,11 @@ class Record:
         self._ahead = list(marks_of(budget))[::-1]
         self._X, self._F = np.empty((0, variables)), np.empty((0, 2))
         self._waiting: list[tuple[Array, Array]] = []
+
+    @property
+    def left(self) -> int:
+        """Evaluations that are left."""
+        return self.budget - self.spent
 
     @property
     def until_mark(self) -> int:

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.algorithms.presets import PRESETS
 from quietarm.metaheuristics.budget.record import Mark, Scale, Visits
-from quietarm.metaheuristics.runs.settings import search_versions
-from quietarm.ocp import Front, JointProfile, PointToPoint, reference_corner
+from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import unknown, whole
 
 if TYPE_CHECKING:
@@ -88,7 +87,7 @@ def search_within(
     from quietarm.metaheuristics.budget.gradient import Gradient
     from quietarm.metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
     from quietarm.metaheuristics.objective.population import PopulationObjective
-    from quietarm.metaheuristics.runs.front import verified_points
+    from quietarm.metaheuristics.runs.front import front_through
 
     search, helped = parts_of(method)
     budget = number_of_evaluations(evaluations)
@@ -113,23 +112,13 @@ def search_within(
         attempt(min(budget, _REHEARSAL * stated.get("population", 100)))
         _rehearsed.add((task, profile, method))
     problem, gradient = attempt(budget)
-    seconds = problem.seconds
-    front = Front(
-        task=task,
-        profile=profile,
-        points=verified_points(task, profile, problem.record.non_dominated()[0]),
-        method=method,
-        settings=stated,
-        seed=seed,
-        reference=reference_corner(task),
-        evaluations=problem.spent,
-        iterations=gradient.iterations,
-        failed=problem.failed,
-        infeasible=problem.infeasible,
-        versions=search_versions(),
-        seconds=seconds,
-    )
-    return BudgetRun(front, tuple(problem.record.marks), problem.record.visits)
+    seconds, record = problem.seconds, problem.record
+    front = front_through(
+        record.non_dominated()[0], task, profile,
+        method=method, settings=stated, seed=seed, seconds=seconds, evaluations=record.spent,
+        iterations=gradient.sweep.iterations, failed=problem.failed, infeasible=problem.infeasible,
+    )  # fmt: skip
+    return BudgetRun(front, tuple(record.marks), record.visits)
 
 
 def check_method(
@@ -161,14 +150,12 @@ def _run(
 ) -> None:
     """Search until so many evaluations are spent, with these rows in the first population."""
     from pymoo.termination.max_eval import MaximumFunctionCallTermination
+    from quietarm.metaheuristics.runs.loop import set_up
 
-    termination = MaximumFunctionCallTermination(until)
-    try:
-        algorithm.setup(problem, termination=termination, seed=seed)
-    except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
-        raise ValueError(f"{type(algorithm).__name__} cannot search this task: {error}") from None
+    set_up(algorithm, problem, MaximumFunctionCallTermination(until), seed)
     machinery: Any = algorithm  # for the type checker: pymoo declares much as optional
-    while problem.spent < until and algorithm.has_next():  # as `Algorithm.next`, with the rows
+    # as `Algorithm.next`, with the rows
+    while problem.record.spent < until and algorithm.has_next():
         infills: Any = algorithm.infill()
         if infills is None:
             algorithm.advance()

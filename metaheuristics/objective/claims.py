@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective
-from quietarm.ocp import Front, FrontPoint, JointProfile, Plan, PointToPoint
+from quietarm.ocp import Front, JointProfile, Plan, PointToPoint
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.plan.verification import OVERRUN
@@ -42,14 +41,40 @@ def objective_of(task: PointToPoint, profile: JointProfile) -> PopulationObjecti
 
 def check_figures(front: Front, name: str, remedy: str = "find the front again") -> None:
     """Evaluate motions of a front again, and refuse it where the figures differ."""
+    if not front.points:
+        return
     try:
-        objective = objective_of(front.task, front.profile)
-        if front.points:
-            table = np.array([point.coefficients for point in front.points])
-            refuse_beyond_box(front.profile, table, front.settings.get("bound"), remedy="")
-        check_points(objective, front.points, limited=True)
+        table = np.array([point.coefficients for point in front.points])
+        refuse_beyond_box(front.profile, table, front.settings.get("bound"), remedy="")
+        _check_points(front, table)
     except ValueError as error:
         raise ValueError(f"{name}: {error}; {remedy}") from None
+
+
+def _check_points(front: Front, table: NDArray[np.float64]) -> None:
+    """Evaluate some rows again, and refuse those that give other figures or break a limit."""
+    count, limits = len(table), front.task.limits.items()
+    places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int))
+    with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused below
+        values = objective_of(front.task, front.profile)(table[places])
+    rows = zip(places.tolist(), values.residual, values.energy, values.violations, strict=True)
+    for i, *both, violations in rows:
+        which = f"point {i + 1} of {count}"
+        for (figure, unit, least), found in zip(FIGURES, both, strict=True):
+            stated = getattr(front.points[i], figure)
+            if not agrees(stated, found, least):
+                gives = f"{found:.4g} {unit}" if np.isfinite(found) else "no finite figure"
+                raise ValueError(
+                    f"{which} states {figure} {stated:.4g} {unit}, but its coefficients give "
+                    f"{gives}"
+                )
+        for (quantity, limit), passed in zip(limits, violations, strict=True):
+            if not passed <= OVERRUN:
+                raise ValueError(
+                    f"{which} breaks the {quantity} limit of {limit:g} "
+                    f"{QUANTITIES[quantity].unit}: its coefficients give "
+                    f"{limit * (1 + passed):.4g}"
+                )
 
 
 def check_plan(plan: Plan, name: str) -> None:
@@ -90,38 +115,3 @@ def _check_worst(plan: Plan, name: str) -> None:
                 f"{name} states residual {stated:.4g} m at worst, but its coefficients {words} "
                 f"{gives:.4g} m; find the plan again"
             )
-
-
-def check_points(
-    objective: PopulationObjective,
-    points: Sequence[FrontPoint],
-    *,
-    limited: bool = False,
-) -> None:
-    """Evaluate motions again, and refuse them where the figures differ."""
-    count = len(points)
-    if not count:
-        return
-    places = np.unique(np.linspace(0, count - 1, min(count, _SAMPLE)).round().astype(int)).tolist()
-    with np.errstate(all="ignore"):  # coefficients of any size: what overflows is refused below
-        values = objective(np.array([points[i].coefficients for i in places]))
-    rows = zip(places, values.residual, values.energy, values.violations, strict=True)
-    for i, residual, energy, violations in rows:
-        which = f"point {i + 1} of {count}"
-        both = (points[i].residual, residual), (points[i].energy, energy)
-        for (figure, unit, least), (stated, found) in zip(FIGURES, both, strict=True):
-            if not agrees(stated, found, least):
-                gives = f"{found:.4g} {unit}" if np.isfinite(found) else "no finite figure"
-                raise ValueError(
-                    f"{which} states {figure} {stated:.4g} {unit}, but its coefficients give "
-                    f"{gives}"
-                )
-        for (quantity, limit), passed in zip(
-            objective.task.limits.items(), violations, strict=True
-        ):
-            if limited and not passed <= OVERRUN:
-                raise ValueError(
-                    f"{which} breaks the {quantity} limit of {limit:g} "
-                    f"{QUANTITIES[quantity].unit}: its coefficients give "
-                    f"{limit * (1 + passed):.4g}"
-                )

@@ -7,13 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
-from quietarm.metaheuristics.objective.population import (
-    UNUSABLE,
-    PopulationObjective,
-    replace_failures,
-)
-
-__all__ = ["UNUSABLE", "MoveProblem"]
+from quietarm.metaheuristics.objective.population import PopulationObjective, replace_failures
 
 
 class MoveProblem(Problem):

@@ -186,7 +186,7 @@ def _swept(task: PointToPoint, profile: JointProfile, bound: float) -> Front:
 
 def problem_of(name: str) -> NamedProblem:
     """A named problem; ValueError suggests the nearest one."""
-    if not isinstance(name, str) or name not in PROBLEMS:
+    if name not in PROBLEMS:
         raise ValueError(unknown("problem", name, PROBLEMS))
     return PROBLEMS[name]
 

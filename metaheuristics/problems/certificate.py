@@ -39,29 +39,11 @@ CVODES gives the stated energies within the second; residuals within `STILL` mor
 class Certificate:
     """What is known of an exact front.
 
-    Attributes
-    ----------
-    front : str
-        Name of the front: the problem's, or of a third objective with the limit.
-    checksum : str
-        SHA-256 of move, profile, box and points.
-    points : int
-        How many there are.
-    optimiser : dict of str to str
-        Versions of what found it again for this certificate; the method is the gradient's.
-    prices : tuple of float
-        Multiplier of the residual at every point [J/m]; 0 where the solver did not confirm it.
-    energy_difference : float
-        Largest share by which CVODES gives another energy than stated.
-    residual_difference : float
-        Largest difference of the residuals [m].
-    confirmed : int
-        Points that the solver, started there, calls optimal.
-    tried : int
-        Starts that tried to beat some of the points.
-    gained : float
-        Largest share by which any solution is cheaper than its point, by CVODES and at its residual
-        and limits by their prices; 0 where none is.
+    The multiplier of the residual at every point [J/m], 0 where the solver did not confirm it; the
+    largest differences from what CVODES gives, of the energies as a share and of the residuals [m];
+    how many points the solver, started there, calls optimal; from how many starts it was tried to
+    beat some; and the largest share by which any solution is cheaper than its point, by CVODES and
+    at its residual and limits by their prices.
     """
 
     front: str
@@ -111,19 +93,7 @@ def certified(
     """Check the exact fronts of a problem anew.
 
     Every point is evaluated by CVODES and is the start of a solve at its residual; some are solved
-    from random starts as well.
-
-    Parameters
-    ----------
-    problem : NamedProblem
-        The problem.
-    report : callable, optional
-        Called with the name of each front when it begins.
-
-    Returns
-    -------
-    list of Certificate
-        One for each of its fronts.
+    from random starts as well. `report` is called with the name of each front when it begins.
     """
     found = list[Certificate]()
     for (name, task), front in zip(problem.tasks().items(), problem.fronts(), strict=True):

@@ -64,15 +64,16 @@ class MoveFunction:
         threads: int = 1,
     ) -> None:
         profile = CycloidPolynomial() if profile is None else profile
-        if isinstance(peaks, str):
-            raise ValueError(f"peaks is {peaks!r}; give a list of quantities, as [{peaks!r}]")
         bound = profile.default_bound if bound is None else bound
         if bound is None:
             raise ValueError("give a bound on the coefficients: the box that is searched")
         bound = coefficient_bound(bound)
         profile.refuse_no_choice()
         self.task, self.profile, self.bound = task, profile, bound
-        self.peaks = tuple(_known(name) for name in peaks)
+        for name in peaks:
+            if name not in QUANTITIES:
+                raise ValueError(unknown("quantity", name, QUANTITIES))
+        self.peaks = tuple(peaks)
         self.lower, self.upper = (np.array(side, dtype=float) for side in profile.box(bound))
         self.variables = tuple(f"a_{i + 1}" for i in range(profile.size))
         self.objectives = ("residual", "energy", *(f"peak_{name}" for name in self.peaks))
@@ -120,9 +121,3 @@ class MoveFunction:
         replace_failures(table)
         count = len(self.objectives)
         return table[:, :count], table[:, count:]
-
-
-def _known(name: str) -> str:
-    if not isinstance(name, str) or name not in QUANTITIES:
-        raise ValueError(unknown("quantity", name, QUANTITIES))
-    return name

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.budget.record import Mark, Record, Scale, Visits
-from quietarm.metaheuristics.objective.problem import UNUSABLE
+from quietarm.metaheuristics.objective.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
-from quietarm.metaheuristics.runs.front import verified_points
-from quietarm.metaheuristics.runs.settings import search_versions
-from quietarm.ocp import Front, reference_corner
+from quietarm.metaheuristics.runs.front import front_through
+from quietarm.ocp import Front
 from quietarm.ocp.checks import whole
 from quietarm.ocp.saved import Saved
 
@@ -129,12 +128,10 @@ class RecordedFunction(MoveFunction):
             if len(table[first]):
                 seconds = after
                 record.add(table[first], found[first], usable[first], seconds)
-        front = Front(
-            task=self.task, profile=self.profile,
-            points=verified_points(self.task, self.profile, record.non_dominated()[0]),
-            method=method, settings={"bound": self.bound}, seed=seed,
-            reference=reference_corner(self.task), evaluations=record.spent,
-            versions=search_versions(), seconds=seconds,
+        front = front_through(
+            record.non_dominated()[0], self.task, self.profile,
+            method=method, settings={"bound": self.bound}, seed=seed, seconds=seconds,
+            evaluations=record.spent,
         )  # fmt: skip
         return RecordedRun(self.problem.name, front, scale, tuple(record.marks), record.visits)
 

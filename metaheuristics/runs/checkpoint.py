@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import time
+import math
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,29 +20,22 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.objective.problem import MoveProblem
-from quietarm.metaheuristics.runs.progress import SearchProgress
+from quietarm.metaheuristics.runs.progress import SearchProgress, now_and_then
 from quietarm.metaheuristics.runs.settings import SearchSpec, search_versions
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.saved import content_of, plain
 
 KIND, VERSION = "checkpoint", 3
-CHECKPOINT_SECONDS, _SHARE = 2.0, 0.05
-"""Least time [s] between two writes, and the share of the time that they may take."""
+CHECKPOINT_SECONDS = 2.0
+"""Least time [s] between two writes."""
 
 
 @dataclass(frozen=True)
 class Known:
-    """What a search computed.
+    """What a search computed: residual, energy and violations of every candidate, a row each.
 
-    Attributes
-    ----------
-    figures : ndarray, shape (candidates, 2 + limits)
-        Residual, energy and violations.
-    digest : str
-        SHA-256 of coefficients and figures.
-    seconds : float
-        How long it took.
+    And the SHA-256 of their coefficients and figures, and how long it took.
     """
 
     figures: NDArray[np.float64]
@@ -98,15 +91,13 @@ class Keeper:
 
     def __init__(self, spec: SearchSpec, problem: KeptProblem, path: str | Path) -> None:
         self._spec, self._problem, self._path = spec, problem, path
-        self._due = time.perf_counter() + CHECKPOINT_SECONDS
+        self.after_generation = now_and_then(
+            self._write_anew, CHECKPOINT_SECONDS, math.inf, begin=CHECKPOINT_SECONDS
+        )
 
-    def after_generation(self, progress: SearchProgress) -> None:
-        """Write the search if the last write is old enough."""
-        began = time.perf_counter()
-        if began > self._due and not self._problem.repeating:
+    def _write_anew(self, progress: SearchProgress) -> None:
+        if not self._problem.repeating:
             self.write(progress.seconds)
-            took = time.perf_counter() - began
-            self._due = began + took + max(CHECKPOINT_SECONDS, took / _SHARE)
 
     def write(self, seconds: float) -> str:
         """Write the search; the reason where it cannot be written, else nothing."""

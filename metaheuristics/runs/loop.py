@@ -11,11 +11,21 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.algorithm import Algorithm
+from pymoo.core.termination import Termination
 from pymoo.termination.max_gen import MaximumGenerationTermination
-from quietarm.metaheuristics.objective.problem import UNUSABLE, MoveProblem
+from quietarm.metaheuristics.objective.population import UNUSABLE
+from quietarm.metaheuristics.objective.problem import MoveProblem
 from quietarm.metaheuristics.runs.progress import Report, SearchProgress
 from quietarm.metaheuristics.runs.settings import SearchSpec
 from quietarm.ocp import Generation, reference_corner
+
+
+def set_up(algorithm: Algorithm, problem: MoveProblem, termination: Termination, seed: int) -> None:
+    """Have an algorithm ready for its first generation; ValueError where it is for other tasks."""
+    try:
+        algorithm.setup(problem, termination=termination, seed=seed)
+    except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
+        raise ValueError(f"{type(algorithm).__name__} cannot search this task: {error}") from None
 
 
 class Loop:
@@ -30,10 +40,7 @@ class Loop:
         self._algorithm: Any = algorithm  # for the type checker: pymoo declares much as optional
         self._earlier, self._began = earlier, time.perf_counter()
         termination = MaximumGenerationTermination(spec.settings.generations)
-        try:
-            algorithm.setup(self.problem, termination=termination, seed=spec.seed)
-        except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
-            raise ValueError(f"{spec.method} cannot search this task: {error}") from None
+        set_up(algorithm, problem, termination, spec.seed)
 
     @property
     def evaluations(self) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -38,3 +39,23 @@ class SearchProgress:
 
 
 Report = Callable[[SearchProgress], None]
+_SHARE = 0.05
+
+
+def now_and_then(report: Report, shortest: float, longest: float, begin: float) -> Report:
+    """Report from so many seconds on, pausing so that it takes a small share of the time.
+
+    The pauses are no shorter and no longer than these seconds: the first report may take long, as
+    casadi builds what it needs.
+    """
+    due = time.perf_counter() + begin
+
+    def after_generation(progress: SearchProgress) -> None:
+        nonlocal due
+        began = time.perf_counter()
+        if began >= due:
+            report(progress)
+            ended = time.perf_counter()
+            due = ended + min(max((ended - began) / _SHARE, shortest), longest)
+
+    return after_generation

@@ -1,5 +1,5 @@
-"""Pieces of work: one after another in this process, or shared by the workers of dask.
+"""Pieces of work: one after another in this process, or shared by workers.
 
-`running` runs them; `cluster` and `worker` are the two ends of dask, which is loaded only where
-workers are asked for. May import `ocp` and the rooms below.
+`running` runs them. The workers are `processes` of this machine, or those of a `scheduler` of dask,
+which is loaded only for these. May import `ocp` and the rooms below.
 """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from quietarm.metaheuristics.runs.progress import Report
 from quietarm.ocp import Front, QuietarmError
@@ -33,6 +33,10 @@ class Done:
         return Done(answers, {key: why for key, why in self.failures.items() if key in keys})
 
 
+Tell = Callable[[int, Any], None]
+"""Told what a piece, by its number, says before it ends: a `SearchProgress` or a `Front`."""
+
+
 @dataclass(frozen=True)
 class Say:
     """How a piece tells of itself before it ends."""
@@ -58,6 +62,19 @@ class NotTriedError(QuietarmError):
 class LostPieceError(QuietarmError):
     """A piece of work that ended its worker time and again, or for which there was no memory."""
 
+    @classmethod
+    def after(cls, deaths: int) -> LostPieceError:
+        """Of so many workers."""
+        return cls(f"its worker died {deaths} times")
+
+
+def in_worker(piece: Piece, known: Done, say: Say) -> Any:
+    """Do a piece where others have work as well: it alone is lost where memory runs out."""
+    try:
+        return piece.work(known, say)
+    except MemoryError:
+        raise LostPieceError("out of memory") from None
+
 
 class InterruptedPiece(KeyboardInterrupt):  # no error, as KeyboardInterrupt is none
     """Ctrl-C during a piece of work."""
@@ -67,12 +84,7 @@ class InterruptedPiece(KeyboardInterrupt):  # no error, as KeyboardInterrupt is 
         self.part = part
 
 
-class _Answer(Protocol):
-    @property
-    def complete(self) -> bool: ...
-
-
-_Whole = TypeVar("_Whole", bound=_Answer)
+_Whole = TypeVar("_Whole", bound=Any)
 
 
 def to_the_end(answer: _Whole) -> _Whole:

@@ -28,14 +28,8 @@ class Workers:
                 f"workers is {self.number} and the scheduler {self.scheduler} has its own; give "
                 "one of them"
             )
-        if not self.here and find_spec("distributed") is None:
-            asked = f"workers is {self.number}" if self.scheduler is None else "a scheduler"
-            raise ValueError(f"{asked} needs dask; leave it out, or {install('cluster')}")
-
-    @property
-    def here(self) -> bool:
-        """Whether all is done in this process."""
-        return self.scheduler is None and self.number == 1
+        if self.scheduler is not None and find_spec("distributed") is None:
+            raise ValueError(f"a scheduler needs dask; leave it out, or {install('cluster')}")
 
     def local(self, pieces: int) -> int:
         """How many processes are started here for so many pieces."""
@@ -43,11 +37,8 @@ class Workers:
 
 
 def cores_at_hand() -> int:
-    """How many processes share long work best: the cores of this process, a few at most.
-
-    1 without dask, which starts them.
-    """
-    return 1 if find_spec("distributed") is None else min(cores_here(), _FEW)
+    """How many processes share long work best: the cores of this process, a few at most."""
+    return min(cores_here(), _FEW)
 
 
 def cores_here() -> int:

@@ -137,7 +137,7 @@ _SCHEDULER = click.option(
 workers_options = options(
     click.option("--workers", type=WHOLE, default=1, show_default=True, help=_SHARE), _SCHEDULER
 )
-_AT_HAND = f"{_SHARE} By default one for each core, up to 4, if dask is here."
+_AT_HAND = f"{_SHARE} By default one for each core, up to 4."
 workers_at_hand_options = options(click.option("--workers", type=WHOLE, help=_AT_HAND), _SCHEDULER)
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.ocp import Plan
 from quietarm.studies.document.blocks import Verdict
 from quietarm.studies.paper import ARM_HALF, CONDITIONS, EARLIER, SINGLE_LINK_SIXTH, Case
@@ -19,6 +21,7 @@ from quietarm.studies.reproduction.searches import (
     own_search,
 )
 
+Array = NDArray[np.float64]
 _AT_REST = 1e-7
 """A residual below this [m] counts as cancelled."""
 _GAIN = 0.01
@@ -79,20 +82,30 @@ def _searched(found: Searched) -> str:
     return f"median {spread.median:.4f} J (quartiles {low} and {high}, {arrived})"
 
 
-def _listed(values: Iterable[float], form: str) -> str:
-    return ", ".join(format(value, form) for value in values)
+def _over_terms(
+    result: Reproduction,
+    cases: Sequence[Case],
+    of: Callable[[Plan], float],
+    claim: str,
+    holds: Callable[[list[float]], bool],
+    words: str,
+) -> Verdict:
+    """Judge a figure of the printed coefficients and of the gradient, by number of terms."""
+    figures: dict[str, list[float]] = {}
+    for case in cases:
+        printed = (_printed(result, case, n) for n in _TERMS)
+        boxed = (result.more_terms[case, n, True] for n in _TERMS)
+        figures[f"{_name(case)}, printed coefficients"] = [of(plan) for plan in printed]
+        figures[f"{_name(case)}, gradient in the box"] = [of(plan) for plan in boxed]
+    return Verdict(
+        claim,
+        all(holds(each) for each in figures.values()),
+        [f"{name}, N = 2, 4, 6: {words.format(*each)}" for name, each in figures.items()],
+    )
 
 
-def _by_terms(
-    result: Reproduction, case: Case, of: Callable[[Plan], float]
-) -> dict[str, list[float]]:
-    """A figure of the printed coefficients and of the gradient, by number of terms."""
-    return {
-        f"{_name(case)}, printed coefficients": [of(_printed(result, case, n)) for n in _TERMS],
-        f"{_name(case)}, gradient in the box": [
-            of(result.more_terms[case, n, True]) for n in _TERMS
-        ],
-    }
+def _falls(values: list[float]) -> bool:
+    return all(more < fewer for fewer, more in pairwise(values))
 
 
 def _two_terms_suffice(result: Reproduction) -> Verdict:
@@ -110,22 +123,22 @@ def _two_terms_suffice(result: Reproduction) -> Verdict:
     )
 
 
-def _holding_torque(plan: Plan) -> float:
-    """The largest torque after arrival [N m]."""
+def _largest_torque(plan: Plan, when: Callable[[Array], NDArray[np.bool_]]) -> float:
+    """The largest torque at some of the times, which are shares of the duration [N m]."""
     motion = plan.trajectory
-    return float(np.abs(motion.torque[motion.time > plan.task.duration]).max())
+    return float(np.abs(motion.torque[when(motion.time / plan.task.duration)]).max())
 
 
 def _nothing_to_hold(result: Reproduction) -> Verdict:
     case = SINGLE_LINK_SIXTH
-    plain = _holding_torque(result.cycloids[case])
-    held = [_holding_torque(_printed(result, case, n)) for n in _TERMS]
+    plans = [result.cycloids[case], *(_printed(result, case, n) for n in _TERMS)]
+    plain, *held = (_largest_torque(plan, lambda time: time > 1) for plan in plans)
     return Verdict(
         "The plain cycloid needs torque to hold the joint after arrival, the plans none (Fig. 2d).",
         max(held) <= _NO_TORQUE * plain,
         [
             f"{_name(case)}: {plain:.3f} N m with the plain cycloid; "
-            f"{_listed(held, '.4f')} N m with the printed coefficients, N = 2, 4, 6"
+            "{:.4f}, {:.4f}, {:.4f} N m with the printed coefficients, N = 2, 4, 6".format(*held)
         ],
     )
 
@@ -136,23 +149,14 @@ def _tip_peak(plan: Plan) -> float:
 
 
 def _tip_peak_falls(result: Reproduction) -> Verdict:
-    peaks = _by_terms(result, SINGLE_LINK_SIXTH, _tip_peak)
-    return Verdict(
-        "More terms lower the tip's largest displacement on the way (Fig. 2c).",
-        all(more < fewer for each in peaks.values() for fewer, more in pairwise(each)),
-        [f"{name}, N = 2, 4, 6: {_listed(each, '.1f')} mm" for name, each in peaks.items()],
-    )
+    claim = "More terms lower the tip's largest displacement on the way (Fig. 2c)."
+    words = "{:.1f}, {:.1f}, {:.1f} mm"
+    return _over_terms(result, [SINGLE_LINK_SIXTH], _tip_peak, claim, _falls, words)
 
 
 def _more_terms_lower_the_energy(result: Reproduction) -> Verdict:
-    energies: dict[str, list[float]] = {}
-    for case in STUDIED:
-        energies |= _by_terms(result, case, lambda plan: plan.energy)
-    return Verdict(
-        "More terms lower the energy.",
-        all(more < fewer for each in energies.values() for fewer, more in pairwise(each)),
-        [f"{name}, N = 2, 4, 6: {_listed(each, '.4f')} J" for name, each in energies.items()],
-    )
+    claim, words = "More terms lower the energy.", "{:.4f}, {:.4f}, {:.4f} J"
+    return _over_terms(result, STUDIED, lambda plan: plan.energy, claim, _falls, words)
 
 
 def _difference(gain: float) -> str:
@@ -203,32 +207,22 @@ def _tip_peak_below_network(result: Reproduction) -> Verdict:
 
 
 def _like_peaks(result: Reproduction) -> Verdict:
-    peaks = _by_terms(result, ARM_HALF, _tip_peak)
-    plain = _tip_peak(result.cycloids[ARM_HALF])
-    return Verdict(
+    return _over_terms(
+        result, [ARM_HALF], _tip_peak,
         "On the arm the tip's largest displacement is much the same for all numbers of terms (5c).",
-        all(max(each) <= (1 + _ALIKE) * min(each) for each in peaks.values()),
-        [
-            f"{name}, N = 2, 4, 6: {_listed(each, '.2f')} mm; plain cycloid {plain:.2f} mm"
-            for name, each in peaks.items()
-        ],
-    )
+        lambda each: max(each) <= (1 + _ALIKE) * min(each),
+        "{:.2f}, {:.2f}, {:.2f} mm; plain cycloid "
+        f"{_tip_peak(result.cycloids[ARM_HALF]):.2f} mm",
+    )  # fmt: skip
 
 
 def _early_torque(result: Reproduction) -> Verdict:
-    def early(plan: Plan) -> float:
-        motion = plan.trajectory
-        return float(np.abs(motion.torque[motion.time <= _EARLY * plan.task.duration]).max())
-
-    torques = _by_terms(result, ARM_HALF, early)
-    return Verdict(
+    return _over_terms(
+        result, [ARM_HALF], partial(_largest_torque, when=lambda time: time <= _EARLY),
         "With four and six terms the arm's torque rises rapidly after starting (Fig. 5d).",
-        all(min(more) > _RAPID * two for two, *more in torques.values()),
-        [
-            f"{name}, N = 2, 4, 6: {_listed(each, '.3f')} N m in the first {_EARLY:.0%} of the move"
-            for name, each in torques.items()
-        ],
-    )
+        lambda each: min(each[1:]) > _RAPID * each[0],
+        f"{{:.3f}}, {{:.3f}}, {{:.3f}} N m in the first {_EARLY:.0%} of the move",
+    )  # fmt: skip
 
 
 def _gaussians_like_two_terms(result: Reproduction) -> Verdict:

@@ -72,17 +72,7 @@ LIKE_FOR_LIKE = tuple(
 
 @dataclass(frozen=True)
 class Searched:
-    """What a search found for a move with one input of the cycloid.
-
-    Attributes
-    ----------
-    case : Case
-        The move.
-    level : float
-        Largest residual [m] at which it is judged.
-    fronts : tuple of Front
-        Of every seed.
-    """
+    """What a search's seeds found for a move; they are judged within a residual [m]."""
 
     case: Case
     level: float

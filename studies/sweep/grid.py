@@ -26,13 +26,7 @@ class Axis:
 
 
 def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
-    """Read values: one, several as ``0.6,0.8,1.2``, or from, to and step as ``10deg:90deg:5deg``.
-
-    Raises
-    ------
-    ValueError
-        When the steps do not lead from one end to the other, or a value comes twice.
-    """
+    """Read values: one, several as ``0.6,0.8,1.2``, or from, to, step as ``10deg:90deg:5deg``."""
     if ":" in text:
         ends = text.split(":")
         if len(ends) != 3:
@@ -57,21 +51,9 @@ def axis_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class Grid:
-    """The cells of several axes, in the order of their last axis first.
+    """The cells of several axes, in the order of their last axis first; some at once are a chunk.
 
-    Parameters
-    ----------
-    task : PointToPoint
-        What the cells have in common, and what is no axis.
-    axes : tuple of Axis
-        Parameters of the plant before the quantities of the move: chunks then have few plants.
-    at_once : int
-        Most cells of a chunk.
-
-    Raises
-    ------
-    ValueError
-        When a cell would have no move.
+    Parameters of the plant come before the quantities of the move: chunks then have few plants.
     """
 
     task: PointToPoint

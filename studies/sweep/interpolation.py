@@ -21,16 +21,9 @@ _AT_ONCE = 2000
 
 
 class Interpolation:
-    """Coefficients between cells.
+    """Coefficients between cells, shape (*lengths, size), which are NaN where there is no plan.
 
-    Parameters
-    ----------
-    axes : sequence of ndarray
-        The values of each axis, rising or falling.
-    cells : ndarray, shape (*lengths, size)
-        Coefficients; NaN where there is no plan.
-    marks : ndarray of int, shape lengths
-        As of `quietarm.studies.sweep.branches.jumps`.
+    The values of an axis rise or fall; the marks are those of `quietarm.studies.sweep.branches`.
     """
 
     def __init__(self, axes: Sequence[Array], cells: Array, marks: NDArray[np.int32]) -> None:

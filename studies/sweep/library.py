@@ -31,18 +31,10 @@ _SAMPLES = 100
 
 @dataclass(frozen=True)
 class Between:
-    """What moves between the cells leave, cost and ask: the worst of some random ones.
+    """What moves between the cells leave [m] and cost: the worst of some random ones, by CVODES.
 
-    Attributes
-    ----------
-    residual : float
-        F1 [m], by CVODES.
-    excess : float
-        Share of the energy above that of a plan of the same move.
-    of_limits : float
-        Peak over its limit, of the limit that is kept worst; 0 without limits.
-    samples : int
-        How many moves were looked at.
+    Cost is the share of the energy above that of a plan of the same move; `of_limits` is peak over
+    limit, of the limit that is kept worst, 0 without limits.
     """
 
     residual: float

@@ -25,18 +25,7 @@ Array = NDArray[np.float64]
 
 
 class Store:
-    """The Zarr store of a sweep.
-
-    Parameters
-    ----------
-    path : Path
-        Its folder.
-
-    Raises
-    ------
-    FileFormatError
-        When it is none, or is something else.
-    """
+    """The Zarr store of a sweep; FileFormatError where a folder is none."""
 
     def __init__(self, path: Path) -> None:
         self.path, self._group = path, _opened(path)

@@ -116,20 +116,20 @@ def problem(budget):
 def test_work_that_is_no_candidate_counts_against_the_budget():
     counted = problem(100)
     counted.spend(30)
-    assert (counted.spent, counted.left) == (30, 70)
+    assert (counted.record.spent, counted.record.left) == (30, 70)
     assert [mark.hypervolume for mark in counted.record.marks] == [0.0] * len(counted.record.marks)
     assert counted.record.marks[-1].evaluations <= 30
     counted.spend(70)  # to the last
     with pytest.raises(BudgetSpentError):
         counted.spend(1)
-    assert counted.spent == counted.record.marks[-1].evaluations == 100
+    assert counted.record.spent == counted.record.marks[-1].evaluations == 100
 
 
 def test_what_costs_more_than_is_left_is_not_given():
     counted = problem(100)
     with pytest.raises(BudgetSpentError):
         counted.spend(101)
-    assert counted.spent == counted.record.marks[-1].evaluations == 100
+    assert counted.record.spent == counted.record.marks[-1].evaluations == 100
     with pytest.raises(BudgetSpentError):
         counted.evaluate(np.zeros((1, 2)))
 

@@ -8,6 +8,7 @@ import math
 import multiprocessing
 import os
 import signal
+import socket
 import subprocess
 import sys
 from functools import partial
@@ -182,6 +183,33 @@ def test_a_piece_that_kills_its_worker_three_times_is_reported(tmp_path):
     assert str(done.failures["killing"]) == "its worker died 3 times"
     assert deaths.read_text() == "xxx"
     assert multiprocessing.active_children() == []
+
+
+def test_a_script_whose_workers_would_run_it_again_is_told_so(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import quietarm as qa\n"
+        "task = qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8)\n"
+        "qa.search_many(task, 'vepso', 2, workers=2, bound=0.2, population=8, generations=3)\n"
+    )
+    ran = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=240)
+    assert ran.returncode == 1
+    assert "run it under if __name__ == '__main__', or with one" in ran.stderr.splitlines()[-1]
+
+
+def test_what_is_no_scheduler_is_told_from_one_that_says_nothing(monkeypatch):
+    work = [Piece("a", "a", small_pieces.add)]
+    with pytest.raises(ValueError, match="scheduler is 'here'; give it as tcp://host:8786"):
+        run_pieces(work, workers=Workers(scheduler="here"))
+    from quietarm.metaheuristics.sharing import scheduler
+
+    monkeypatch.setattr(scheduler, "_CONNECT_SECONDS", 1)
+    with socket.socket() as silent:
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(ValueError, match=f"no scheduler answers at {address}"):
+            run_pieces(work, workers=Workers(scheduler=address))
 
 
 @pytest.mark.parametrize("name", ["checkpoint", "resume"])

@@ -32,7 +32,6 @@ from target_problems import Targets, state_of
         ({"boundary": "wrap"}, "boundary is 'wrap'; give one of clip, reflect"),
         ({"velocity_limit": 0.0}, "velocity_limit is 0; give a positive"),
         ({"velocity_limit": float("nan")}, "velocity_limit is nan"),
-        ({"rule": "constriction"}, "rule is 'constriction'; give a VelocityRule"),
     ],
 )
 def test_wrong_arguments_are_named_with_the_remedy(arguments, message):

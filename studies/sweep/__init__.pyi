@@ -1,0 +1,2 @@
+from .library import MoveLibrary as MoveLibrary
+from .made import sweep as sweep
