@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -112,13 +111,13 @@ def epsilon_front(
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
     found.append(checked(sweep, ends.cheapest, asked, free=True))
-    also = _limits_at(ends, at)
-    total = points + len(also)
+    wanted = _limits_at(ends, at)
+    total = points + len(wanted)
     first, best, complete = Best(), Best(), True
     try:
         report(2, total)
         scouts = _scouted(sweep, ends, points, first)
-        limits = sorted([*_spaced_limits(ends, scouts, points), *also])
+        limits = sorted([*_spaced_limits(ends, scouts, points), *wanted])
         report(2 + len(limits) // 3, total)
         _solve_between(sweep, ends, scouts, limits, best)
         report(total, total)
@@ -131,9 +130,8 @@ def epsilon_front(
         inner, whole = all_checked(sweep, solved, interrupted=not complete)
         found = [*found, *(failed if complete else []), *inner]
     complete = complete and whole and not late
-    front = front_of(sweep, "epsilon", found, points, complete=complete, between=between)
-    extra = {"at": ", ".join(map(digits, at))} if at else {}
-    return replace(front, settings={**front.settings, **extra})
+    also = {"at": ", ".join(map(digits, at))} if at else {}
+    return front_of(sweep, "epsilon", found, points, complete=complete, between=between, also=also)
 
 
 def _scouted(sweep: Sweep, ends: Ends, points: int, best: Best) -> list[Solution]:

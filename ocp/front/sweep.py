@@ -5,9 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.front.answer import Front
 from quietarm.ocp.plan.starts import first_steps, start_coefficients
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.program import Program
@@ -68,16 +70,6 @@ class Sweep:
         self.steps = first_steps(self.task, self.profile, self.settings)
         self.guesses = start_coefficients(self.profile, self.settings)
         self._program: Program | None = None
-
-    @property
-    def ranges(self) -> list[float]:
-        """The largest errors of an uncertain plant."""
-        return list(self.task.errors.values())
-
-    @property
-    def samples(self) -> list[tuple[float, ...]]:
-        """The errors at which its residual counts; the first sample has none."""
-        return [(0.0,) * len(self.ranges), *self.task.plant.error_samples]
 
     def add_samples(self, more: Sequence[Sequence[float]]) -> None:
         """Let the residual of an uncertain plant count at more errors."""
@@ -141,9 +133,23 @@ class Sweep:
     def best(self, starts: Sequence[Guess], ask: Ask, *, warm: bool = False) -> Solution:
         """The best from several starts."""
         found = self.solve([(start, ask) for start in starts], warm=warm, groups=[0] * len(starts))
-        return min(found, key=lambda one: (not one.status.solved, _value(one, ask.minimise)))
+        return best_of(found, ask)
 
 
-def _value(found: Solution, minimise: Mapping[str, float]) -> float:
-    values = {**found.peaks, ENERGY: found.energy}
-    return sum(weight * values[name] for name, weight in minimise.items())
+def best_of(found: Sequence[Solution], ask: Ask) -> Solution:
+    """The solution of the least value of what is made least."""
+
+    def value(one: Solution) -> tuple[bool, float]:
+        values = {**one.peaks, ENERGY: one.energy}
+        least = sum(weight * values[name] for name, weight in ask.minimise.items())
+        return not one.status.solved, least
+
+    return min(found, key=value)
+
+
+def sweep_of(front: Front, **settings: Any) -> Sweep:
+    """The task of a front that is there already, within its bound."""
+    front.stillest()  # refuses an empty front
+    bound: Any = front.settings.get("bound")
+    asked = SolveSettings(bound=bound, seed=front.seed or 0, **settings)
+    return Sweep(front.task, front.profile, asked)
