@@ -11,7 +11,7 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
-from quietarm.ocp.plan.feasibility import rescued, true_peaks, unmet
+from quietarm.ocp.plan.feasibility import keeps, least_peaks, true_peaks, unmet
 from quietarm.ocp.plan.solver import plan_move
 from quietarm.ocp.plan.verification import refuse_passed, tightened
 from quietarm.ocp.profiles.joint_profile import JointPath
@@ -180,19 +180,19 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
 
 def _solved(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSolution]:
     """The starts that were solved; InfeasibleTaskError or SolverFailedError where none was."""
-    limits = program.task.limits
-    again, least = rescued(
-        tried,
-        limits,
-        [found.free for found in tried[:2]],
-        program.solve,
-        lambda found: program.solve(found.free, limits),
-    )
-    solved = [found for found in again if found.status.solved]
+    limits, least = program.task.limits, dict[str, FreeSolution]()
+    if not any(found.status.solved for found in tried):
+        least = least_peaks(
+            limits,
+            lambda others, name: [program.solve(one.free, others, name) for one in tried[:2]],
+        )
+        within = [one for name, one in least.items() if keeps(one.peaks[name], name, limits)]
+        tried = [*tried, *(program.solve(one.free, limits) for one in within)]
+    solved = [found for found in tried if found.status.solved]
     if not solved:
         peaks = true_peaks(least, lambda found: _resimulated(program, found))
         raise unmet(
-            "motion at all", limits, again, peaks, "a longer duration",
+            "motion at all", limits, tried, peaks, "a longer duration",
             otherwise="try another seed, more starts or a longer duration.",
         )  # fmt: skip
     return solved

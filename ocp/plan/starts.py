@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.plan.feasibility import explain, least_peaks
+from quietarm.ocp.plan.feasibility import explain, least_peaks_of
 from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.program import Program
@@ -99,5 +99,5 @@ def _still_within(
     least: dict[str, Solution],
 ) -> list[NDArray[np.float64]]:
     """Coefficients of motions of least peaks, which are kept in `least`."""
-    least.update(least_peaks(program, ask, starts[:2]))
+    least.update(least_peaks_of(program, ask, starts[:2]))
     return [one.coefficients for one in least.values()]

@@ -40,7 +40,6 @@ class Point(NamedTuple):
     """
 
     unknowns: NDArray[np.float64]
-    bound_multipliers: NDArray[np.float64] = _UNKNOWN
     multipliers: NDArray[np.float64] = _UNKNOWN
 
 
@@ -92,12 +91,12 @@ def run_ipopt(
     """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""
     known = {}
     if start.multipliers.size:
-        known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
+        known = {"lam_g0": start.multipliers}
     with keep_interrupts(), silent_errors():  # casadi warns of every failure
         result = solver(
             x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
             ubg=constraint_bounds[1], p=parameters, **known,
         )  # fmt: skip
-    point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
+    point = Point(*(result[name].full().ravel() for name in ("x", "lam_g")))
     stats = solver.stats()
     return Stop(point, str(stats["return_status"]), int(stats["iter_count"]))
