@@ -105,11 +105,6 @@ class Plant(ABC):
         Plant._known[name] = cls
 
     def __post_init__(self) -> None:
-        if not getattr(self, "name", ""):
-            raise ValueError(
-                f"class {type(self).__name__} has no name; write the plant's name in it, as "
-                "name: ClassVar[str] = 'crane'"
-            )
         for entry in fields(self):
             value: Any = getattr(self, entry.name)
             number = isinstance(value, int | float | np.number) and not isinstance(value, bool)

@@ -15,7 +15,6 @@ from quietarm.ocp.floor.transcription import (
     SMOOTH,
     of_joint,
     parts_of,
-    problem_of,
     solver_of,
     values_at_nodes,
 )
@@ -130,7 +129,7 @@ class FloorProgram:
         """Run the solver from one motion, on its grid."""
         names, lengths, scale = tuple(self.task.limits), free.lengths, self._scale
         kind = self.plant, self.smooth, free.steps, names, self.task.energy
-        solver, energy_of = solver_of(*kind, warm), problem_of(*kind)[1]
+        solver = solver_of(*kind, warm)
         at = self._simulated(free)
         power = at.values[POWER] / self._peaks[POWER]
         parts = np.maximum(np.vstack([power, -power]), 0.0) + _ROOM
@@ -155,7 +154,8 @@ class FloorProgram:
         found = stop.point.unknowns[len(names) :].reshape(free.steps, -1).T
         rows = found[: len(scale)] * scale[:, None]
         last = rows[self._states]
-        mean = float(energy_of(stop.point.unknowns, parameters))
+        parameters[-len(weights) :] = np.eye(len(weights))[0]
+        mean = float(solver.get_function("nlp_f")(stop.point.unknowns, parameters))
         reached = zip(names, stop.point.unknowns, strict=False)
         return FreeSolution(
             free=FreeMotion(
