@@ -74,8 +74,6 @@ def check_folder(path: str | Path) -> Path:
         check_writable(folder / "any")
     elif folder.exists():
         raise ValueError(f"{folder} is a file; give a folder")
-    elif folder.is_symlink():
-        raise ValueError(f"{folder} is a link that leads nowhere; remove it, or give a folder")
     else:
         check_writable(folder)
     return folder

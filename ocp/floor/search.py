@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import suppress
+from operator import attrgetter
 
 import numpy as np
 from quietarm.ocp.errors import SolverFailedError
@@ -32,6 +33,7 @@ _LEAST_LEVELS = 3
 """Two falls of the energy at least, to see whether they become smaller, and how fast."""
 _SAME = 1e-5
 """Solutions whose energies differ by less than this share are refined once."""
+_ENERGY = attrgetter("energy")
 _ROUNDS, _KEPT = 4, 1e-6
 """Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
 
@@ -95,7 +97,7 @@ def energy_floor(
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)
     solved, improved, stopped = _from_starts(program, settings)
-    grids = [min(solved, key=_energy), min(improved, key=_energy)]
+    grids = [min(solved, key=_ENERGY), min(improved, key=_ENERGY)]
     try:
         if stopped is None:
             _refine(program, grids, settings.tolerance)
@@ -148,7 +150,7 @@ def _from_starts(
         if not solved:
             raise
         with note_interrupts():  # the second grid tells what the first leaves
-            improved = _refined_once(program, [min(solved, key=_energy)])
+            improved = _refined_once(program, [min(solved, key=_ENERGY)])
         return solved, improved, f"{len(tried)} of {settings.starts} starts"
 
 
@@ -198,10 +200,6 @@ def _solved(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSoluti
     return solved
 
 
-def _energy(found: FreeSolution) -> float:
-    return found.energy
-
-
 def _settled(grids: list[FreeSolution], tolerance: float) -> bool:
     before, after = grids[-2].energy, grids[-1].energy
     return len(grids) >= _LEAST_LEVELS and abs(before - after) <= tolerance * after
@@ -240,12 +238,8 @@ def _least_verified(
     for found in grids[:-1]:
         if found.energy < grids[-1].energy:
             with suppress(SolverFailedError):  # a coarse grid may not keep the limits in between
-                least = min(least, _within_limits(program, found), key=_verified)
+                least = min(least, _within_limits(program, found), key=lambda one: one[1].energy)
     return least
-
-
-def _verified(found: tuple[FreeSolution, Resimulation]) -> float:
-    return found[1].motion.energy
 
 
 def _within_limits(program: FloorProgram, best: FreeSolution) -> tuple[FreeSolution, Resimulation]:

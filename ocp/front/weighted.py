@@ -47,26 +47,14 @@ def weighted_front(
 
     Parameters
     ----------
-    task : PointToPoint
-        The move and its limits.
-    profile : JointProfile, optional
-        How the joint moves; the cycloid of a polynomial of six terms by default.
-    bound : float, optional
-        Largest absolute coefficient; none by default.
+    task, profile, bound, seed, steps, report, solver
+        As for `epsilon_front`.
     points : int
         Most points, the ends included.
     weights : sequence of (float, float), optional
         Weights of the scaled residual and energy to be used instead.
     starts : int
         Starts of the ends.
-    seed : int
-        Seed of the random starts.
-    steps : int, optional
-        Steps of the solver's discretisation, as for `plan_move`.
-    report : callable, optional
-        Called with the number of points done and of all.
-    solver : {"sqp", "ipopt"}
-        As for `plan_move`.
 
     Returns
     -------

@@ -9,7 +9,6 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
-from quietarm.ocp.checks import has_no
 from quietarm.ocp.identification.answer import Estimate, Fitted, Identified, in_torque_alone
 from quietarm.ocp.identification.fit import Fit, Piece, fit, left, measured, not_told
 from quietarm.ocp.identification.recording import Recording
@@ -22,6 +21,7 @@ from quietarm.ocp.identification.ring_downs import (
 )
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
+from quietarm.ocp.simulation.errors import refuse_unknown
 
 Array = NDArray[np.float64]
 _FREQUENCY, _DAMPING = "rad/s", "zeta"
@@ -127,9 +127,7 @@ def _check_tips(plant: Plant, recordings: Sequence[Recording]) -> None:
 def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> list[str]:
     known = plant.measured
     if free is not None:
-        for name in free:
-            if name not in known:
-                raise ValueError(has_no(plant.name, "parameter", name, known))
+        refuse_unknown(plant, free, also=())
         return list(dict.fromkeys(free))
     names = [name for name in known if _is_modal(plant, name)]
     if "torque" in kinds:

@@ -31,18 +31,10 @@ class Kind(NamedTuple):
 
     Attributes
     ----------
-    plant : Plant
-        What moves.
-    profile : JointProfile
-        How the joint moves.
-    steps : int
-        Number of steps.
     quantities : tuple of str
         Limited quantities.
     errors : tuple of str
         What may differ from the plant in a row, as by `with_errors`.
-    energy : Energy
-        What counts as the energy.
     breaks : tuple of float
         Where the motion is not smooth; of values alone.
     """
