@@ -11,7 +11,7 @@ from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
 from quietarm.ocp.front.curve import Ends, find_ends, front_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.sweep import Guess, InterruptedSolveError, Report, Sweep, better, no_report
+from quietarm.ocp.front.sweep import Guess, Report, Sweep, better, no_report
 from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
@@ -206,18 +206,13 @@ def _improve(
     """
     if not starts:
         return set()
-    places = {limit: i for i, limit in enumerate(dict.fromkeys(limit for limit, _ in starts))}
-    rows = [(start, sweep.ask(limit)) for limit, start in starts]
-    groups = None if warm else [places[limit] for limit, _ in starts]
-    changed, stopped = set[float](), False
-    try:
-        found = sweep.solve(rows, warm=warm, groups=groups)
-    except InterruptedSolveError as interrupted:
-        found, stopped = interrupted.solutions, True
+    rows, changed = [(start, sweep.ask(limit)) for limit, start in starts], set[float]()
+    places = np.unique([limit for limit, _ in starts], return_inverse=True)[1].tolist()
+    found, complete = sweep.solved(rows, warm=warm, groups=None if warm else places)
     for (limit, _), one in zip(starts, found, strict=True):
         if limit not in best or better(one, best[limit]):
             best[limit] = one
             changed.add(limit)
-    if stopped:
+    if not complete:
         raise KeyboardInterrupt
     return changed

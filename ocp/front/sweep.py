@@ -14,7 +14,7 @@ from quietarm.ocp.plan.starts import first_steps, start_coefficients
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
-from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.program.solving import Row, Solved, solve
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.task import PointToPoint
@@ -24,14 +24,6 @@ Report = Callable[[int, int], None]
 """Called with the number of points done and asked for."""
 SAME = 1e-5
 """Solutions whose energies differ by less than this share count as one motion."""
-
-
-class InterruptedSolveError(KeyboardInterrupt):
-    """Ctrl-C while rows were solved."""
-
-    def __init__(self, solutions: list[Solution]) -> None:
-        super().__init__()
-        self.solutions = solutions
 
 
 def no_report(done: int, total: int) -> None:
@@ -101,33 +93,19 @@ class Sweep:
         warm: bool = False,
         groups: Sequence[int] | None = None,
     ) -> list[Solution]:
-        """Run the solver from many starts at once.
-
-        Parameters
-        ----------
-        rows : sequence of (ndarray, Ask)
-            Coefficients to start from, and what is asked.
-        warm : bool
-            Whether the starts are beside minima.
-        groups : sequence of int, optional
-            Rows of one number are starts for one thing that is asked.
-
-        Returns
-        -------
-        list of Solution
-            One for each row, whatever its status.
-
-        Raises
-        ------
-        InterruptedSolveError
-            After Ctrl-C, with the solutions until then.
-        """
-        program, solver = self.program, self.settings.solver
-        asked = [Row(program, ask, start) for start, ask in rows]
-        found, complete = solve(asked, solver, warm=warm, groups=groups)
-        self.iterations += sum(one.iterations for one in found)
+        """The solutions from coefficients for what is asked; KeyboardInterrupt after Ctrl-C."""
+        found, complete = self.solved(rows, warm=warm, groups=groups)
         if not complete:
-            raise InterruptedSolveError(found)
+            raise KeyboardInterrupt
+        return found
+
+    def solved(
+        self, rows: Sequence[tuple[Guess, Ask]], *, warm: bool, groups: Sequence[int] | None
+    ) -> Solved:
+        """The same with those of Ctrl-C; `warm` beside minima, one group for starts of one ask."""
+        asked = [Row(self.program, ask, start) for start, ask in rows]
+        found = solve(asked, self.settings.solver, warm=warm, groups=groups)
+        self.iterations += sum(one.iterations for one in found.solutions)
         return found
 
     def best(self, starts: Sequence[Guess], ask: Ask, *, warm: bool = False) -> Solution:

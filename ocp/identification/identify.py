@@ -80,7 +80,7 @@ def identify(
     swings = _swings_alone(plant, names, kinds)
     pieces, left_out, frequency = _pieces(recordings, forced=not swings)
     plant = _started(plant, modal, frequency)
-    answer = _Identification(plant, names, kinds, pieces, frequency, swings)
+    answer = _Identification(plant, names, kinds, pieces, swings)
     return answer.made(left_out)
 
 
@@ -203,7 +203,6 @@ class _Identification:
     names: list[str]
     kinds: list[str]
     pieces: list[Piece]
-    frequency: float
     scaled: bool
 
     def made(self, left_out: Sequence[str]) -> Identified:
@@ -219,11 +218,12 @@ class _Identification:
         start = np.array([getattr(self.plant, name) for name in names])
         among = fit(response, self.pieces, start, self.scaled)
         self._check(among)
-        swung = self._long_enough(dict(zip(names, map(float, among.p), strict=True)))
+        fitted = dict(zip(names, map(float, among.p), strict=True))
+        swung = self._long_enough(fitted)
         if len(swung) < len(self.pieces):
             there = {piece.recording.name for piece in swung}
-            gone = {one.recording.name: None for one in self.pieces}
-            more = [name for name in gone if name not in there]
+            every = dict.fromkeys(piece.recording.name for piece in self.pieces)
+            more = [name for name in every if name not in there]
             return replace(self, pieces=swung).made([*left_out, *more])
         alone = [fit(response, [one], among.p, self.scaled) for one in among.pieces]
         estimates: list[Estimate] = []
@@ -235,7 +235,6 @@ class _Identification:
             else:
                 estimates.append(one)
         untold = {name: untold[name] for name in self.names if name in untold}
-        fitted = dict(zip(names, map(float, among.p), strict=True))
         plant = replace(self.plant, **{one.parameter: one.value for one in estimates})
         parts = tuple(self._part(response, among, alone, k) for k in range(len(alone)))
         return Identified(
@@ -268,15 +267,14 @@ class _Identification:
         """The interval of the fit, or of the spread of its parts, whichever is wider."""
         from scipy.stats import t  # not at the top: it takes long to load
 
-        value, of_fit = float(among.p[k]), float(among.half_widths(_LEVEL)[k])
-        low, high, by = value - of_fit, value + of_fit, "fit"
+        value, half, by = float(among.p[k]), float(among.half_widths(_LEVEL)[k]), "fit"
         if len(alone) > 1:
             spread = float(
                 alone.std(ddof=1) / len(alone) ** 0.5 * t.ppf((1 + _LEVEL) / 2, len(alone) - 1)
             )
-            if spread > of_fit:
-                low, high, by = value - spread, value + spread, "spread"
-        return Estimate(name, value, low, high, by)
+            if spread > half:
+                half, by = spread, "spread"
+        return Estimate(name, value, value - half, value + half, by)
 
     def _part(self, response: Response, among: Fit, alone: Sequence[Fit], k: int) -> Fitted:
         piece = among.pieces[k]
