@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -109,7 +110,12 @@ class Evaluated(NamedTuple):
 
 def table_of(coefficients: ArrayLike) -> NDArray[np.float64]:
     """Coefficients, one row for each motion."""
-    table = np.asarray(coefficients, dtype=float)
+    try:
+        table = np.asarray(coefficients, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(
+            f"coefficients are {reprlib.repr(coefficients)}; give a row of numbers for each motion"
+        ) from None
     if table.ndim != 2 or len(table) == 0:
         raise ValueError(
             f"coefficients have shape {table.shape}; give (motions, coefficients), one row for "
