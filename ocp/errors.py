@@ -24,42 +24,22 @@ class FileFormatError(QuietarmError, ValueError):
 class SolveStatus(Enum):
     """How a solve ended; `value` is written to files, `text` is shown to the user."""
 
-    OPTIMAL = "optimal", "The solver found a local optimum."
-    ACCEPTABLE = (
-        "acceptable",
-        "The solver stopped at a looser, acceptable tolerance; more steps or another seed may "
-        "sharpen it.",
-    )
-    INFEASIBLE = (
-        "infeasible",
-        "The solver converged to a motion that breaks a limit; allow more residual, wider limits, "
-        "a longer duration or more terms.",
-    )
-    ITERATION_LIMIT = (
-        "iteration limit",
-        "The solver ran out of iterations; try another seed, more starts or a bound on the "
-        "coefficients.",
-    )
-    NUMERICAL_TROUBLE = (
-        "numerical trouble",
-        "The solver failed numerically; try another seed, fewer terms or a bound on the "
-        "coefficients.",
-    )
-    NOT_OPTIMISED = "not optimised", "The motion was given, not optimised."
-
-    _value_: str
-    text: str
-
-    def __new__(cls, value: str, text: str) -> SolveStatus:
-        """What happened and what to try stand beside the value."""
-        status = object.__new__(cls)
-        status._value_, status.text = value, text
-        return status
+    OPTIMAL = "optimal"
+    ACCEPTABLE = "acceptable"
+    INFEASIBLE = "infeasible"
+    ITERATION_LIMIT = "iteration limit"
+    NUMERICAL_TROUBLE = "numerical trouble"
+    NOT_OPTIMISED = "not optimised"
 
     @property
     def solved(self) -> bool:
         """Whether the coefficients are a local optimum."""
         return self in (SolveStatus.OPTIMAL, SolveStatus.ACCEPTABLE)
+
+    @property
+    def text(self) -> str:
+        """What happened and what to try."""
+        return _TEXTS[self]
 
     @classmethod
     def from_ipopt(cls, return_status: str) -> SolveStatus:
@@ -84,6 +64,19 @@ class SolveStatus(Enum):
             raise KeyboardInterrupt
         return _FROM_IPOPT.get(return_status, cls.NUMERICAL_TROUBLE)
 
+
+_TEXTS = {
+    SolveStatus.OPTIMAL: "The solver found a local optimum.",
+    SolveStatus.ACCEPTABLE: "The solver stopped at a looser, acceptable tolerance; more steps or "
+    "another seed may sharpen it.",
+    SolveStatus.INFEASIBLE: "The solver converged to a motion that breaks a limit; allow more "
+    "residual, wider limits, a longer duration or more terms.",
+    SolveStatus.ITERATION_LIMIT: "The solver ran out of iterations; try another seed, more starts "
+    "or a bound on the coefficients.",
+    SolveStatus.NUMERICAL_TROUBLE: "The solver failed numerically; try another seed, fewer terms "
+    "or a bound on the coefficients.",
+    SolveStatus.NOT_OPTIMISED: "The motion was given, not optimised.",
+}
 
 _FROM_IPOPT = {
     "Solve_Succeeded": SolveStatus.OPTIMAL,
