@@ -84,17 +84,7 @@ def _shape(k: Expression, place: float) -> tuple[Expression, Expression]:
 
 
 def beam_modes(count: int, ratio: Expression, radius: Expression) -> BeamModes:
-    """The first modes of a beam.
-
-    Parameters
-    ----------
-    count : int
-        How many.
-    ratio : Expression
-        Tip mass over the beam's.
-    radius : Expression
-        Radius of the hub over the beam's length.
-    """
+    """The first modes of a beam, by tip mass over the beam's and hub's radius over its length."""
     if isinstance(ratio, Real) and isinstance(radius, Real):
         return _known_modes(count, float(ratio), float(radius))
     return _beam_modes(count, ratio, radius)

@@ -105,17 +105,7 @@ class Plant(ABC):
         Plant._known[name] = cls
 
     def __post_init__(self) -> None:
-        if not getattr(self, "name", ""):
-            raise ValueError(
-                f"class {type(self).__name__} has no name; write the plant's name in it, as "
-                "name: ClassVar[str] = 'crane'"
-            )
         for entry in fields(self):
-            if entry.name in _OF_CLASS:
-                raise ValueError(
-                    f"{self.name}: {entry.name} is not a parameter; write it as "
-                    f"{entry.name}: ClassVar[{_OF_CLASS[entry.name]}]"
-                )
             value: Any = getattr(self, entry.name)
             number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
             if not (number and abs(value) <= _MOST_PARAMETER):
@@ -207,8 +197,6 @@ class Plant(ABC):
         check_passive(self)
 
 
-_OF_CLASS = {"name": "str", "modes": "int", "small_deflection": "float | None"}
-"""What a class of plants sets beside its parameters, with the type."""
 _MOST_PARAMETER = 1e100
 """Powers of larger ones are beyond double precision."""
 

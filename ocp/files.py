@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import errno
 import os
-import stat
+import shutil
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from uuid import uuid4
 
 from quietarm.ocp.errors import FileFormatError
 
@@ -73,8 +74,6 @@ def check_folder(path: str | Path) -> Path:
         check_writable(folder / "any")
     elif folder.exists():
         raise ValueError(f"{folder} is a file; give a folder")
-    elif folder.is_symlink():
-        raise ValueError(f"{folder} is a link that leads nowhere; remove it, or give a folder")
     else:
         check_writable(folder)
     return folder
@@ -113,23 +112,15 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
 
 
 def _replace(target: Path, data: bytes) -> None:
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".quietarm-")
+    temporary = target.parent / f".quietarm-{uuid4().hex}"
     try:
-        with os.fdopen(handle, "wb") as file:
+        with open(temporary, "xb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        os.chmod(temporary, _permissions(target))
+        if target.exists():
+            shutil.copymode(target, temporary)
         os.replace(temporary, target)
     except BaseException:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise
-
-
-def _permissions(target: Path) -> int:
-    """Those of the file that is replaced, or of a new one."""
-    if target.exists():
-        return stat.S_IMODE(target.stat().st_mode)
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask

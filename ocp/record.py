@@ -11,7 +11,7 @@ from typing import Generic, Literal, TypeVar
 import casadi as ca
 import numpy as np
 from quietarm.models import __version__
-from quietarm.ocp.checks import CountFromOne, NotNegative, finite, positive, whole
+from quietarm.ocp.checks import CountFromOne, NotNegative, finite, not_negative, positive, whole
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.rollout import MOST_STEPS
 
@@ -55,9 +55,7 @@ class SolveSettings:
     solver: Literal["sqp", "ipopt"] = "sqp"
 
     def __post_init__(self) -> None:
-        limit = finite("residual limit", self.residual_limit, "m")
-        if limit < 0:
-            raise ValueError(f"residual limit is {limit:g} m; give 0 (at rest) or more")
+        limit = not_negative("residual limit", self.residual_limit, "m")
         object.__setattr__(self, "residual_limit", limit)
         if self.bound is not None:
             object.__setattr__(self, "bound", coefficient_bound(self.bound))

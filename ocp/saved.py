@@ -72,26 +72,6 @@ def typed(document: Any, kind: type[T]) -> T:
     return value
 
 
-def write_document(path: str | Path, name: str, version: int, content: dict[str, Any]) -> None:
-    """Write a document whole or not at all; ValueError when it cannot be written."""
-    document = {"format": f"quietarm-{name}", "version": version, **content}
-    write_whole(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
-
-
-def read_document(path: str | Path, name: str, version: int, kind: type[T]) -> T:
-    """Read a document of one kind."""
-    try:
-        document = msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise FileFormatError(
-            f"{path} is not a {name}: it is not whole, valid JSON in UTF-8 ({error}); write the "
-            f"{name} again, or save it so"
-        ) from None
-    content = content_of(path, document, name, version)
-    with reading(path, name):
-        return typed(content, kind)
-
-
 def content_of(path: str | Path, document: Any, name: str, version: int) -> dict[str, Any]:
     """What a document holds beside its format and version, which are checked."""
     content = dict(document) if isinstance(document, dict) else {}
@@ -215,7 +195,9 @@ class Saved:
         ValueError
             When the file cannot be written.
         """
-        write_document(path, self.kind, self.version, plain(self))
+        head = {"format": f"quietarm-{self.kind}", "version": self.version}
+        document = {**head, **plain(self)}
+        write_whole(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -236,7 +218,16 @@ class Saved:
         FileFormatError
             When the file holds something else, is not whole, or of another version.
         """
-        return read_document(path, cls.kind, cls.version, cls)
+        try:
+            document = msgspec.json.decode(read_bytes(path).removeprefix(BOM_UTF8))
+        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+            raise FileFormatError(
+                f"{path} is not a {cls.kind}: it is not whole, valid JSON in UTF-8 ({error}); "
+                f"write the {cls.kind} again, or save it so"
+            ) from None
+        content = content_of(path, document, cls.kind, cls.version)
+        with reading(path, cls.kind):
+            return typed(content, cls)
 
 
 class MotionAnswer(Saved):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -143,7 +142,8 @@ class PointToPoint:
 
     @one_at_a_time
     def __post_init__(self) -> None:
-        _validate(self.plant)
+        with keep_interrupts():  # casadi loses a Ctrl-C
+            self.plant.validate()
         for name in ("start", "target"):
             angle = finite(name, getattr(self, name), "rad")
             if abs(angle) > MOST_ANGLE:
@@ -151,15 +151,21 @@ class PointToPoint:
                     f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
                 )
             self._keep(name, angle)
-        for part in self.plant.parts:
-            _check_on_the_way(part, self.start, self.target)
+        with keep_interrupts():
+            for part in self.plant.parts:
+                check_along(part, self.start, self.target)
         for name in ("duration", "residual_window"):
             self._keep(name, positive(name.replace("_", " "), getattr(self, name), "s"))
         for name, unit in LIMITS.items():
             if getattr(self, name) is not None:
                 self._keep(name, positive(name.replace("_", " "), getattr(self, name), unit))
         for name in ("initial", "final"):
-            self._check_modes(name, getattr(self, name))
+            state, modes = getattr(self, name), self.plant.nominal.modes
+            if state is not None and len(state.W) != modes:
+                raise ValueError(
+                    f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
+                    "give W and W' of each"
+                )
         if not LEAST_DURATION <= self.duration <= MOST_DURATION:
             raise ValueError(
                 f"duration is {self.duration:g} s; give {LEAST_DURATION:g} to {MOST_DURATION:g} s"
@@ -175,14 +181,6 @@ class PointToPoint:
 
     def _keep(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
-
-    def _check_modes(self, name: str, state: ModalState | None) -> None:
-        modes = self.plant.nominal.modes
-        if state is not None and len(state.W) != modes:
-            raise ValueError(
-                f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
-                "give W and W' of each"
-            )
 
     @property
     def span(self) -> float:
@@ -233,16 +231,3 @@ class PointToPoint:
         """The limits that are set, by name of the quantity: torque, speed, ..."""
         every = {name: getattr(self, quantity.limit) for name, quantity in QUANTITIES.items()}
         return {name: value for name, value in every.items() if value is not None}
-
-
-@lru_cache(maxsize=256)
-@keep_interrupts()  # casadi loses a Ctrl-C
-def _validate(plant: Plant) -> None:
-    """Check a plant's contract, once for all the tasks that have it."""
-    plant.validate()
-
-
-@lru_cache(maxsize=256)
-@keep_interrupts()
-def _check_on_the_way(plant: Plant, start: float, target: float) -> None:
-    check_along(plant, start, target)

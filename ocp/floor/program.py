@@ -15,7 +15,6 @@ from quietarm.ocp.floor.transcription import (
     SMOOTH,
     of_joint,
     parts_of,
-    problem_of,
     solver_of,
     values_at_nodes,
 )
@@ -23,7 +22,7 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.program.ipopt import Point, run_ipopt
+from quietarm.ocp.program.ipopt import run_ipopt
 from quietarm.ocp.program.solution import ENERGY
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
@@ -130,7 +129,7 @@ class FloorProgram:
         """Run the solver from one motion, on its grid."""
         names, lengths, scale = tuple(self.task.limits), free.lengths, self._scale
         kind = self.plant, self.smooth, free.steps, names, self.task.energy
-        solver, energy_of = solver_of(*kind, warm), problem_of(*kind)[1]
+        solver = solver_of(*kind, warm)
         at = self._simulated(free)
         power = at.values[POWER] / self._peaks[POWER]
         parts = np.maximum(np.vstack([power, -power]), 0.0) + _ROOM
@@ -151,12 +150,13 @@ class FloorProgram:
         of_constraints[1][:count] = 0.0
         parameters = np.concatenate([lengths, scale, measures, arrived, weights])
         bounds = _flat(np.zeros(len(names)), lower), _flat(most, upper)
-        stop = run_ipopt(solver, Point(start), bounds, of_constraints, parameters)
-        found = stop.point.unknowns[len(names) :].reshape(free.steps, -1).T
+        stop = run_ipopt(solver, start, bounds, of_constraints, parameters)
+        found = stop.unknowns[len(names) :].reshape(free.steps, -1).T
         rows = found[: len(scale)] * scale[:, None]
         last = rows[self._states]
-        mean = float(energy_of(stop.point.unknowns, parameters))
-        reached = zip(names, stop.point.unknowns, strict=False)
+        parameters[-len(weights) :] = np.eye(len(weights))[0]
+        mean = float(solver.get_function("nlp_f")(stop.unknowns, parameters))
+        reached = zip(names, stop.unknowns, strict=False)
         return FreeSolution(
             free=FreeMotion(
                 free.times,

@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import suppress
+from operator import attrgetter
 
 import numpy as np
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
-from quietarm.ocp.plan.feasibility import rescued, true_peaks, unmet
+from quietarm.ocp.plan.feasibility import keeps, least_peaks, true_peaks, unmet
 from quietarm.ocp.plan.solver import plan_move
 from quietarm.ocp.plan.verification import refuse_passed, tightened
 from quietarm.ocp.profiles.joint_profile import JointPath
@@ -32,6 +33,7 @@ _LEAST_LEVELS = 3
 """Two falls of the energy at least, to see whether they become smaller, and how fast."""
 _SAME = 1e-5
 """Solutions whose energies differ by less than this share are refined once."""
+_ENERGY = attrgetter("energy")
 _ROUNDS, _KEPT = 4, 1e-6
 """Rounds of tightening, and the share by which a verified peak may pass its limit without one."""
 
@@ -95,7 +97,7 @@ def energy_floor(
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)
     solved, improved, stopped = _from_starts(program, settings)
-    grids = [min(solved, key=_energy), min(improved, key=_energy)]
+    grids = [min(solved, key=_ENERGY), min(improved, key=_ENERGY)]
     try:
         if stopped is None:
             _refine(program, grids, settings.tolerance)
@@ -148,7 +150,7 @@ def _from_starts(
         if not solved:
             raise
         with note_interrupts():  # the second grid tells what the first leaves
-            improved = _refined_once(program, [min(solved, key=_energy)])
+            improved = _refined_once(program, [min(solved, key=_ENERGY)])
         return solved, improved, f"{len(tried)} of {settings.starts} starts"
 
 
@@ -180,26 +182,22 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
 
 def _solved(program: FloorProgram, tried: list[FreeSolution]) -> list[FreeSolution]:
     """The starts that were solved; InfeasibleTaskError or SolverFailedError where none was."""
-    limits = program.task.limits
-    again, least = rescued(
-        tried,
-        limits,
-        [found.free for found in tried[:2]],
-        program.solve,
-        lambda found: program.solve(found.free, limits),
-    )
-    solved = [found for found in again if found.status.solved]
+    limits, least = program.task.limits, dict[str, FreeSolution]()
+    if not any(found.status.solved for found in tried):
+        least = least_peaks(
+            limits,
+            lambda others, name: [program.solve(one.free, others, name) for one in tried[:2]],
+        )
+        within = [one for name, one in least.items() if keeps(one.peaks[name], name, limits)]
+        tried = [*tried, *(program.solve(one.free, limits) for one in within)]
+    solved = [found for found in tried if found.status.solved]
     if not solved:
         peaks = true_peaks(least, lambda found: _resimulated(program, found))
         raise unmet(
-            "motion at all", limits, again, peaks, "a longer duration",
+            "motion at all", limits, tried, peaks, "a longer duration",
             otherwise="try another seed, more starts or a longer duration.",
         )  # fmt: skip
     return solved
-
-
-def _energy(found: FreeSolution) -> float:
-    return found.energy
 
 
 def _settled(grids: list[FreeSolution], tolerance: float) -> bool:
@@ -240,12 +238,8 @@ def _least_verified(
     for found in grids[:-1]:
         if found.energy < grids[-1].energy:
             with suppress(SolverFailedError):  # a coarse grid may not keep the limits in between
-                least = min(least, _within_limits(program, found), key=_verified)
+                least = min(least, _within_limits(program, found), key=lambda one: one[1].energy)
     return least
-
-
-def _verified(found: tuple[FreeSolution, Resimulation]) -> float:
-    return found[1].motion.energy
 
 
 def _within_limits(program: FloorProgram, best: FreeSolution) -> tuple[FreeSolution, Resimulation]:

@@ -89,17 +89,10 @@ def _interval(plant: Plant, smooth: bool, names: tuple[str, ...], energy: Energy
 def solver_of(
     plant: Plant, smooth: bool, steps: int, names: tuple[str, ...], energy: Energy, warm: bool
 ) -> ca.Function:
-    """IPOPT for the program, from anywhere or from a coarser grid's solution."""
-    return compiled(problem_of(plant, smooth, steps, names, energy)[0], _WARM if warm else _COLD)
+    """IPOPT for the program, from anywhere or from a coarser grid's solution.
 
-
-@lru_cache(maxsize=16)
-def problem_of(
-    plant: Plant, smooth: bool, steps: int, names: tuple[str, ...], energy: Energy
-) -> tuple[dict[str, ca.MX], ca.Function]:
-    """The program over peaks and intervals; of lengths, scales, state at the end and weights.
-
-    Beside it, of unknowns and parameters, the mean of what is spent, scaled.
+    Unknowns are peaks and intervals; parameters are lengths, scales, state at the end, and weights
+    of the mean of what is spent and of the peaks.
     """
     interval, parts = _interval(plant, smooth, names, energy), parts_of(energy)
     rows, states = interval.size1_in(0), interval.size1_out(0)
@@ -124,11 +117,10 @@ def problem_of(
         constraints += [peaks[i] - value, peaks[i] + value]
     spent = rest / measures[0] + (energy.absolute * (forward + backward) if parts else 0.0)
     mean = ca.dot(lengths, (ca.DM(GAUSS_WEIGHTS).T @ spent).T) / ca.sum1(lengths)
-    x = ca.vertcat(peaks, ca.vec(columns))
     problem = {
-        "x": x,
+        "x": ca.vertcat(peaks, ca.vec(columns)),
         "p": p,
         "f": ca.dot(weights, ca.vertcat(mean, peaks)),
         "g": ca.vertcat(*map(ca.vec, constraints)),
     }
-    return problem, ca.Function("mean", [x, p], [mean])
+    return compiled(problem, _WARM if warm else _COLD)

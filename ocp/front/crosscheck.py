@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from quietarm.ocp.checks import finite
 from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.points import FrontPoint
-from quietarm.ocp.front.sweep import Report, Sweep, no_report
+from quietarm.ocp.front.sweep import Report, Sweep, no_report, sweep_of
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.program.solution import RESIDUAL
-from quietarm.ocp.record import SolveSettings, number_of_points
+from quietarm.ocp.record import number_of_points
 
 _SAME = 1e-6
 """Energies that differ by no more than this share agree."""
@@ -80,17 +79,9 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
     KeyboardInterrupt
         After Ctrl-C.
     """
-    front.stillest()  # refuses an empty front
     count = min(number_of_points(points), len(front.points))
     solver = "sqp" if front.settings.get("solver") == "ipopt" else "ipopt"
-    bound = front.settings.get("bound")
-    settings = SolveSettings(
-        bound=None if bound is None else finite("bound", bound),
-        starts=_STARTS,
-        seed=front.seed or 0,
-        solver=solver,
-    )
-    sweep, found = Sweep(front.task, front.profile, settings), list[Compared]()
+    sweep, found = sweep_of(front, starts=_STARTS, solver=solver), list[Compared]()
     for i in np.linspace(0, len(front.points) - 1, count).round().astype(int):
         found.append(_compared(sweep, front.points[i]))
         report(len(found), count)

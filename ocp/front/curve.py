@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.front.robust import held_between
 from quietarm.ocp.front.sweep import SAME, Sweep
 from quietarm.ocp.interrupts import note_interrupts
-from quietarm.ocp.plan.feasibility import least_peaks
+from quietarm.ocp.plan.feasibility import least_peaks_of
 from quietarm.ocp.plan.starts import from_starts
 from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS, verified
 from quietarm.ocp.program.solution import ENERGY, RESIDUAL, STILL, Solution
@@ -60,7 +60,7 @@ def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
     still = _at_rest(sweep)  # first: it settles the number of steps
     cheapest = _best(sweep, np.inf)
     if still is None:
-        least = least_peaks(sweep.program, sweep.ask(), sweep.guesses)
+        least = least_peaks_of(sweep.program, sweep.ask(), sweep.guesses)
         if RESIDUAL not in least:
             return Ends(
                 cheapest,
@@ -125,10 +125,9 @@ def front_of(
     points: int,
     *,
     gaps: Sequence[tuple[float, float]] = (),
-    iterations: int = 0,
     complete: bool = True,
-    seconds: float = 0.0,
     between: bool = True,
+    also: Mapping[str, str] = {},
 ) -> Front:
     """Put points together to a front."""
     excess = None
@@ -144,14 +143,14 @@ def front_of(
         points=non_dominated(point for point in found if isinstance(point, FrontPoint)),
         method=method,
         settings={"bound": settings.bound, "points": points, "starts": settings.starts,
-                  "steps": sweep.steps, "solver": settings.solver},
+                  "steps": sweep.steps, "solver": settings.solver, **also},
         seed=settings.seed,
         reference=reference,
-        iterations=sweep.iterations + iterations,
+        iterations=sweep.iterations,
         failed=len(failures),
         failures=failures,
         gaps=tuple(gaps),
         excess=excess,
         complete=complete,
-        seconds=seconds + time.perf_counter() - sweep.began,
+        seconds=time.perf_counter() - sweep.began,
     )  # fmt: skip

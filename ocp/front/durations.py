@@ -62,28 +62,10 @@ def plans_over_duration(
     report: Callable[[int, int], None] | None = None,
     **settings: Any,
 ) -> OverDuration:
-    """Plan a move in several durations, each from the plan before it.
+    """Plan a move in several durations, each from the plan before it; settings as for `plan_move`.
 
-    Parameters
-    ----------
-    task : PointToPoint
-        The move and its limits; its own duration does not count.
-    durations : sequence of float
-        Travelling times [s].
-    profile, **settings
-        As for `plan_move`.
-    report : callable, optional
-        Called with how many durations are done, and of how many.
-
-    Returns
-    -------
-    OverDuration
-        After Ctrl-C those that were done.
-
-    Raises
-    ------
-    ValueError
-        When a duration or another argument is out of range.
+    `report` is called with how many durations are done, and of how many; after Ctrl-C there are
+    those that were done.
     """
     profile = CycloidPolynomial() if profile is None else profile
     durations = [positive("duration", one, "s") for one in durations]

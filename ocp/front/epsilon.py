@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +11,7 @@ from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
 from quietarm.ocp.front.curve import Ends, find_ends, front_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.sweep import Guess, InterruptedSolveError, Report, Sweep, better, no_report
+from quietarm.ocp.front.sweep import Guess, Report, Sweep, better, no_report
 from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
@@ -112,13 +111,13 @@ def epsilon_front(
     found: list[FrontPoint | FailedPoint] = [ends.still_point]
     asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
     found.append(checked(sweep, ends.cheapest, asked, free=True))
-    also = _limits_at(ends, at)
-    total = points + len(also)
+    wanted = _limits_at(ends, at)
+    total = points + len(wanted)
     first, best, complete = Best(), Best(), True
     try:
         report(2, total)
         scouts = _scouted(sweep, ends, points, first)
-        limits = sorted([*_spaced_limits(ends, scouts, points), *also])
+        limits = sorted([*_spaced_limits(ends, scouts, points), *wanted])
         report(2 + len(limits) // 3, total)
         _solve_between(sweep, ends, scouts, limits, best)
         report(total, total)
@@ -131,9 +130,8 @@ def epsilon_front(
         inner, whole = all_checked(sweep, solved, interrupted=not complete)
         found = [*found, *(failed if complete else []), *inner]
     complete = complete and whole and not late
-    front = front_of(sweep, "epsilon", found, points, complete=complete, between=between)
-    extra = {"at": ", ".join(map(digits, at))} if at else {}
-    return replace(front, settings={**front.settings, **extra})
+    also = {"at": ", ".join(map(digits, at))} if at else {}
+    return front_of(sweep, "epsilon", found, points, complete=complete, between=between, also=also)
 
 
 def _scouted(sweep: Sweep, ends: Ends, points: int, best: Best) -> list[Solution]:
@@ -208,18 +206,13 @@ def _improve(
     """
     if not starts:
         return set()
-    places = {limit: i for i, limit in enumerate(dict.fromkeys(limit for limit, _ in starts))}
-    rows = [(start, sweep.ask(limit)) for limit, start in starts]
-    groups = None if warm else [places[limit] for limit, _ in starts]
-    changed, stopped = set[float](), False
-    try:
-        found = sweep.solve(rows, warm=warm, groups=groups)
-    except InterruptedSolveError as interrupted:
-        found, stopped = interrupted.solutions, True
+    rows, changed = [(start, sweep.ask(limit)) for limit, start in starts], set[float]()
+    places = np.unique([limit for limit, _ in starts], return_inverse=True)[1].tolist()
+    found, complete = sweep.solved(rows, warm=warm, groups=None if warm else places)
     for (limit, _), one in zip(starts, found, strict=True):
         if limit not in best or better(one, best[limit]):
             best[limit] = one
             changed.add(limit)
-    if stopped:
+    if not complete:
         raise KeyboardInterrupt
     return changed

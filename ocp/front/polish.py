@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from itertools import chain, zip_longest
 
 import numpy as np
-from quietarm.ocp.checks import finite
 from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
 from quietarm.ocp.front.curve import front_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.sweep import Report, Sweep, no_report
+from quietarm.ocp.front.sweep import Report, Sweep, no_report, sweep_of
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.program.solution import Solution
-from quietarm.ocp.record import SolveSettings
 
 
 @dataclass(frozen=True)
@@ -90,32 +88,38 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     ValueError
         When the front has no point.
     """
-    front.stillest()  # refuses an empty front
-    bound = front.settings.get("bound")
-    settings = SolveSettings(
-        bound=None if bound is None else finite("bound", bound),
-        starts=1,
-        seed=front.seed or 0,
-        steps=steps,
-    )
-    sweep = Sweep(front.task, front.profile, settings)
+    sweep = sweep_of(front, starts=1, steps=steps)
     tried = _polished(sweep, front.points, report)
-    untried = [
-        _Tried([point], _no_gain(point, tried=False)) for point in front.points[len(tried) :]
-    ]
-    return _together(front, sweep, tried + untried, complete=front.complete and not untried)
+    untried = front.points[len(tried) :]
+    polished = front_of(
+        sweep,
+        f"{front.method}, polished",
+        [*chain(*tried), *untried],
+        len(front.points),
+        complete=front.complete and not untried,
+        between=front.excess is not None,
+    )
+    with_origin = replace(
+        polished,
+        settings={**front.settings, "steps": polished.settings["steps"]},
+        seed=front.seed,
+        reference=front.reference,
+        evaluations=front.evaluations,
+        iterations=front.iterations + polished.iterations,
+        history=front.history,
+        seconds=front.seconds + polished.seconds,
+    )
+    pairs = zip_longest(front.points, tried)
+    return Polish(with_origin, tuple(_gain(*pair) for pair in pairs))
 
 
-class _Tried(NamedTuple):
-    """The point or a better one, or the reason of a failure; and the gain."""
-
-    found: Sequence[FrontPoint | FailedPoint]
-    gain: Gain
+_Found = list[FrontPoint | FailedPoint]
+"""The point or a better one; after the former the reason, if there is one."""
 
 
-def _polished(sweep: Sweep, points: Sequence[FrontPoint], report: Report) -> list[_Tried]:
+def _polished(sweep: Sweep, points: Sequence[FrontPoint], report: Report) -> list[_Found]:
     """All points at once, then their checks; after Ctrl-C those that were done."""
-    tried: list[_Tried] = []
+    tried: list[_Found] = []
     with suppress(KeyboardInterrupt):
         rows = [(np.array(point.coefficients), sweep.ask(point.residual)) for point in points]
         for point, solved in zip(points, sweep.solve(rows), strict=True):
@@ -124,42 +128,17 @@ def _polished(sweep: Sweep, points: Sequence[FrontPoint], report: Report) -> lis
     return tried
 
 
-def _one_polished(sweep: Sweep, point: FrontPoint, solved: Solution) -> _Tried:
+def _one_polished(sweep: Sweep, point: FrontPoint, solved: Solution) -> _Found:
+    asked = {RESIDUAL_LIMIT: point.residual}
     if not solved.status.solved:
-        return _failed(point, solved.status.text)
-    found = checked(sweep, solved, {RESIDUAL_LIMIT: point.residual}, point.residual)
+        return [point, FailedPoint(asked, solved.status.text)]
+    found = checked(sweep, solved, asked, point.residual)
     if isinstance(found, FailedPoint):
-        return _failed(point, found.reason)
-    if found.energy < point.energy:
-        return _Tried([found], Gain(point.residual, point.energy, found.energy))
-    return _Tried([point], _no_gain(point))
+        return [point, found]
+    return [found if found.energy < point.energy else point]
 
 
-def _failed(point: FrontPoint, reason: str) -> _Tried:
-    failure = FailedPoint({RESIDUAL_LIMIT: point.residual}, reason)
-    return _Tried([point, failure], _no_gain(point))
-
-
-def _no_gain(point: FrontPoint, tried: bool = True) -> Gain:
-    return Gain(point.residual, point.energy, point.energy, tried)
-
-
-def _together(front: Front, sweep: Sweep, tried: Sequence[_Tried], complete: bool) -> Polish:
-    """The improved front; points keep their order along the given one."""
-    polished = front_of(
-        sweep,
-        f"{front.method}, polished",
-        [found for one in tried for found in one.found],
-        len(front.points),
-        iterations=front.iterations, complete=complete, seconds=front.seconds,
-        between=front.excess is not None,
-    )  # fmt: skip
-    with_origin = replace(
-        polished,
-        settings={**front.settings, "steps": polished.settings["steps"]},
-        seed=front.seed,
-        reference=front.reference,
-        evaluations=front.evaluations,
-        history=front.history,
-    )
-    return Polish(with_origin, tuple(one.gain for one in tried))
+def _gain(point: FrontPoint, found: _Found | None) -> Gain:
+    after = found[0] if found else point
+    assert isinstance(after, FrontPoint)
+    return Gain(point.residual, point.energy, after.energy, tried=found is not None)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -49,34 +48,21 @@ def held_between(sweep: Sweep, found: Sequence[Found]) -> tuple[list[Found], flo
     """
     if not sweep.task.errors:
         return list(found), None, True
-    kept = list(found)
+    kept, task = list(found), sweep.task
     try:
         for _ in range(_ROUNDS):
             more = _samples(sweep, kept)
-            missing = any(isinstance(one, FailedPoint) for one in kept)
-            if not more and not missing:
+            if not more and not _failed(kept):
                 break
-            with _undone(sweep):
-                sweep.add_samples(more)
-                again = _solved_again(sweep, kept)
+            sweep.add_samples(more)
+            again = _solved_again(sweep, kept)
             if not more and _failed(again) == _failed(kept):
                 break
-            kept = again
-        with _undone(sweep):
-            return *_at_worst(sweep, kept), True
+            kept, task = again, sweep.task
+        return *_at_worst(sweep, kept), True
     except KeyboardInterrupt:
+        sweep.take(task)  # without the samples that no points have
         return kept, None, False
-
-
-@contextmanager
-def _undone(sweep: Sweep) -> Iterator[None]:
-    """Take back the samples that Ctrl-C in the block left without their points."""
-    before = sweep.task
-    try:
-        yield
-    except KeyboardInterrupt:
-        sweep.take(before)
-        raise
 
 
 def _failed(found: Sequence[Found]) -> int:
@@ -97,7 +83,7 @@ def _samples(sweep: Sweep, found: Sequence[Found]) -> list[list[float]]:
         for excess, peak in zip(one.excess, one.peaks, strict=True)
         if excess > _SOLVED
     ]
-    near = _APART * np.array(sweep.ranges)
+    near = _APART * np.array(list(sweep.task.errors.values()))
     chosen = list[NDArray[np.float64]]()
     for _, errors in sorted(passing, key=lambda one: -one[0]):
         if len(chosen) < _ADDED and all((abs(errors - one) > near).any() for one in chosen):
@@ -151,7 +137,7 @@ def _target(one: Found) -> float:
 
 def _residual(sweep: Sweep, point: FrontPoint) -> float:
     """The largest at the samples [m]."""
-    return max(_left(sweep, point, errors) for errors in sweep.samples)
+    return max(_left(sweep, point, errors) for errors in sweep.program.errors.tolist())
 
 
 def _left(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> float:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.front.answer import Front
 from quietarm.ocp.plan.starts import first_steps, start_coefficients
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
-from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.program.solving import Row, Solved, solve
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.task import PointToPoint
@@ -22,14 +24,6 @@ Report = Callable[[int, int], None]
 """Called with the number of points done and asked for."""
 SAME = 1e-5
 """Solutions whose energies differ by less than this share count as one motion."""
-
-
-class InterruptedSolveError(KeyboardInterrupt):
-    """Ctrl-C while rows were solved."""
-
-    def __init__(self, solutions: list[Solution]) -> None:
-        super().__init__()
-        self.solutions = solutions
 
 
 def no_report(done: int, total: int) -> None:
@@ -69,16 +63,6 @@ class Sweep:
         self.guesses = start_coefficients(self.profile, self.settings)
         self._program: Program | None = None
 
-    @property
-    def ranges(self) -> list[float]:
-        """The largest errors of an uncertain plant."""
-        return list(self.task.errors.values())
-
-    @property
-    def samples(self) -> list[tuple[float, ...]]:
-        """The errors at which its residual counts; the first sample has none."""
-        return [(0.0,) * len(self.ranges), *self.task.plant.error_samples]
-
     def add_samples(self, more: Sequence[Sequence[float]]) -> None:
         """Let the residual of an uncertain plant count at more errors."""
         if more:
@@ -109,41 +93,41 @@ class Sweep:
         warm: bool = False,
         groups: Sequence[int] | None = None,
     ) -> list[Solution]:
-        """Run the solver from many starts at once.
-
-        Parameters
-        ----------
-        rows : sequence of (ndarray, Ask)
-            Coefficients to start from, and what is asked.
-        warm : bool
-            Whether the starts are beside minima.
-        groups : sequence of int, optional
-            Rows of one number are starts for one thing that is asked.
-
-        Returns
-        -------
-        list of Solution
-            One for each row, whatever its status.
-
-        Raises
-        ------
-        InterruptedSolveError
-            After Ctrl-C, with the solutions until then.
-        """
-        program, solver = self.program, self.settings.solver
-        asked = [Row(program, ask, start) for start, ask in rows]
-        found, complete = solve(asked, solver, warm=warm, groups=groups)
-        self.iterations += sum(one.iterations for one in found)
+        """The solutions from coefficients for what is asked; KeyboardInterrupt after Ctrl-C."""
+        found, complete = self.solved(rows, warm=warm, groups=groups)
         if not complete:
-            raise InterruptedSolveError(found)
+            raise KeyboardInterrupt
+        return found
+
+    def solved(
+        self, rows: Sequence[tuple[Guess, Ask]], *, warm: bool, groups: Sequence[int] | None
+    ) -> Solved:
+        """The same with those of Ctrl-C; `warm` beside minima, one group for starts of one ask."""
+        asked = [Row(self.program, ask, start) for start, ask in rows]
+        found = solve(asked, self.settings.solver, warm=warm, groups=groups)
+        self.iterations += sum(one.iterations for one in found.solutions)
         return found
 
     def best(self, starts: Sequence[Guess], ask: Ask, *, warm: bool = False) -> Solution:
         """The best from several starts."""
         found = self.solve([(start, ask) for start in starts], warm=warm, groups=[0] * len(starts))
-        return min(found, key=lambda one: (not one.status.solved, _value(one, ask.minimise)))
+        return best_of(found, ask)
 
 
-def _value(found: Solution, minimise: Mapping[str, float]) -> float:
-    values = {**found.peaks, ENERGY: found.energy}
-    return sum(weight * values[name] for name, weight in minimise.items())
+def best_of(found: Sequence[Solution], ask: Ask) -> Solution:
+    """The solution of the least value of what is made least."""
+
+    def value(one: Solution) -> tuple[bool, float]:
+        values = {**one.peaks, ENERGY: one.energy}
+        least = sum(weight * values[name] for name, weight in ask.minimise.items())
+        return not one.status.solved, least
+
+    return min(found, key=value)
+
+
+def sweep_of(front: Front, **settings: Any) -> Sweep:
+    """The task of a front that is there already, within its bound."""
+    front.stillest()  # refuses an empty front
+    bound: Any = front.settings.get("bound")
+    asked = SolveSettings(bound=bound, seed=front.seed or 0, **settings)
+    return Sweep(front.task, front.profile, asked)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from quietarm.ocp.checks import not_negative
@@ -11,7 +10,7 @@ from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, all_checked
 from quietarm.ocp.front.curve import Ends, find_ends, front_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.sweep import Guess, Report, Sweep, no_report
+from quietarm.ocp.front.sweep import Guess, Report, Sweep, best_of, no_report
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
@@ -48,26 +47,14 @@ def weighted_front(
 
     Parameters
     ----------
-    task : PointToPoint
-        The move and its limits.
-    profile : JointProfile, optional
-        How the joint moves; the cycloid of a polynomial of six terms by default.
-    bound : float, optional
-        Largest absolute coefficient; none by default.
+    task, profile, bound, seed, steps, report, solver
+        As for `epsilon_front`.
     points : int
         Most points, the ends included.
     weights : sequence of (float, float), optional
         Weights of the scaled residual and energy to be used instead.
     starts : int
         Starts of the ends.
-    seed : int
-        Seed of the random starts.
-    steps : int, optional
-        Steps of the solver's discretisation, as for `plan_move`.
-    report : callable, optional
-        Called with the number of points done and of all.
-    solver : {"sqp", "ipopt"}
-        As for `plan_move`.
 
     Returns
     -------
@@ -104,11 +91,9 @@ def weighted_front(
         complete = False
     found, whole = sums.checked(interrupted=not complete)
     complete = complete and whole
-    front = front_of(sweep, "weighted", found, points, gaps=sums.gaps, complete=complete)
-    if chosen is None:
-        return front
-    stated = ", ".join(f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen)
-    return replace(front, settings={**front.settings, "weights": stated})
+    stated = ", ".join(f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen or ())
+    also = {"weights": stated} if stated else {}
+    return front_of(sweep, "weighted", found, points, gaps=sums.gaps, complete=complete, also=also)
 
 
 def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -138,14 +123,7 @@ class _Sums:
         minimise = {RESIDUAL: of_residual / self.ends.width, ENERGY: of_energy / self.ends.height}
         ask = self.sweep.ask(minimise=minimise)
         # far starts lead past a dearer minimum, near ones keep to the minimum beside them
-        tried = [self.sweep.best(guesses, ask, warm=warm) for warm in (False, True)]
-
-        def value(one: Solution) -> float:
-            if not one.status.solved:
-                return np.inf
-            return minimise[RESIDUAL] * one.residual + minimise[ENERGY] * one.energy
-
-        return min(tried, key=value)
+        return best_of([self.sweep.best(guesses, ask, warm=warm) for warm in (False, True)], ask)
 
     def by_chords(self, points: int, report: Report) -> None:
         """Weights from the chords between neighbours, the longest first."""

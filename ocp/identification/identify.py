@@ -9,7 +9,6 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
-from quietarm.ocp.checks import has_no
 from quietarm.ocp.identification.answer import Estimate, Fitted, Identified, in_torque_alone
 from quietarm.ocp.identification.fit import Fit, Piece, fit, left, measured, not_told
 from quietarm.ocp.identification.recording import Recording
@@ -22,6 +21,7 @@ from quietarm.ocp.identification.ring_downs import (
 )
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
+from quietarm.ocp.simulation.errors import refuse_unknown
 
 Array = NDArray[np.float64]
 _FREQUENCY, _DAMPING = "rad/s", "zeta"
@@ -80,7 +80,7 @@ def identify(
     swings = _swings_alone(plant, names, kinds)
     pieces, left_out, frequency = _pieces(recordings, forced=not swings)
     plant = _started(plant, modal, frequency)
-    answer = _Identification(plant, names, kinds, pieces, frequency, swings)
+    answer = _Identification(plant, names, kinds, pieces, swings)
     return answer.made(left_out)
 
 
@@ -127,9 +127,7 @@ def _check_tips(plant: Plant, recordings: Sequence[Recording]) -> None:
 def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> list[str]:
     known = plant.measured
     if free is not None:
-        for name in free:
-            if name not in known:
-                raise ValueError(has_no(plant.name, "parameter", name, known))
+        refuse_unknown(plant, free, also=())
         return list(dict.fromkeys(free))
     names = [name for name in known if _is_modal(plant, name)]
     if "torque" in kinds:
@@ -206,7 +204,6 @@ class _Identification:
     names: list[str]
     kinds: list[str]
     pieces: list[Piece]
-    frequency: float
     scaled: bool
 
     def made(self, left_out: Sequence[str]) -> Identified:
@@ -222,11 +219,12 @@ class _Identification:
         start = np.array([getattr(self.plant, name) for name in names])
         among = fit(response, self.pieces, start, self.scaled)
         self._check(among)
-        swung = self._long_enough(dict(zip(names, map(float, among.p), strict=True)))
+        fitted = dict(zip(names, map(float, among.p), strict=True))
+        swung = self._long_enough(fitted)
         if len(swung) < len(self.pieces):
             there = {piece.recording.name for piece in swung}
-            gone = {one.recording.name: None for one in self.pieces}
-            more = [name for name in gone if name not in there]
+            every = dict.fromkeys(piece.recording.name for piece in self.pieces)
+            more = [name for name in every if name not in there]
             return replace(self, pieces=swung).made([*left_out, *more])
         alone = [fit(response, [one], among.p, self.scaled) for one in among.pieces]
         estimates: list[Estimate] = []
@@ -238,7 +236,6 @@ class _Identification:
             else:
                 estimates.append(one)
         untold = {name: untold[name] for name in self.names if name in untold}
-        fitted = dict(zip(names, map(float, among.p), strict=True))
         plant = replace(self.plant, **{one.parameter: one.value for one in estimates})
         parts = tuple(self._part(response, among, alone, k) for k in range(len(alone)))
         return Identified(
@@ -271,15 +268,14 @@ class _Identification:
         """The interval of the fit, or of the spread of its parts, whichever is wider."""
         from scipy.stats import t  # not at the top: it takes long to load
 
-        value, of_fit = float(among.p[k]), float(among.half_widths(_LEVEL)[k])
-        low, high, by = value - of_fit, value + of_fit, "fit"
+        value, half, by = float(among.p[k]), float(among.half_widths(_LEVEL)[k]), "fit"
         if len(alone) > 1:
             spread = float(
                 alone.std(ddof=1) / len(alone) ** 0.5 * t.ppf((1 + _LEVEL) / 2, len(alone) - 1)
             )
-            if spread > of_fit:
-                low, high, by = value - spread, value + spread, "spread"
-        return Estimate(name, value, low, high, by)
+            if spread > half:
+                half, by = spread, "spread"
+        return Estimate(name, value, value - half, value + half, by)
 
     def _part(self, response: Response, among: Fit, alone: Sequence[Fit], k: int) -> Fitted:
         piece = among.pieces[k]

@@ -72,16 +72,9 @@ class Joint:
 
 
 class Response:
-    """The columns of a plant's signals over a recording, and their derivatives.
+    """The columns of a plant's signals over a recording, and their derivatives by parameters.
 
-    Parameters
-    ----------
-    plant : Plant
-        The plant.
-    names : sequence of str
-        Its parameters that are varied.
-    signals : sequence of str
-        Of ``"tip"``, ``"acceleration"``, ``"torque"``.
+    Signals are ``"tip"``, ``"acceleration"``, ``"torque"``.
     """
 
     def __init__(self, plant: Plant, names: Sequence[str], signals: Sequence[str]) -> None:

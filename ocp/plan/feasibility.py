@@ -35,47 +35,35 @@ class Attempt(Protocol):
         ...
 
 
-Start = TypeVar("Start")
 Found = TypeVar("Found", bound=Attempt)
 
 
 def least_peaks(
-    program: Program, ask: Ask, starts: Sequence[NDArray[np.float64]]
-) -> dict[str, Solution]:
+    limits: Mapping[str, float], solve_least: Callable[[Mapping[str, float], str], Sequence[Found]]
+) -> dict[str, Found]:
     """Make each limited quantity in turn as small as it can be while the other limits are kept."""
-    best: dict[str, Solution] = {}
-    for name in ask.limits:
-        others = {key: value for key, value in ask.limits.items() if key != name}
-        alone = ask._replace(limits=others, minimise={name: 1.0})
-        found = solve([Row(program, alone, start) for start in starts]).solutions
-        solved = [one for one in found if one.status.solved]
+    best: dict[str, Found] = {}
+    for name in limits:
+        others = {key: value for key, value in limits.items() if key != name}
+        solved = [one for one in solve_least(others, name) if one.status.solved]
         if solved:
             best[name] = min(solved, key=lambda one, name=name: one.peaks[name])
     return best
 
 
-def rescued(
-    runs: Sequence[Found],
-    limits: Mapping[str, float],
-    starts: Sequence[Start],
-    solve_least: Callable[[Start, Mapping[str, float], str], Found],
-    again: Callable[[Found], Found],
-) -> tuple[list[Found], dict[str, Found]]:
-    """Where no run was solved, start again from motions of least peaks."""
-    if any(run.status.solved for run in runs):
-        return list(runs), {}
-    least: dict[str, Found] = {}
-    for name in limits:
-        others = {key: value for key, value in limits.items() if key != name}
-        found = [solve_least(start, others, name) for start in starts]
-        solved = [one for one in found if one.status.solved]
-        if solved:
-            least[name] = min(solved, key=lambda one, name=name: one.peaks[name])
-    within = [found for name, found in least.items() if _keeps(found.peaks[name], name, limits)]
-    return [*runs, *map(again, within)], least
+def least_peaks_of(
+    program: Program, ask: Ask, starts: Sequence[NDArray[np.float64]]
+) -> dict[str, Solution]:
+    """The same of a program, from several starts."""
+
+    def solve_least(others: Mapping[str, float], name: str) -> list[Solution]:
+        alone = ask._replace(limits=others, minimise={name: 1.0})
+        return solve([Row(program, alone, start) for start in starts]).solutions
+
+    return least_peaks(ask.limits, solve_least)
 
 
-def _keeps(peak: float, name: str, limits: Mapping[str, float]) -> bool:
+def keeps(peak: float, name: str, limits: Mapping[str, float]) -> bool:
     """Whether a peak is within its limit; a motion that is as good as still is at rest."""
     return peak <= max(limits[name], STILL if name == RESIDUAL else 0.0)
 
@@ -130,7 +118,7 @@ def unmet(
     remedies = [
         f"{name} limit {peak * _ROOM:.4g} {UNITS[name]}"
         for name, peak in least.items()
-        if not _keeps(peak, name, limits)
+        if not keeps(peak, name, limits)
     ]
     feasible = (
         f"feasible with the rest kept: {' or '.join(remedies)}"

@@ -93,18 +93,19 @@ def _held(
     yield plan
     for _ in range(_ROUNDS):
         more = _new_samples(task, peaks[peaks[:, 0] > limit, 1:])
-        if _excess(plan, limit) <= EXCESS or not more:
+        if peaks[0, 0] / limit - 1 <= EXCESS or not more:
             break
         task = with_samples(task, [*task.plant.error_samples, *more])
         plan, peaks, starts = solved(starts)
         yield plan
     for _ in range(_TIGHTENINGS):
-        if _excess(plan, limit) <= 0:
+        excess = peaks[0, 0] / limit - 1
+        if excess <= 0:
             break
-        used /= (1 + _excess(plan, limit)) * (1 + OVERRUN)
+        used /= (1 + excess) * (1 + OVERRUN)
         tighter = replace(settings, residual_limit=used, steps=plan.verification.steps)
         try:
-            plan, _ = _checked(plan_from(task, profile, tighter, starts[:1])[0])
+            plan, peaks = _checked(plan_from(task, profile, tighter, starts[:1])[0])
         except SolverFailedError:
             break
         yield plan
@@ -120,7 +121,3 @@ def _new_samples(task: PointToPoint, errors: NDArray[np.float64]) -> list[list[f
 def _checked(plan: Plan) -> tuple[Plan, NDArray[np.float64]]:
     worst, peaks = peaks_between(plan.task, plan.profile, plan.coefficients, _ADDED)
     return replace(plan, worst=worst), peaks
-
-
-def _excess(plan: Plan, limit: float) -> float:
-    return -1.0 if plan.worst is None else plan.worst.residual / limit - 1

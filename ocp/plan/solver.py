@@ -29,7 +29,6 @@ def only_motion(
 ) -> Plan:
     """The figures of the only motion that a profile has, within the task's limits."""
     asked = 0.0 if residual_limit is None else residual_limit
-    SolveSettings(residual_limit=asked)  # refused before the integration, not after
     plan = evaluate_coefficients(
         task, [], profile=profile, method="evaluated", settings={"residual_limit": asked}
     )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.plan.feasibility import explain, least_peaks
+from quietarm.ocp.plan.feasibility import explain, least_peaks_of
 from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.program import Program
@@ -66,14 +66,17 @@ def from_starts(
     """
     tried, least = list[Solution](), dict[str, Solution]()
     begun, stopped, complete = 0, None, True
-    attempts: list[tuple[Solver, Callable[[], Sequence[NDArray[np.float64]]]]]
-    attempts = [(solver, lambda: starts)]
-    if ask.limits:
-        attempts.append((solver, lambda: _still_within(program, ask, starts, least)))
-    if solver != "ipopt":
-        attempts.append(("ipopt", lambda: starts[:2]))
-    for by, from_ in attempts:
-        rows = [Row(program, ask, start) for start in from_()]
+
+    def attempts() -> Iterator[tuple[Solver, Sequence[NDArray[np.float64]]]]:
+        yield solver, starts
+        if ask.limits:
+            least.update(least_peaks_of(program, ask, starts[:2]))
+            yield solver, [one.coefficients for one in least.values()]
+        if solver != "ipopt":
+            yield "ipopt", starts[:2]
+
+    for by, guesses in attempts():
+        rows = [Row(program, ask, guess) for guess in guesses]
         if not rows:
             continue
         found, complete = solve(rows, by, groups=[0] * len(rows))
@@ -90,14 +93,3 @@ def from_starts(
         raise explain(program, ask, tried, least)
     total = sum(one.iterations for one in tried)
     return Best(replace(solved[0], iterations=total), solved, stopped)
-
-
-def _still_within(
-    program: Program,
-    ask: Ask,
-    starts: Sequence[NDArray[np.float64]],
-    least: dict[str, Solution],
-) -> list[NDArray[np.float64]]:
-    """Coefficients of motions of least peaks, which are kept in `least`."""
-    least.update(least_peaks(program, ask, starts[:2]))
-    return [one.coefficients for one in least.values()]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.program.batch import Values, batch
+from quietarm.ocp.program.batch import Batch, Values, batch
 from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Solution
 from quietarm.ocp.program.solving import Row, Solver, solve
@@ -182,25 +182,27 @@ FINER_AGREEMENT = 1e-6
 _FINER = 3
 
 
-def finer_values(
-    programs: Sequence[Program], coefficients: NDArray[np.float64], quantities: tuple[str, ...] = ()
-) -> Values:
+def finer_values(programs: Sequence[Program], coefficients: NDArray[np.float64]) -> Values:
     """Figures of one motion of each program, on three times the solver's steps or more."""
-    one = programs[0]
-    steps = max(default_steps(one.task), _FINER * one.steps)
-    move = np.array([program.row for program in programs])
-    no_errors = np.zeros((len(programs), 0))
-    finer = batch(one.plant, one.profile, steps, quantities, energy=one.task.energy)
-    return finer.values(coefficients, move, no_errors)
+    return _values_of(_finer(programs[0]), programs, coefficients)
 
 
 def finer_peaks(
     programs: Sequence[Program], coefficients: NDArray[np.float64]
 ) -> dict[str, NDArray[np.float64]]:
     """Peaks of every quantity of one motion of each program, at the nodes of these steps."""
-    values = finer_values(programs, coefficients, tuple(QUANTITIES)).limited
-    counts = [QUANTITIES[name].rows(programs[0].plant) for name in QUANTITIES]
-    ends = np.cumsum([0, *counts]) * (values.shape[1] // sum(counts))
-    parts = map(slice, ends[:-1].tolist(), ends[1:].tolist())
-    return {name: np.abs(values[:, part]).max(axis=1)
-            for name, part in zip(QUANTITIES, parts, strict=True)}  # fmt: skip
+    finer = _finer(programs[0], tuple(QUANTITIES))
+    limited = _values_of(finer, programs, coefficients).limited
+    return {name: np.abs(limited[:, part]).max(axis=1) for name, part in finer.parts}
+
+
+def _finer(program: Program, quantities: tuple[str, ...] = ()) -> Batch:
+    steps = max(default_steps(program.task), _FINER * program.steps)
+    return batch(program.plant, program.profile, steps, quantities, energy=program.task.energy)
+
+
+def _values_of(
+    finer: Batch, programs: Sequence[Program], coefficients: NDArray[np.float64]
+) -> Values:
+    move = np.array([program.row for program in programs])
+    return finer.values(coefficients, move, np.zeros((len(programs), 0)))

@@ -236,6 +236,7 @@ def batch(
     quantities: tuple[str, ...] = (),
     errors: tuple[str, ...] = (),
     energy: Energy = ABSOLUTE_POWER,
+    breaks: tuple[float, ...] = (),
 ) -> Batch:
     """The compiled functions of a plant, a profile and a number of steps."""
-    return Batch(Kind(plant, profile, steps, quantities, errors, energy))
+    return Batch(Kind(plant, profile, steps, quantities, errors, energy, breaks))

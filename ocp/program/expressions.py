@@ -31,18 +31,12 @@ class Kind(NamedTuple):
 
     Attributes
     ----------
-    plant : Plant
-        What moves.
-    profile : JointProfile
-        How the joint moves.
-    steps : int
-        Number of steps.
     quantities : tuple of str
         Limited quantities.
     errors : tuple of str
         What may differ from the plant in a row, as by `with_errors`.
-    energy : Energy
-        What counts as the energy.
+    breaks : tuple of float
+        Where the motion is not smooth; of values alone.
     """
 
     plant: Plant
@@ -51,6 +45,7 @@ class Kind(NamedTuple):
     quantities: tuple[str, ...]
     errors: tuple[str, ...]
     energy: Energy
+    breaks: tuple[float, ...] = ()
 
 
 def function_of_values(kind: Kind, rows: int) -> ca.Function:
@@ -58,13 +53,14 @@ def function_of_values(kind: Kind, rows: int) -> ca.Function:
 
     (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
-    plant, profile, steps, quantities, names, energy = kind
+    plant, profile, steps, quantities, names, energy, breaks = kind
     counts = profile.size, 3 + 2 * plant.modes, len(names)
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
-    a, row, errors = (_wide(one, steps) for one in inputs)
+    columns = node_times(steps, breaks=breaks)[1].shape[1]
+    a, row, errors = (_wide(one, columns) for one in inputs)
     moving = with_errors(plant, dict(zip(names, errors, strict=True)))
     rollout = symbolic_rollout(
-        moving, profile, a, row[:3], steps, rows, ask_for_jerk(quantities),
+        moving, profile, a, row[:3], steps, rows, ask_for_jerk(quantities), breaks,
         initial=ca.horzsplit(inputs[1], 1)[3:], energy=energy,
     )  # fmt: skip
     at_nodes = [
@@ -95,7 +91,7 @@ class _Differentiated:
     """The expressions of `function_of_derivatives`, from the motion to its curvature."""
 
     def __init__(self, kind: Kind, rows: int) -> None:
-        plant, profile, steps, quantities, names, self.definition = kind
+        plant, profile, steps, quantities, names, self.definition, _ = kind
         self.size, self.modes, self.shape = profile.size, plant.modes, (rows, steps)
         self.path = PathFunctions(profile, steps, ask_for_jerk(quantities))
         self.node = NodeFunctions(plant, self.path, quantities, names, self.definition)

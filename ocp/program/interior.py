@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.interrupts import note_interrupts
-from quietarm.ocp.program.ipopt import OPTIONS, Point, compiled, run_ipopt
+from quietarm.ocp.program.ipopt import OPTIONS, compiled, run_ipopt
 from quietarm.ocp.program.quadratic import Model
 from quietarm.ocp.program.sqp import FEASIBLE, End, Rows
 from quietarm.ocp.program.stack import Stack
@@ -77,28 +77,28 @@ def interior_point(stack: Stack, x: Array, *, warm: bool = False) -> Rows:
 
 def _one(functions: _RowFunctions, found: Rows, row: int, warm: bool) -> None:
     """Run after run, from where the one before ended."""
-    point, end = Point(found.x[row]), None
-    free = np.full(len(point.unknowns), np.inf)
+    x, multipliers, end = found.x[row], None, None
+    free = np.full(len(x), np.inf)
     bounds = functions.lower, functions.upper
     for width in _STAGES[-1:] if warm else _STAGES:
         solver = functions.solver(_FIRST if width else _LAST)
-        point, status, iterations = run_ipopt(
-            solver, point, (-free, free), bounds, np.array([width])
+        x, multipliers, status, iterations = run_ipopt(
+            solver, x, (-free, free), bounds, np.array([width]), multipliers
         )
         found.iterations[row] += iterations
         end = _ENDS.get(status)
         if end is End.STOPPED or (end is End.INFEASIBLE and width > 0):
             break
-    model = functions.model(point.unknowns, np.zeros(1))
+    model = functions.model(x, np.zeros(1))
     g = functions.constraints(model)
     passed = np.max([functions.lower - g, g - functions.upper], initial=0.0)
     if end is None:  # no step helps any more
         end = End.CREEPING if passed <= FEASIBLE else End.UNFINISHED
-    found.ends[row], found.x[row], found.violation[row] = end, point.unknowns, passed
+    found.ends[row], found.x[row], found.violation[row] = end, x, passed
     found.f[row] = model.f[0]
-    found.of_c[row], found.of_v[row, functions.kept] = np.split(
-        point.multipliers, [functions.equalities]
-    )
+    assert multipliers is not None
+    of_c, of_v = np.split(multipliers, [functions.equalities])
+    found.of_c[row], found.of_v[row, functions.kept] = of_c, of_v
 
 
 class _RowFunctions:

@@ -30,24 +30,13 @@ OPTIONS: dict[str, str | int | float] = {
     "expect_infeasible_problem": "yes",
 }
 _THREADS = "OPENBLAS_NUM_THREADS"
-_UNKNOWN = np.empty(0)
-
-
-class Point(NamedTuple):
-    """Where the solver starts or stops: the unknowns, and the multipliers where they are known.
-
-    Multipliers of the bounds on the unknowns (positive at an upper one), and of the constraints.
-    """
-
-    unknowns: NDArray[np.float64]
-    bound_multipliers: NDArray[np.float64] = _UNKNOWN
-    multipliers: NDArray[np.float64] = _UNKNOWN
 
 
 class Stop(NamedTuple):
-    """How a run of IPOPT ended: where, its own status, iterations."""
+    """How a run of IPOPT ended: where, multipliers of constraints, its own status, iterations."""
 
-    point: Point
+    unknowns: NDArray[np.float64]
+    multipliers: NDArray[np.float64]
     return_status: str
     iterations: int
 
@@ -84,20 +73,19 @@ Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 def run_ipopt(
     solver: ca.Function,
-    start: Point,
+    start: NDArray[np.float64],
     bounds: Bounds,
     constraint_bounds: Bounds,
     parameters: NDArray[np.float64],
+    multipliers: NDArray[np.float64] | None = None,
 ) -> Stop:
     """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""
-    known = {}
-    if start.multipliers.size:
-        known = {"lam_x0": start.bound_multipliers, "lam_g0": start.multipliers}
+    known = {} if multipliers is None else {"lam_g0": multipliers}
     with keep_interrupts(), silent_errors():  # casadi warns of every failure
         result = solver(
-            x0=start.unknowns, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
+            x0=start, lbx=bounds[0], ubx=bounds[1], lbg=constraint_bounds[0],
             ubg=constraint_bounds[1], p=parameters, **known,
         )  # fmt: skip
-    point = Point(*(result[name].full().ravel() for name in ("x", "lam_x", "lam_g")))
+    x, of_constraints = (result[name].full().ravel() for name in ("x", "lam_g"))
     stats = solver.stats()
-    return Stop(point, str(stats["return_status"]), int(stats["iter_count"]))
+    return Stop(x, of_constraints, str(stats["return_status"]), int(stats["iter_count"]))

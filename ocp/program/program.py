@@ -22,15 +22,6 @@ Array = NDArray[np.float64]
 class Program:
     """A task's numbers for a number of steps.
 
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    steps : int
-        Number of steps.
-
     Attributes
     ----------
     batch : Batch

@@ -25,11 +25,6 @@ Index = NDArray[np.intp]
 class Stack:
     """Rows of one form: the same profile, steps, limited quantities, kind of residual and of peak.
 
-    Parameters
-    ----------
-    programs, asks : sequence of Program and of Ask
-        One of each for every row.
-
     Attributes
     ----------
     lower, upper : ndarray, shape (rows, bounded)

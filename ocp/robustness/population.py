@@ -1,11 +1,8 @@
-"""What one joint motion leaves and costs on many plants with errors, in one casadi call.
-
-The same symbolic rollout as that of searches, with a plant in each row in the place of a candidate.
-"""
+"""What one joint motion leaves and costs on many plants with errors: a plant in each row."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,26 +10,22 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.ocp.energy import Energy
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.program.batch import batch
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES, step
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import residual_samples
-from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps, node_times, rollout_along
+from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
 from quietarm.ocp.task import PointToPoint
 
-_BLOCK = 50
-"""Plants a call: their intermediate values fit the processor's cache."""
+_BLOCK = 100
+"""Plants a call."""
 
 _DOUBLINGS = 4
 _STRIDE = 2**_DOUBLINGS
 """The residual is sampled at a multiple of so many times."""
-
-_STEPS_OF_CSE = 2 * ROLLOUT_STEPS
-"""Common terms are looked for up to these steps: that takes a third off a call, but a time that
-grows with the square of the steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,21 +69,14 @@ class ErrorPopulation:
         coefficients: ArrayLike,
         ranges: dict[str, float],
     ) -> None:
-        self.names = tuple(ranges)
+        names, faster = tuple(ranges), 1 + max(ranges.values())  # any of them may be a frequency
+        steps = max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(task, least=1))))
         self._task = task
-        faster = 1 + max(ranges.values())  # any of the parameters may be a frequency
-        resolved = default_steps(task, least=1)
-        steps = max(ROLLOUT_STEPS, int(np.ceil(faster * resolved)))
+        self._coefficients = profile.checked(coefficients, task.duration)
         self._samples = _STRIDE * int(np.ceil(faster * residual_samples(task) / _STRIDE))
         breaks = profile.breaks(task.duration)
-        times, length = node_times(steps, breaks=breaks)
-        joint = _joint_at(times, task, profile, coefficients)
-        between = task.residual_window / (self._samples - 1)
-        self._function = BufferedFunction(
-            _compiled(task.plant, length.shape[1], self.names, not breaks, task.energy)
-        )
-        times = *task.move[1:], between
-        self._along = joint.T.full(), length.T.full(), *times, task.initial_state
+        self._batch = batch(task.plant, profile, steps, ("torque",), names, task.energy, breaks)
+        self._at_rest = BufferedFunction(_at_rest(task.plant, names))
 
     @keep_interrupts()
     def __call__(
@@ -107,19 +93,23 @@ class ErrorPopulation:
         return Figures(*np.vstack(rows).T.copy())
 
     def _evaluate(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
-        count = len(block)
-        errors = np.zeros((block.shape[1], _BLOCK))
-        errors[:, :count] = block.T
-        arrival, transition, tips, energy, torque = self._function(errors, *self._along)
-        size = len(arrival)
-        tip_of_state = np.zeros((_BLOCK, len(tips) // (size // 2), size))
-        tip_of_state[:, :, : size // 2] = tips.T.reshape(_BLOCK, -1, size // 2)
+        count, task = len(block), self._task
+        motion, row = (np.tile(one, (count, 1)) for one in (self._coefficients, task.row))
+        found = self._batch.values(motion, row, block)
+        between = task.residual_window / (self._samples - 1)
+        filled = np.resize(block, (_BLOCK, block.shape[1]))
+        transition, tips = (
+            rows.T[:count] for rows in self._at_rest(filled.T, task.target, between)
+        )
+        size = found.arrival.shape[1]
+        tip_of_state = np.zeros((count, tips.shape[1] // (size // 2), size))
+        tip_of_state[:, :, : size // 2] = tips.reshape(count, -1, size // 2)
         of_window = _at_samples(
-            tip_of_state, transition.T.reshape(_BLOCK, size, size),
-            self._task.missed(arrival.T)[:, :, None], self._samples,
+            tip_of_state, transition.reshape(count, size, size),
+            task.missed(found.arrival)[:, :, None], self._samples,
         )  # fmt: skip
         residual = np.abs(of_window).max(axis=(1, 2))
-        return np.column_stack([residual, energy[0], np.abs(torque).max(axis=0)])[:count]
+        return np.column_stack([residual, found.energy, np.abs(found.limited).max(axis=1)])
 
 
 def _at_samples(
@@ -143,46 +133,20 @@ def _at_samples(
     return tips @ state[:, :, :strides]
 
 
-def _joint_at(
-    times: Sequence[ca.DM], task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
-) -> ca.DM:
-    """Angle, speed and acceleration at every node of a step, shape (3 * NODES, steps)."""
-    checked = profile.checked(coefficients, task.duration)
-    return ca.vertcat(*(row for at in times for row in profile.motion(checked, at, *task.move)[:3]))
-
-
 @lru_cache(maxsize=16)
-def _compiled(
-    plant: Plant, steps: int, names: tuple[str, ...], unbroken: bool, energy: Energy
-) -> ca.Function:
-    """(errors, joint, length of steps, target, duration, time between samples, state) -> figures.
+def _at_rest(plant: Plant, names: tuple[str, ...]) -> ca.Function:
+    """(errors, target, time between samples) -> transition between two samples, tips of the modes.
 
-    A row a plant: state on arrival; the transition of the state between two samples at rest and the
-    tips of the modes, both row by row; energy; torque at the nodes.
+    A row a plant; each matrix is laid out row by row.
     """
-    errors, joint = ca.MX.sym("e", _BLOCK, len(names)), ca.MX.sym("joint", 3 * NODES, steps)
-    length = ca.MX.sym("length", 1, steps)
-    target, duration, between = (ca.MX.sym(name) for name in ("target", "duration", "dt"))
-    initial = ca.MX.sym("initial", 2 * plant.modes)
-    columns = dict(zip(names, ca.horzsplit(errors, 1), strict=True))
-    moving = with_errors(plant, {n: ca.repmat(e, 1, steps) for n, e in columns.items()})
-    resting, modes = with_errors(plant, columns), range(plant.modes)
-    rows = [ca.repmat(row, _BLOCK, 1) for row in ca.vertsplit(joint)]
-    joints = [JointMotion(*rows[3 * node : 3 * node + 3]) for node in range(NODES)]
-    rollout = rollout_along(
-        moving, joints, duration * ca.repmat(length, _BLOCK, 1), energy, unbroken=unbroken,
-        initial=ca.vertsplit(initial),
-    )  # fmt: skip
+    errors, target, between = ca.MX.sym("e", _BLOCK, len(names)), ca.MX.sym("a"), ca.MX.sym("dt")
+    resting = with_errors(plant, dict(zip(names, ca.horzsplit(errors, 1), strict=True)))
+    modes = range(plant.modes)
     by_column = step(resting, [JointMotion(target, 0.0, 0.0)] * NODES, between).transition()[1]
     transition = [column[row] for row in range(2 * plant.modes) for column in by_column]
     of_mode = [resting.tip_displacements([float(i == j) for i in modes]) for j in modes]
     tips = [column[tip] for tip in range(plant.tips) for column in of_mode]
-    outputs = [
-        rollout.arrival, _rows(transition), _rows(tips), rollout.energy,
-        ca.horzcat(*rollout.torque),
-    ]  # fmt: skip
-    inputs = [errors, joint, length, target, duration, between, initial]
-    return ca.Function("errors", inputs, outputs, {"cse": steps <= _STEPS_OF_CSE})
+    return ca.Function("at_rest", [errors, target, between], [_rows(transition), _rows(tips)])
 
 
 def _rows(columns: list[Expression]) -> Expression:

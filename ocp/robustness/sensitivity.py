@@ -45,22 +45,10 @@ class Sensitivity:
 def sensitivities(
     task: PointToPoint, profile: JointProfile, coefficients: Sequence[float]
 ) -> tuple[Sensitivity, ...]:
-    """The derivatives of a motion's energy and arrival by every parameter of its plant.
+    """The derivatives of a motion's energy and arrival by every parameter of its plant but zeros.
 
     By central differences of CVODES, which follows each motion with a parameter a little larger and
-    a little smaller.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move; of an uncertain plant the assumed one counts.
-    profile, coefficients
-        How the joint moves.
-
-    Returns
-    -------
-    tuple of Sensitivity
-        The one that adds most vibration first; parameters that are 0 have none.
+    a little smaller. The one that adds most vibration comes first.
     """
     task = task.nominal
     joint, rows = PiecewiseMotion.of_profile(task, profile, coefficients), residual_rows(task)
@@ -85,19 +73,7 @@ def sensitivities_of_moves(
 ) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
     """What `sensitivities` gives of frequency and damping, for many moves at once by fixed steps.
 
-    Parameters
-    ----------
-    tasks : sequence of PointToPoint
-        Moves of one plant; of an uncertain one the assumed one counts.
-    profile : JointProfile
-        How the joint moves.
-    coefficients : ndarray, shape (moves, profile.size)
-        A row a move.
-
-    Returns
-    -------
-    dict of str to tuple of ndarray, shape (moves,)
-        Of ``"frequency"`` and ``"damping"``: energies [J] and residuals [m] of `Sensitivity`.
+    Of each of the two the energies [J] and residuals [m], an entry a move of one plant.
     """
     tasks = [task.nominal for task in tasks]
     steps, energy = max(map(default_steps, tasks)), tasks[0].energy

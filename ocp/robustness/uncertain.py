@@ -158,9 +158,3 @@ def with_samples(task: PointToPoint, samples: Sequence[Sequence[float]]) -> Poin
     """The move with these samples of its uncertain plant."""
     plant: Any = task.plant
     return replace(task, plant=replace(plant, samples=tuple(map(tuple, samples))))
-
-
-def with_halves(task: PointToPoint) -> PointToPoint:
-    """The move with a sample more half way from the assumed plant to each there is."""
-    known = task.plant.error_samples
-    return with_samples(task, [*known, *([error / 2 for error in sample] for sample in known)])

@@ -148,9 +148,11 @@ def _refuse_beyond(name: str, error: float) -> None:
         )
 
 
-def refuse_unknown(plant: Plant, names: Iterable[str]) -> None:
+def refuse_unknown(
+    plant: Plant, names: Iterable[str], also: Sequence[str] = (FREQUENCY, DAMPING)
+) -> None:
     """Refuse names that are no parameter of a plant; ValueError suggests the nearest."""
-    known = [*_OF_MODES, *plant.measured]
+    known = [*also, *plant.measured]
     for name in names:
         if name not in known:
             raise ValueError(has_no(plant.name, "parameter", name, known))

@@ -45,10 +45,8 @@ class PiecewiseMotion:
 
     Attributes
     ----------
-    law : Law
-        How the joint moves on each of them.
     given : ndarray, shape (numbers, pieces)
-        What the law is given on each; the last row is how long they take [s].
+        What the law is given on each piece; the last row is how long they take [s].
     has_jerk : bool
         Whether the acceleration is continuous.
     smooth : bool

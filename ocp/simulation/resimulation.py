@@ -135,16 +135,10 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
 
 @dataclass(frozen=True, eq=False)
 class Resimulation(WithPeaks):
-    """What CVODES makes of a joint motion.
+    """What CVODES makes of a joint motion; figures as of `Motion`.
 
     Attributes
     ----------
-    task : PointToPoint
-        The move.
-    joint : PiecewiseMotion
-        How the joint moves.
-    residual, energy, net_work : float
-        As of `Motion`.
     arrival : ndarray, shape (2 * modes,)
         W (m) and then W' (m/s) on arrival.
     outputs : ndarray, shape (rows of `outputs_of`, pieces * samples)

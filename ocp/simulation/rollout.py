@@ -132,7 +132,15 @@ def symbolic_rollout(
             joint._replace(jerk=there.jerk) for joint, there in zip(joints, of_jerk, strict=True)
         ]
     h = move[2] * length
-    return rollout_along(plant, joints, h, energy, unbroken=not breaks, initial=initial)
+    every_step = step(plant, joints, h)
+    W, dW, arrival = march(*every_step.transition(), h.shape, initial)
+    ddW = every_step.accelerations(W, dW)
+    states = every_step.nodes(W, dW, ddW)
+    torque = [
+        plant.torque(joint, node.W, node.dW, node.ddW)
+        for joint, node in zip(joints, states, strict=True)
+    ]
+    return SymbolicRollout(joints, states, torque, arrival, h, not breaks, energy)
 
 
 def node_times(
@@ -151,27 +159,6 @@ def node_times(
         times.append([start + share * (begin + node * length) for node in GAUSS_NODES])
         lengths.append(share * length)
     return [ca.horzcat(*of_node) for of_node in zip(*times, strict=True)], ca.horzcat(*lengths)
-
-
-def rollout_along(
-    plant: Plant,
-    joints: list[JointMotion],
-    h: Expression,
-    energy: Energy,
-    *,
-    unbroken: bool,
-    initial: Sequence[Expression] = (),
-) -> SymbolicRollout:
-    """Simulate the modes along joint motions that are known at the nodes."""
-    every_step = step(plant, joints, h)
-    W, dW, arrival = march(*every_step.transition(), h.shape, initial)
-    ddW = every_step.accelerations(W, dW)
-    states = every_step.nodes(W, dW, ddW)
-    torque = [
-        plant.torque(joint, node.W, node.dW, node.ddW)
-        for joint, node in zip(joints, states, strict=True)
-    ]
-    return SymbolicRollout(joints, states, torque, arrival, h, unbroken, energy)
 
 
 def march(
