@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import zarr
 
 Array = NDArray[np.float64]
+NEEDS = "the dataset of a sweep needs xarray and zarr: install quietarm[sweep]"
 
 
 class Store:
@@ -162,7 +163,7 @@ def _zarr() -> Any:
     try:
         import zarr
     except ImportError:
-        raise ValueError("the dataset of a sweep needs zarr: install quietarm[sweep]") from None
+        raise ValueError(NEEDS) from None
     return zarr
 
 
