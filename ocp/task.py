@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -125,6 +127,11 @@ class PointToPoint:
     ------
     ValueError
         When a value is out of range, or the plant breaks its contract.
+
+    Warns
+    -----
+    UserWarning
+        When an angle beyond a turn looks like degrees, as 30 or 22.5.
     """
 
     plant: Plant
@@ -149,6 +156,12 @@ class PointToPoint:
             if abs(angle) > MOST_ANGLE:
                 raise ValueError(
                     f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
+                )
+            if abs(angle) > 2 * math.pi and (2 * angle).is_integer():  # no multiple of pi is
+                warnings.warn(
+                    f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
+                    f"numpy.radians({angle:g})",
+                    stacklevel=4,
                 )
             self._keep(name, angle)
         for part in self.plant.parts:
