@@ -68,7 +68,7 @@ FASTEST = "fastest"
 """In the place of a duration: the shortest within the limits."""
 _BEGIN = 1.0
 """Duration [s] at which the shortest is begun to be looked for."""
-_TIME_OR_FASTEST = Parsed("time", lambda text: text if text == FASTEST else parse_time(text))
+_TIME_OR_FASTEST = Parsed("time", lambda text: text if text == FASTEST else parse_time(text), "0.8")
 BEST = "best"
 """In the place of a wait: the one of least energy."""
 _TIME_OR_BEST = Parsed("time", lambda text: text if text == BEST else parse_time(text))
@@ -80,7 +80,7 @@ def _range(text: str) -> float | tuple[float, float]:
     return (parse_time(first), parse_time(last)) if colon else parse_time(text)
 
 
-_TIME_OR_RANGE = Parsed("time", _range)
+_TIME_OR_RANGE = Parsed("time", _range, "0.8")
 
 
 def _task_options(
@@ -238,9 +238,10 @@ def task_or_path_options(command: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(command)
     def with_task(*positional: Any, path: Path | None, **named: Any) -> Any:
         if path is None:
-            for name in ("target", "duration"):
+            for name, as_one in (("target", "30deg"), ("duration", "0.8")):
                 if named[name] is None:
-                    raise click.UsageError(f"Missing option '--{name}'.")
+                    words = f"Missing option '--{name}'. Give it as --{name} {as_one}"
+                    raise click.UsageError(words)
             return command(*positional, task=_task_of(named), recorded=None, **named)
         for name in ("start", "target", "duration"):
             if typed(name):
