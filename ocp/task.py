@@ -209,7 +209,7 @@ class PointToPoint:
 
     @property
     def row(self) -> tuple[float, ...]:
-        """The move, then W and W' at the start: the parameters of every compiled function."""
+        """The move, then W and W' at the start, the parameters of every compiled function."""
         return (*self.move, *self.initial_state)
 
     @property
@@ -243,7 +243,7 @@ class PointToPoint:
 
     @property
     def limits(self) -> dict[str, float]:
-        """The limits that are set, by name of the quantity: torque, speed, ..."""
+        """The limits that are set, by name of the quantity, such as torque."""
         every = {name: getattr(self, quantity.limit) for name, quantity in QUANTITIES.items()}
         return {name: value for name, value in every.items() if value is not None}
 

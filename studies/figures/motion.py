@@ -31,7 +31,7 @@ _IN_SIGHT = 0.4
 
 _GIVE_MOTIONS = "give one motion or more, all of one duration"
 QUANTITIES_DRAWN = ("angle", "speed", "acceleration", "jerk", "deflection", "torque")
-"""What can be drawn: the joint's angle, and the quantities that a task may limit."""
+"""What can be drawn, the joint's angle, and the quantities that a task may limit."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
