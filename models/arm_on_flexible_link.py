@@ -27,7 +27,7 @@ class ArmOnFlexibleLink(Plant):
     name: ClassVar[str] = "arm-on-flexible-link"
     modes: ClassVar[int] = 1
     small_deflection: ClassVar[float | None] = 0.1 * _LENGTH
-    """A tenth of the link's length: there the linear stiffness of a cantilever is 1 %
+    """A tenth of the link's length, where the linear stiffness of a cantilever is 1 %
     off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
 
     alpha1: float = parameter(

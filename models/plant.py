@@ -78,7 +78,7 @@ class Plant(ABC):
 
     @property
     def nominal(self) -> Plant:
-        """The plant without errors: itself, unless it is an uncertain one."""
+        """The plant without errors, itself unless it is an uncertain one."""
         return self
 
     @property
@@ -168,7 +168,7 @@ class Plant(ABC):
 
     @property
     def measured(self) -> dict[str, float]:
-        """The parameters that may be wrong by a share: all but counts."""
+        """The parameters that may be wrong by a share, all but counts."""
         counts = {entry.name for entry in fields(self) if entry.metadata.get("unit") == COUNT}
         return {name: value for name, value in self.parameters.items() if name not in counts}
 

@@ -21,7 +21,7 @@ class SingleLinkManipulator(Plant):
     name: ClassVar[str] = "single-link"
     modes: ClassVar[int] = 1
     small_deflection: ClassVar[float | None] = 0.1 * _LENGTH
-    """A tenth of the plate's length: there the linear stiffness of a cantilever is 1 %
+    """A tenth of the plate's length, where the linear stiffness of a cantilever is 1 %
     off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
 
     alpha1: float = parameter(

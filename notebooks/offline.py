@@ -7,6 +7,7 @@ Equations become MathML, which browsers set themselves; slides carry reveal.js a
 
 import argparse
 import re
+import sys
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -30,6 +31,7 @@ _STYLE = """<style>
 .equation { display: flex; align-items: center; margin: 1em 0; }
 .equation div { flex: 1; }
 math { font-family: "STIX Two Math", "STIX Math", "Cambria Math", "Latin Modern Math", math; }
+details .highlight { margin-bottom: 0.7em; }
 </style>"""
 _ON_THE_WALL = """<style>
 :root { --jp-content-font-size1: 21px; --jp-code-font-size: 17px; }
@@ -48,7 +50,7 @@ _ON_THE_WALL = """<style>
 .reveal details pre { font-size: 15px; line-height: 18px; }
 .reveal img { display: block; margin: 0 auto; max-width: 100%; }
 .reveal .jp-Cell { padding: 0; }
-.reveal .jp-RenderedText pre { padding: 0; }
+.reveal .jp-RenderedText pre { padding: 0; word-break: normal; overflow-wrap: anywhere; }
 .reveal :is(.jp-InputPrompt, .jp-OutputPrompt, .jp-Collapser) { display: none; }
 .reveal .controls { font-size: 4px; }
 </style>"""
@@ -144,6 +146,9 @@ def main():
     words.add_argument("--code", action="store_true", help="slides with the code")
     words.add_argument("--output", type=Path, default=Path(), help="a folder; else the one here")
     asked = words.parse_args()
+    for notebook in asked.notebooks:
+        if not notebook.is_file():
+            sys.exit(f"{notebook}: no such notebook")
     exporter = (
         Slides(exclude_input=not asked.code, exclude_output_prompt=True, **WALL)
         if asked.slides

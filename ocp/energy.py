@@ -56,7 +56,7 @@ class Energy(ABC):
 
     @property
     def label(self) -> str:
-        """What the energy is called, as ``copper:0.12``: so it is typed, too."""
+        """What the energy is called, as it is typed, too, such as ``copper:0.12``."""
         own: Any = self
         numbers = ",".join(f"{number:.12g}" for number in astuple(own))
         return f"{self.name}:{numbers}" if numbers else self.name

@@ -134,7 +134,7 @@ class Verification:
 
     @property
     def agrees(self) -> bool:
-        """Whether the figures count as verified: within `AGREEMENT`, and `REST` at rest."""
+        """Whether the figures count as verified, within `AGREEMENT`, and `REST` at rest."""
         residual = abs(self.fixed_step_residual - self.residual_difference)
         close = abs(self.residual_difference) <= AGREEMENT * residual + REST
         return self.energy_share <= AGREEMENT and close

@@ -178,7 +178,7 @@ class Saved:
     """
 
     kind: ClassVar[str]
-    """What it is, in a word: its format is named quietarm-<kind>."""
+    """What it is, in a word; its format is named quietarm-<kind>."""
     version: ClassVar[int]
     """Version of its format; files of any other are refused."""
 
@@ -238,12 +238,12 @@ class MotionAnswer(Saved):
 
     @property
     def energy(self) -> float:
-        """F2: driving energy [J], by the independent integrator."""
+        """F2, the driving energy [J], by the independent integrator."""
         return self.motion.energy
 
     @property
     def residual(self) -> float:
-        """F1: largest absolute tip displacement after arrival [m], by the same."""
+        """F1, the largest absolute tip displacement after arrival [m], by the same."""
         return self.motion.residual
 
     @property

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -124,6 +126,11 @@ class PointToPoint:
     ------
     ValueError
         When a value is out of range, or the plant breaks its contract.
+
+    Warns
+    -----
+    UserWarning
+        When an angle beyond a turn looks like degrees, as 30 or 22.5.
     """
 
     plant: Plant
@@ -149,6 +156,12 @@ class PointToPoint:
             if abs(angle) > MOST_ANGLE:
                 raise ValueError(
                     f"{name} is {angle:g} rad; give an angle within {MOST_ANGLE:g} rad"
+                )
+            if abs(angle) > 2 * math.pi and (2 * angle).is_integer():  # no multiple of pi is
+                warnings.warn(
+                    f"{name} is {angle:g} rad, more than a turn; were degrees meant? give "
+                    f"numpy.radians({angle:g})",
+                    stacklevel=4,
                 )
             self._keep(name, angle)
         with keep_interrupts():
@@ -194,7 +207,7 @@ class PointToPoint:
 
     @property
     def row(self) -> tuple[float, ...]:
-        """The move, then W and W' at the start: the parameters of every compiled function."""
+        """The move, then W and W' at the start, the parameters of every compiled function."""
         return (*self.move, *self.initial_state)
 
     @property
@@ -228,6 +241,6 @@ class PointToPoint:
 
     @property
     def limits(self) -> dict[str, float]:
-        """The limits that are set, by name of the quantity: torque, speed, ..."""
+        """The limits that are set, by name of the quantity, such as torque."""
         every = {name: getattr(self, quantity.limit) for name, quantity in QUANTITIES.items()}
         return {name: value for name, value in every.items() if value is not None}

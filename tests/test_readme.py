@@ -138,7 +138,7 @@ def _rows(table):
 
 
 def test_the_table_is_that_of_a_reproduction():
-    columns = {"ZV shaper": "ZV", "paper's box": "boxed gradient", "no box": "gradient"}
+    columns = {"ZV shaper": "ZV", "in the paper's box": "boxed gradient", "no box": "gradient"}
     measured = {}  # by move and system
     *parts, like = (ROOT / "docs/systems.md").read_text().split("\n## ")[1:]
     for part in parts:

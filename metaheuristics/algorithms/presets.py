@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 FEW = 20
 """With fewer generations a method has hardly begun."""
 PAPER_BOX: dict[str, float] = {"single-link": 0.2, "arm-on-flexible-link": 0.5}
-"""Largest absolute coefficient in the paper's searches, by plant: eqs (12) and (17)."""
+"""Largest absolute coefficient in the paper's searches, by plant, of eqs (12) and (17)."""
 POPULATION, GENERATIONS = 100, 400
 """Of the methods that the paper does not use: pymoo's own population, and in all as many candidates
 as the paper gives VEPSO."""
@@ -322,6 +322,6 @@ _ALL = (
 )  # fmt: skip
 
 PRESETS: Mapping[str, Preset] = {preset.name: preset for preset in _ALL}
-"""By name. Section 3.1: 100 particles in a swarm, 200 iterations. Section 3.2: population 200, 500
-generations, crossover 0.8, mutation 0.01 (`nsga2.py`). All other settings
-are pymoo's defaults."""
+"""By name. Section 3.1 has 100 particles in a swarm, 200 iterations. Section 3.2 has population
+200, 500 generations, crossover 0.8, mutation 0.01 (`nsga2.py`). All other settings are pymoo's
+defaults."""

@@ -245,4 +245,4 @@ _ALL = (
 )  # fmt: skip
 
 PROBLEMS: Mapping[str, NamedProblem] = MappingProxyType({problem.name: problem for problem in _ALL})
-"""By name: plant, angle and duration; six terms and no limits where nothing else is said."""
+"""By name, of plant, angle and duration; six terms and no limits where nothing else is said."""

@@ -73,14 +73,14 @@ class JointProfile(ABC):
         return 0.0
 
     random_starts: ClassVar[int] = 1
-    """The gradient's random starts for each that is asked for: several where minima are many."""
+    """The gradient's random starts for each that is asked for, several where minima are many."""
 
     # Where coefficients are looked for, in this one place: for coefficients that are not all of one
     # kind, such as weights and widths, a family says its own.
 
     @property
     def plain(self) -> NDArray[np.float64]:
-        """Coefficients of the first start, shape (size,): a motion like the plain cycloid."""
+        """Coefficients of the first start, shape (size,), a motion like the plain cycloid."""
         return np.zeros(self.size)
 
     def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -87,7 +87,7 @@ class ShapedCycloid(JointProfile):
 
     @property
     def size(self) -> int:
-        """None: the shaper is known from the plant."""
+        """None, as the shaper is known from the plant."""
         return 0
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
@@ -88,6 +89,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command and end the process with its status."""
     if arguments is None:  # pictures go to files: no window, whatever the user's notebooks use
         os.environ["MPLBACKEND"] = "agg"
+        warnings.filterwarnings("ignore", ".* more than a turn")  # they had a unit
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
     status = NOT_SOLVED

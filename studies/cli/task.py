@@ -74,7 +74,7 @@ BEST = "best"
 
 
 def _time_or(word: str) -> Parsed:
-    return Parsed("time", lambda text: text if text == word else parse_duration(text))
+    return Parsed("time", lambda text: text if text == word else parse_duration(text), "0.8")
 
 
 def _range(text: str) -> float | tuple[float, float]:
@@ -162,7 +162,7 @@ def _task_or_durations(named: dict[str, Any]) -> dict[str, Any]:
 def _task_or_path(named: dict[str, Any]) -> dict[str, Any]:
     path: Path | None = named.pop("path")
     if path is None:
-        _need_move(named, "Missing option '--{}'.")
+        _need_move(named, "Missing option '--{0}'. Give it as --{0} {1}")
         return {"task": _task_of(named), "recorded": None}
     refuse_typed(("start", "target", "duration"), "is in the file of --path; leave it out")
     refuse_typed(("after",), "is not for a --path; give what rings as --initial")
@@ -207,9 +207,9 @@ def _grid_or_problems(named: dict[str, Any]) -> dict[str, Any]:
 
 
 def _need_move(named: dict[str, Any], words: str) -> None:
-    for name in ("target", "duration"):
+    for name, example in (("target", "30deg"), ("duration", "0.8")):
         if named[name] is None:
-            raise click.UsageError(words.format(name))
+            raise click.UsageError(words.format(name, example))
 
 
 _AXES: dict[str, Any] = {"angle": _axis_of(parse_joint_angle), "time": _axis_of(parse_duration)}
@@ -231,7 +231,7 @@ task_or_fastest_options = _with_task(
 """It gets `fastest`, too, and as `best_after` the plan after which the best wait is looked for."""
 task_or_durations_options = _with_task(
     _task_or_durations,
-    time=Parsed("time", _range),
+    time=Parsed("time", _range, "0.8"),
     words="Travelling time; with --over duration two, as 600ms:1.4s.",
 )
 """The duration may be a range: it gets the ends of that as `durations`, too, or None."""

@@ -33,8 +33,8 @@ from quietarm.studies.display.saving import STDOUT
 class Parsed(click.ParamType):
     """A value read by a function that raises ValueError with a message for the user."""
 
-    def __init__(self, name: str, parse: Callable[[str], Any]) -> None:
-        self.name, self.parse = name, parse
+    def __init__(self, name: str, parse: Callable[[str], Any], example: str = "") -> None:
+        self.name, self.parse, self._example = name, parse, example
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Read the text; a click error names the option."""
@@ -44,6 +44,12 @@ class Parsed(click.ParamType):
             return self.parse(value)
         except ValueError as error:
             self.fail(str(error), param, ctx)
+
+    def get_missing_message(
+        self, param: click.Parameter, ctx: click.Context | None = None
+    ) -> str | None:
+        """How the option is given."""
+        return f"Give it as {param.opts[0]} {self._example}" if self._example else None
 
 
 class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
@@ -126,10 +132,10 @@ METHOD_SETTING = Parsed(
 )
 ERROR = Parsed("name=share", parse_error)
 ENERGY = Parsed("energy", parse_energy)
-ANGLE = Parsed("angle", parse_joint_angle)
+ANGLE = Parsed("angle", parse_joint_angle, "30deg")
 LENGTH = Parsed("length", parse_length)
 RESIDUAL = Parsed("length", parse_residual)
-TIME = Parsed("time", parse_duration)
+TIME = Parsed("time", parse_duration, "0.8")
 TORQUE = Parsed("torque", parse_torque)
 SHARE = Parsed("share", parse_share)
 MODES = Parsed("W:W'", parse_state)

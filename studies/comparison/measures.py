@@ -128,7 +128,7 @@ class Comparison:
 
     @property
     def of_floor(self) -> str:
-        """What the floor's motions do: all that is asked of an uncertain plant is not known."""
+        """What the floor's motions do; all that is asked of an uncertain plant is not known."""
         certain = not self.task.errors
         return "at rest" if certain else "at rest on the assumed plant"
 

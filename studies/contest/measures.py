@@ -41,7 +41,7 @@ class Field:
 
     @property
     def own(self) -> bool:
-        """Whether what they had found on the way is known: they were run here, or recorded."""
+        """Whether what they had found on the way is known, as they were run here, or recorded."""
         return all(run.marks for run in self.runs)
 
     @property
@@ -189,7 +189,7 @@ class Arena:
 
     @property
     def alike(self) -> list[Field]:
-        """Those that are compared by tests: of runs with one number of evaluations, known here."""
+        """Those that are compared by tests, of runs with one number of evaluations, known here."""
         first = [field for field in self.fields if field.here] or self.own[:1]
         budgets = {budget for field in first for budget in field.budgets}
         return [field for field in self.fields if field.here or field.budgets == budgets]

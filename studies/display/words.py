@@ -24,6 +24,11 @@ def counted(number: int, what: str) -> str:
     return f"{number} {what}{'s' * (number != 1)}"
 
 
+def raised(unit: str) -> str:
+    """A unit as it is drawn, without a formula: rad/s²."""
+    return unit.replace("^2", "²").replace("^3", "³")
+
+
 REST = 1e-6
 """Residuals below this [m] count as rest in words."""
 

@@ -12,6 +12,7 @@ from quietarm.models import Body
 from quietarm.ocp import Plan
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.animation.cast import cast_of
+from quietarm.studies.display.words import raised
 from quietarm.studies.explore.state import Explored
 from quietarm.studies.figures import Line
 from quietarm.studies.figures.looks import BLUE, RED
@@ -27,7 +28,7 @@ _DOT = 1e-6
 _IN_SIGHT = 0.4
 """A limit is drawn where the motion comes to this share of it; else it would flatten the motion."""
 TITLES = {"angle": "joint angle [deg]"} | {
-    name: f"{quantity.label} [{'mm' if quantity.unit == 'm' else quantity.unit}]"
+    name: f"{quantity.label} [{'mm' if quantity.unit == 'm' else raised(quantity.unit)}]"
     for name, quantity in QUANTITIES.items()
 }
 """The panels, by the names of their quantities."""
@@ -43,7 +44,7 @@ class Curve(NamedTuple):
 
 
 def panels(explored: Explored) -> dict[str, list[Curve]]:
-    """Each quantity over time: the plain cycloid in grey, the motion in hand, its limits."""
+    """Each quantity over time: the plain cycloid in grey, the motion in hand, limits, arrival."""
     found: dict[str, list[Curve]] = {name: [] for name in TITLES}
     for plan, colour in ((explored.cycloid, GREY), (explored.plan, BLUE)):
         at = plan.trajectory
@@ -62,6 +63,9 @@ def panels(explored: Explored) -> dict[str, list[Curve]]:
         if explored.plan.motion.peak(name) >= _IN_SIGHT * limit:
             level = _factor(name) * limit * np.ones(2)
             found[name] += [Curve(ends, _plain(side * level), RED, "dashed") for side in (1, -1)]
+    for curves in found.values():
+        ends = [pick(y for curve in curves for y in curve.y) for pick in (min, max)]
+        curves.append(Curve([explored.task.duration] * 2, ends, INK, "dotted"))
     return found
 
 

@@ -35,7 +35,7 @@ def of_file(path: Path) -> Explored:
         front = load_front(path)
         bound = front.settings.get("bound")
         stillest = evaluate_coefficients(
-            front.task, front.points[0].coefficients, profile=front.profile
+            front.task, front.points[0].coefficients, profile=front.profile, method=front.method
         )
         return Explored(stillest, bound=None if bound is None else float(bound), front=front)
     (plan,) = load_plans([path]).values()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from html import escape
@@ -23,7 +23,7 @@ from quietarm.studies.explore.drawn import GREY, TITLES
 from quietarm.studies.explore.plots import Plots
 from quietarm.studies.explore.state import FILES, Dial, Explored
 from quietarm.studies.figures.looks import RED
-from quietarm.studies.reports.plan import plan_document
+from quietarm.studies.reports.plan import HARD_REMEDY, plan_document
 
 _WAIT = 5
 """Milliseconds in which changes are gathered: a slider sends more of them than are drawn."""
@@ -52,8 +52,10 @@ class Page:
         self._plant = Select(title="plant", options=list(plants), **_WIDE)
         self._plant.on_change("value", self._on_plant)
         self._buttons = [
-            _button("Plan", self._on_plan, button_type="primary"), _button("Front", self._on_front)
-        ]  # fmt: skip
+            _button("Plan", self._on_plan, button_type="primary"),
+            _button("Front", self._on_front),
+            _button("Plain cycloid", self._on_plain),
+        ]
         for root in self._roots():
             document.add_root(root)
         document.title = "quietarm explore"
@@ -131,6 +133,10 @@ class Page:
             text = self._explored.file(name)
             self._file.data = {"name": [name], "text": [text], "number": [self._saved]}
 
+    def _on_plain(self) -> None:
+        if self._set():
+            self._answer(self._explored.plain)
+
     def _on_plan(self) -> None:
         if self._set():
             self._begin(self._explored.solved, "solving ...")
@@ -181,9 +187,8 @@ class Page:
         """Bring everything on the page to the motion in hand."""
         explored = self._explored
         self._fill()
-        facts = next(one for one in plan_document(explored.plan).blocks if isinstance(one, Facts))
         self._figures.text = "".join(
-            f"<div><b>{escape(name)}</b> {escape(value)}</div>" for name, value in facts.rows
+            f"<div><b>{escape(name)}</b> {escape(value)}</div>" for name, value in _facts(explored)
         )
         self._plots.show(explored)
 
@@ -199,6 +204,18 @@ class Page:
                     field.update(value=shown[name])
         self._plant.value = plant_words(self._explored.task.plant)
         self._filling = False
+
+
+def _facts(explored: Explored) -> Iterator[tuple[str, str]]:
+    """The figures of `quietarm plan`, in the words of the page."""
+    facts = next(one for one in plan_document(explored.plan).blocks if isinstance(one, Facts))
+    for name, value in facts.rows:
+        if name == "time":
+            yield "computed in", value
+        elif name == "status" and explored.of_front:
+            yield name, "a point of the front"
+        else:
+            yield name, value.replace(HARD_REMEDY, "enter what the drive can do under Limits")
 
 
 def _button(label: str, pressed: Callable[[], None], **look: Any) -> Button:

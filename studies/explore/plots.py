@@ -27,6 +27,8 @@ _HIGH, _HIGHER = 200, 280
 _CURVE = "xs", "ys", "colour", "dash"
 _BODY = "xs", "ys", "colour", "width"
 _POINT = "residual", "energy"
+_TIME = "time [s]  (dotted: arrival)"
+_NO_FRONT = "Press Front to see what each millimetre saves"
 _HAND_OUT = "JSON.parse(news.data.text[0]).forEach((columns, i) => { sources[i].data = columns; });"
 """One message for all plots, so that the browser draws once; Bokeh looks at every number of a list,
 and not into a text."""
@@ -43,8 +45,9 @@ class Plots:
     def __init__(self, document: Document, pick: Callable[[int], None]) -> None:
         self._sources: list[ColumnDataSource] = []
         self.roots = [self._stage(), self._tradeoff(pick)]
-        self.roots.append(self._panel("robustness", "residual [mm]", "error of the frequency [%]"))
-        self.roots += [self._panel(name, title, "time [s]") for name, title in TITLES.items()]
+        wrong = "residual if the frequency is wrong [mm]"
+        self.roots.append(self._panel("robustness", wrong, "error of the frequency [%]"))
+        self.roots += [self._panel(name, title, _TIME) for name, title in TITLES.items()]
         self._news = ColumnDataSource({"text": []})
         self.roots[0].tags = [self._news]  # else it would be no part of the document
         hand_out = CustomJS(args={"news": self._news, "sources": self._sources}, code=_HAND_OUT)
@@ -54,6 +57,9 @@ class Plots:
     def show(self, explored: Explored) -> None:
         """Show another motion in all plots."""
         self._points.selected.indices = []  # so that the same point can be clicked again
+        empty = explored.front is None
+        self._front.title.text = _NO_FRONT if empty else "front (cross: this motion)"
+        self._front.axis.visible = not empty
         curves = [robustness_curves(explored), *panels(explored).values()]
         columns = [*_of_stage(explored), *_of_front(explored), *map(_of_curves, curves)]
         self._news.data = {"text": [json.dumps(columns)]}
@@ -86,7 +92,8 @@ class Plots:
 
     def _tradeoff(self, pick: Callable[[int], None]) -> Any:
         """The front, and where the motion in hand lies."""
-        plot = _plot("front", "front: energy [J] over residual [mm]", tools="tap")
+        self._front = plot = _plot("front", _NO_FRONT, tools="tap")
+        plot.xaxis.axis_label, plot.yaxis.axis_label = "residual F1 [mm]", "energy F2 [J]"
         self._points, here = self._source(*_POINT), self._source(*_POINT)
 
         def picked(attribute: str, old: Sequence[int], new: Sequence[int]) -> None:
@@ -96,7 +103,8 @@ class Plots:
         self._points.selected.on_change("indices", picked)
         plot.line(*_POINT, source=self._points, color=BLUE)
         plot.scatter(*_POINT, source=self._points, color=BLUE, size=9, nonselection_alpha=1)
-        plot.scatter(*_POINT, source=here, color=RED, marker="x", size=12, line_width=2)
+        above = {"size": 20, "line_width": 2.5, "level": "overlay"}
+        plot.scatter(*_POINT, source=here, color=RED, marker="x", **above)
         return plot
 
     def _panel(self, name: str, title: str, below: str) -> Any:
@@ -130,11 +138,11 @@ def _of_stage(explored: Explored) -> list[Mapping[str, Any]]:
 
 
 def _of_front(explored: Explored) -> list[Mapping[str, Any]]:
-    front, plan = explored.front, explored.plan
-    points = [] if front is None else front.points
+    front = explored.front
+    points_and_here = ([], []) if front is None else (front.points, [explored.plan])
     return [
         {"residual": [1e3 * one.residual for one in of], "energy": [one.energy for one in of]}
-        for of in (points, [plan])
+        for of in points_and_here
     ]
 
 

@@ -116,7 +116,7 @@ class Explored:
         for name, quantity in QUANTITIES.items():
             dials[quantity.limit] = Dial.of(name, quantity.unit, _LEAST, _MOST, optional=True)
         dials["residual_limit"] = Dial.of("residual", "m", 0.0, _MOST, optional=True)
-        dials["bound"] = Dial.of("coefficient", "-", _LEAST, _MOST, optional=True)
+        dials["bound"] = Dial.of("largest |a_n|", "-", _LEAST, _MOST, optional=True)
         return dials | {name: Dial(name, -self.reach, self.reach) for name in self.coefficients}
 
     @cached_property
@@ -160,6 +160,10 @@ class Explored:
     def _axes(self) -> list[str]:
         return [axis.name for axis in self.library.grid.axes] if self.library else []
 
+    def plain(self) -> Explored:
+        """The same move with the coefficients from which the gradient starts first."""
+        return self.changed(dict(zip(self.coefficients, self.plan.profile.plain, strict=True)))
+
     def of_plant(self, plant: Plant) -> Explored:
         """The same move and motion of another plant, which begins at rest."""
         task = replace(self.task, plant=plant, initial=None, final=None)
@@ -189,6 +193,11 @@ class Explored:
             settings=self.front.settings,
         )  # fmt: skip
         return replace(self, plan=plan)
+
+    @property
+    def of_front(self) -> bool:
+        """Whether the motion is a point of the front."""
+        return self.front is not None and self.plan.provenance.method == self.front.method
 
     @property
     def cycloid(self) -> Plan:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from quietarm.metaheuristics.ensemble import SEARCH_RESIDUAL, energies_at, energy_at, hypervolumes
 from quietarm.ocp import Front
-from quietarm.studies.display.words import millimetres, title_of
+from quietarm.studies.display.words import REST, millimetres, title_of
 from quietarm.studies.figures.axes import (
     axes_or_new,
     draw_front,
@@ -40,7 +40,8 @@ def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib.axes.Axes
-        The axes, with a legend where there are a few fronts.
+        The axes, with a legend where there are a few fronts. Residuals below 0.001 mm, which count
+        as rest, are drawn there.
 
     Raises
     ------
@@ -49,16 +50,17 @@ def draw_fronts(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     """
     ax = axes_or_new(ax)
     names = _names(fronts)
+    drawn = [np.maximum(front.residuals, REST) for front in fronts]  # what rests has no logarithm
     for i, front in enumerate(fronts):
         if front.points:
             style, words = ("-", "") if front.complete else ("--", ", interrupted")
             draw_front(
-                ax, front.residuals, front.energies,
+                ax, drawn[i], front.energies,
                 exact=method_of(front.method).kind is Kind.GRADIENT,
                 color=look(i).colour, marker=look(i).mark, linestyle=style,
                 markersize=3, alpha=0.8, label=f"{names[i]}{words}",
             )  # fmt: skip
-    scale_residuals(ax, [point.residual * 1e3 for front in fronts for point in front.points])
+    scale_residuals(ax, [1e3 * residual for of in drawn for residual in of])
     ax.set_title("fronts" if len(fronts) > 1 else "front", fontsize=10)
     name_objectives(ax)
     if 1 < len(fronts) <= _MOST_NAMED and ax.lines:

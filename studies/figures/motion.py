@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.display.words import error_words, title_of
+from quietarm.studies.display.words import error_words, raised, title_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -31,7 +31,7 @@ _IN_SIGHT = 0.4
 
 _GIVE_MOTIONS = "give one motion or more, all of one duration"
 QUANTITIES_DRAWN = ("angle", "speed", "acceleration", "jerk", "deflection", "torque")
-"""What can be drawn: the joint's angle, and the quantities that a task may limit."""
+"""What can be drawn, the joint's angle, and the quantities that a task may limit."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
@@ -101,7 +101,7 @@ def draw_quantity(motions: Motions, quantity: str, ax: Axes | None = None) -> Ax
             ax.plot(at.time, column, color=line.colour, **_looks(line, i))
     ax.axvline(lines[0].plan.task.duration, color="0.6", linewidth=0.8, linestyle="--")
     limits = [line.plan.task.limits.get(quantity) for line in lines]
-    words = [f"{name} [{unit}]"]
+    words = [f"{name} [{raised(unit)}]"]
     words += _draw_limits(ax, [scale * limit for limit in limits if limit is not None], values)
     words += _leave_out_jolts(ax, lines, values)
     ax.set_title(", ".join(words), **TITLE)

@@ -16,6 +16,7 @@ from quietarm.studies.document.table import Column, Table
 Row = tuple[str, str]
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
+HARD_REMEDY = "give what the drive can do, as --acceleration-limit or --torque-limit"
 _SEEN = 1e-6
 """A joint turns back where it does so by more than this [rad]."""
 _ROUNDING = 1e-12
@@ -148,10 +149,7 @@ def _hard(name: str, task: PointToPoint, peak: float) -> str:
     cycloid = 2 * math.pi * abs(task.span) / task.duration**2  # of eq (1) with U = t / TE
     if name != "acceleration" or task.limits or peak <= _HARD * cycloid:
         return ""
-    return (
-        f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; give what the drive can do, "
-        "as --acceleration-limit or --torque-limit)"
-    )
+    return f"  (warning: {peak / cycloid:.2g} times the plain cycloid's; {HARD_REMEDY})"
 
 
 def _large(task: PointToPoint, motion: Motion) -> str:

@@ -14,7 +14,7 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.sweep.asked import Sweep
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid
 from quietarm.studies.sweep.refine import swept
-from quietarm.studies.sweep.store import Store
+from quietarm.studies.sweep.store import NEEDS, Store
 from quietarm.studies.sweep.work import run_sweep
 
 if TYPE_CHECKING:
@@ -68,7 +68,10 @@ def sweep(
     ValueError
         When a name or a number is out of range.
     """
-    import xarray as xr
+    try:
+        import xarray as xr
+    except ImportError:
+        raise ValueError(NEEDS) from None
 
     units = {entry.name: entry.metadata.get("unit", "-") for entry in fields(task.plant.nominal)}
     units |= OF_MOVES

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import zarr
 
 Array = NDArray[np.float64]
+NEEDS = f"the dataset of a sweep needs xarray and zarr; {install('sweep')}"
 
 
 class Store:
@@ -152,7 +153,7 @@ def _zarr() -> Any:
     try:
         import zarr
     except ImportError:
-        raise ValueError(f"the dataset of a sweep needs zarr; {install('sweep')}") from None
+        raise ValueError(NEEDS) from None
     return zarr
 
 

@@ -37,6 +37,11 @@ def test_one_becomes_a_page(tmp_path):
     check_whole(page.read_text(), path)
 
 
+def test_a_notebook_that_is_not_there_is_told_in_a_line():
+    said = subprocess.run([sys.executable, OFFLINE, "99.ipynb"], capture_output=True, text=True)
+    assert (said.returncode, said.stderr) == (1, "99.ipynb: no such notebook\n")
+
+
 @pytest.fixture(scope="module")
 def slides_of():
     """It reads the templates of pages once."""

@@ -28,3 +28,12 @@ def test_a_number_out_of_range_is_named_with_its_value(name, value):
         qa.PointToPoint(**task)
     assert "\n" not in str(error.value)
     assert f"{value:g}" in str(error.value)
+
+
+@pytest.mark.parametrize("angle", [30, -90.0, 22.5])
+def test_degrees_are_warned_of_and_several_turns_are_not(angle):
+    link = qa.SingleLinkManipulator()
+    with pytest.warns(UserWarning, match="more than a turn; .* give numpy.radians") as told:
+        qa.PointToPoint(link, target=angle, duration=0.8)
+    assert told[0].filename == __file__
+    qa.PointToPoint(link, target=math.radians(720), duration=3.0)

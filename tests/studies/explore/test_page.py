@@ -100,6 +100,9 @@ def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     api.expect(figures(page)).to_contain_text("found a local optimum")
     assert energy(page) == pytest.approx(0.0237, abs=5e-5)  # README
     api.expect(page.get_by_label("a6")).not_to_have_value("0")
+    button(page, "Plain cycloid").click()
+    api.expect(page.get_by_label("a6")).to_have_value("0")
+    assert energy(page) == cycloid
     page.set_viewport_size({"width": 390, "height": 844})
     page.get_by_label("plant").select_option("dual-link")
     api.expect(figures(page)).to_contain_text("dual-link, 0 to 30 deg")
@@ -123,6 +126,8 @@ def test_a_click_on_the_front_shows_its_motion_and_it_is_downloaded(page):
     api.expect(said(page)).to_have_text("click a point of the front to see its motion")
     page.mouse.click(*page.evaluate(PLACE, 10))
     api.expect(figures(page)).to_contain_text(re.compile(r"residual \(F1\) 1\d\.\d mm"))
+    api.expect(figures(page)).to_contain_text("enter what the drive can do under Limits")
+    api.expect(figures(page)).to_contain_text("a point of the front")
     begins = {"plan.json": '{\n  "format": "quietarm-plan"', "move.csv": "time_s,"}
     begins |= dict.fromkeys(("move.c", "move.h"), "/* move: ")
     for name in (*begins, "move.h"):  # the last one twice

@@ -90,6 +90,8 @@ def test_a_point_of_the_front_is_picked_and_another_move_has_none(begun):
     picked = now.picked(7)
     assert picked.plan.coefficients == point.coefficients
     assert picked.plan.energy == pytest.approx(point.energy, rel=1e-9)
+    assert (picked.of_front, picked.plain().of_front) == (True, False)
+    assert picked.plain().plan.coefficients == (0.0,) * 6
     assert picked.changed({"a1": 0.1}).front is now.front
     assert picked.changed({"duration": 0.9}).front is None
     assert picked.changed({"bound": None}).front is None
@@ -111,8 +113,10 @@ def test_the_menu_has_the_plant_in_hand_and_all_others():
 def test_the_panels_have_the_motion_its_cycloid_and_limits_that_are_near(begun):
     now = begun.changed({"torque_limit": 0.3, "speed_limit": 50.0})
     drawn = panels(now)
-    assert [curve.dash for curve in drawn["torque"]] == ["solid", "solid", "dashed", "dashed"]
-    assert [curve.dash for curve in drawn["speed"]] == ["solid", "solid"]  # far off
+    dashes = [curve.dash for curve in drawn["torque"]]
+    assert dashes == ["solid", "solid", "dashed", "dashed", "dotted"]
+    assert [curve.dash for curve in drawn["speed"]] == ["solid", "solid", "dotted"]  # far off
+    assert drawn["speed"][-1].x == [0.8, 0.8]  # the arrival
     motion = drawn["deflection"][1]
     assert max(map(abs, motion.y)) == pytest.approx(1e3 * now.plan.motion.peak_deflection, rel=1e-2)
     assert drawn["angle"][1].y[-1] == pytest.approx(30.0)

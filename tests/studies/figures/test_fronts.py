@@ -111,7 +111,7 @@ def test_interrupted_searches_are_drawn_but_counted_in_no_quartile(front_of, fro
         ((0.2, 9.0), "log"),
         ((0.3, 80.0), "log"),
         ((1e-6, 80.0), "log"),
-        ((0.0, 80.0), "linear"),  # a residual of 0 has no logarithm
+        ((0.0, 80.0), "log"),  # rest is drawn at 0.001 mm
         ((2.0,), "linear"),
     ],
 )

@@ -20,7 +20,7 @@ from quietarm.studies.figures import (
 TITLES = [
     "joint angle [rad]",
     "joint speed [rad/s]",
-    "joint acceleration [rad/s^2]",
+    "joint acceleration [rad/s²]",
     "tip displacement [mm]",
     "joint torque [N m]",
 ]
@@ -189,7 +189,7 @@ def test_the_jerk_is_drawn_where_a_task_limits_it(task):
     # the cycloid's largest: span (2 pi)^2 / duration^3 = 40.4 rad/s^3
     limited = evaluate_coefficients(dataclasses.replace(task, jerk_limit=50.0), [])
     titles = [axis.get_title(loc="left") for axis in panels(motion_figure([Line(limited, "it")]))]
-    assert "(d) joint jerk [rad/s^3]" in titles
+    assert "(d) joint jerk [rad/s³]" in titles
     assert len(titles) == 6
     axis = draw_quantity([Line(limited, "it")], "jerk")
     assert limits(axis) == [-50.0, 50.0]
