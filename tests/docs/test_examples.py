@@ -1,6 +1,5 @@
 """The examples in README and docs run as they stand, and do what the page says."""
 
-import inspect
 import math
 import re
 import shlex
@@ -13,11 +12,10 @@ from pathlib import Path
 import pytest
 import quietarm.studies.reports.comparison
 import quietarm.studies.study.work
-from pages import COMMAND_BLOCKS, DOCS, PAGES, blocks
+from pages import COMMAND_BLOCKS, PAGES, blocks
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Front, Plan, PointToPoint, energy_floor, evaluate_coefficients
 from quietarm.ocp.floor import search as floor_search
-from quietarm.studies import figures
 from quietarm.studies.cli import main
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
@@ -140,19 +138,6 @@ def test_a_cell_of_the_sweep_of_the_page_is_found(tmp_path, monkeypatch, called)
     assert called([*shlex.split(COMMAND_BLOCKS["sweeps-0"][0])[1:], "--quiet"])[0] == 0
     energy = float(run_python(CELL, tmp_path).split()[0])
     assert 0.02 < energy < 0.03  # README: the link's first move takes 0.0237 J
-
-
-def test_the_functions_that_draw_are_public_and_documented():
-    named = set(re.findall(r"`((?:draw_|compare_)\w+|\w+_figure)`", DOCS["pictures"]))
-    assert named <= set(figures.__all__)
-    assert {name for name in figures.__all__ if name.startswith("draw_")} <= named
-    for name in figures.__all__:
-        if name.startswith("draw_"):
-            function = getattr(figures, name)
-            given = inspect.signature(function).parameters["ax"]
-            assert (given.default, given.annotation) == (None, "Axes | None")
-            assert inspect.signature(function).return_annotation == "Axes"
-            assert len(function.__doc__) > 100
 
 
 def test_the_example_counts_the_modes_that_a_move_needs(tmp_path):

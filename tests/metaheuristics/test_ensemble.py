@@ -1,6 +1,5 @@
 """Many seeds: the same fronts however many processes, and none lost to Ctrl-C or to a death."""
 
-import dataclasses
 import math
 import multiprocessing
 import signal
@@ -15,7 +14,6 @@ from quietarm.metaheuristics.ensemble import (
     Spread,
     energies_at,
     energy_at,
-    hypervolumes,
     search_many,
 )
 from quietarm.models import SingleLinkManipulator
@@ -49,10 +47,6 @@ def _no_process_is_left():
 
 
 # -- the spread --
-
-
-def test_quartiles_of_five_seeds_are_the_second_third_and_fourth():
-    assert Spread.of([5.0, 1.0, 4.0, 2.0, 3.0]) == Spread(2.0, 3.0, 4.0, count=5, seeds=5)
 
 
 @given(st.lists(st.floats(-1e6, 1e6) | st.just(math.nan) | st.just(math.inf), max_size=9))
@@ -89,12 +83,6 @@ def test_seeds_that_never_arrive_still_are_counted():
     none = energies_at(fronts, 0.1e-3)
     assert (none.count, none.seeds) == (0, 4)
     assert none.median == math.inf
-
-
-def test_the_hypervolume_is_that_of_the_last_generation():
-    fronts = [front(shares=shares) for shares in ([0.1, 0.5], [0.2, 0.75], [0.3, 0.625])]
-    assert hypervolumes(fronts) == Spread(0.5625, 0.625, 0.6875, count=3, seeds=3)
-    assert hypervolumes([front()]).median == 0.0
 
 
 # -- the searches --
@@ -146,18 +134,6 @@ def test_ctrl_c_ends_processes_and_keeps_what_they_found():
     for found in fronts:
         assert found.points
         assert found.evaluations == 40 * len(found.history)  # whole generations
-
-
-def test_a_front_goes_to_another_process_and_back_whole():
-    # what the processes rely on: every field, also one that is not compared, and read-only entries
-    found = search(TASK, "vepso", **SMALL)
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
-    theirs.send(found)
-    same = ours.recv()
-    assert same == found
-    assert same.seconds == found.seconds
-    assert dataclasses.asdict(same) == dataclasses.asdict(found)
 
 
 @pytest.mark.parametrize("name", ["checkpoint", "resume"])

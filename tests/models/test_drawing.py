@@ -63,11 +63,6 @@ def test_a_plant_without_a_drawing_is_a_straight_link_for_each_tip():
     ]  # fmt: skip
 
 
-def test_links_bend_and_joints_do_not():
-    first, second, joint = qa.DualLinkManipulator().structure(0.0, [0.0, 0.0])
-    assert [body.rigid for body in (first, second, joint)] == [False, False, True]
-
-
 @pytest.mark.parametrize(
     ("plant", "length"),  # of the paper's plate and link
     [

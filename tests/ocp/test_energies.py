@@ -142,20 +142,6 @@ def test_a_front_by_the_gradient_is_of_the_tasks_energy(task):
         assert point.energy == pytest.approx(again.energy, rel=1e-6)
 
 
-def test_robustness_without_errors_gives_the_plans_own_energy(task, solved):
-    plan = solved(task)
-    motion = task, plan.profile, plan.coefficients
-    sweep = qa.evaluate_robustness(*motion, {"frequency": 0.1}, samples=50).sweeps[0]
-    middle = sweep.figures.energy[sweep.errors == 0]
-    assert middle == pytest.approx([plan.energy], rel=1e-5)
-
-
-def test_an_energy_is_saved_and_loaded_to_an_equal_value(task, solved, tmp_path):
-    plan = solved(task)
-    plan.save(tmp_path / "plan.json")
-    assert qa.Plan.load(tmp_path / "plan.json") == plan
-
-
 def test_an_energy_that_is_not_known_is_refused(tasks, solved, tmp_path):
     path = tmp_path / "plan.json"
     solved(replace(tasks["single link"], energy=ENERGIES["mixed"])).save(path)
@@ -174,14 +160,6 @@ def test_energies_are_values():
     for wrong in (lambda: qa.CopperLoss(0.0), lambda: -1 * a):
         with pytest.raises(ValueError, match="give a positive number"):
             wrong()
-
-
-def test_tasks_of_two_energies_are_two(tasks):
-    one = tasks["single link"]
-    other = replace(one, energy=qa.PositivePower())
-    assert one != other
-    with pytest.raises(ValueError, match="move 2 has another plant or energy"):
-        qa.plan_moves([one, other])
 
 
 def test_a_smooth_step_is_integrated_exactly_up_to_degree_five():

@@ -19,7 +19,10 @@ def _swallow_ctrl_c():
         time.sleep(1.0)  # Python runs the handler at the next opportunity, at once
 
 
-@pytest.mark.parametrize("error", [None, AttributeError("'NoneType' object has no attribute 'T'")])
+@pytest.mark.parametrize(
+    "error",
+    [AttributeError("'NoneType' object has no attribute 'T'")],
+)
 def test_a_swallowed_ctrl_c_comes_after_the_block_in_place_of_errors_that_it_causes(error):
     def work():
         with keep_interrupts():

@@ -32,13 +32,7 @@ from quietarm.studies.reproduction import recompute
 
 
 @pytest.fixture(scope="session")
-def begun():
-    """The names that the one reproduction reported as it began its solves and searches."""
-    return []
-
-
-@pytest.fixture(scope="session")
-def reproduction(begun):
+def reproduction():
     """The paper recomputed, once for all tests.
 
     Searches, floors and the solves with other profiles are cut short: how well they find is tested
@@ -72,7 +66,7 @@ def reproduction(begun):
         patch.setattr(floor_search, "FIRST_INTERVALS", 48)
         patch.setattr(recompute, "STARTS", dict.fromkeys(recompute.STARTS, 1))
         patch.setattr(recompute, "plan_move", from_one_start)
-        return recompute.recompute_paper(begun.append)
+        return recompute.recompute_paper()
 
 
 @pytest.fixture(scope="module", autouse=True)

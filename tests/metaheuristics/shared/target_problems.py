@@ -19,15 +19,6 @@ class Targets(Problem):
         self.F.append(out["F"])
 
 
-class Undefined(Targets):
-    """NaN for x1 < 0 and infinite for x1 > 1.5 in one objective only."""
-
-    def _evaluate(self, x, out, *args, **kwargs):
-        super()._evaluate(x, out)
-        out["F"][x[:, 0] < 0.0, 0] = np.nan
-        out["F"][x[:, 0] > 1.5, 1] = np.inf
-
-
 class Constrained(Targets):
     """Feasible in a small corner only, x1 >= 1.9."""
 

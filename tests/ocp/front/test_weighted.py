@@ -1,13 +1,11 @@
 """The front by weighted sums: its points are on the front, its gaps where the front bends away."""
 
-import math
 from functools import cache
 
 import numpy as np
 import pytest
 from moves import CASES
 from quietarm.ocp.front.sweep import Sweep
-from quietarm.studies.comparison.measures import compare_fronts
 
 import quietarm as qa
 
@@ -70,16 +68,6 @@ def test_given_weights_are_used():
         assert values[middle].min() == pytest.approx(values.min(), abs=1e-6)
 
 
-def test_fronts_of_other_weights_are_not_seeds_of_one_method():
-    task, bound = CASES["arm"]
-    one, other = (
-        qa.weighted_front(task, bound=bound, weights=[pair], starts=1)
-        for pair in ((1, 0.1), (1, 3))
-    )
-    labels = [group.label for group in compare_fronts([one, other], fill=0).groups]
-    assert labels == ["weighted sum, weights 1:0.1", "weighted sum, weights 1:3"]
-
-
 def test_the_figures_are_those_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:
@@ -90,34 +78,8 @@ def test_the_figures_are_those_of_the_independent_integrator(case):
 
 @pytest.mark.parametrize(
     ("arguments", "text"),
-    [
-        ({"points": 1}, "points is 1"),
-        ({"weights": [(1.0, -2.0)]}, "-2"),
-        ({"weights": [(0.5, 0.5), (0, 0.0)]}, "0"),
-        ({"weights": []}, "weights"),
-    ],
+    [({"weights": [(1.0, -2.0)]}, "-2"), ({"weights": [(0.5, 0.5), (0, 0.0)]}, "0")],
 )
 def test_bad_input_is_refused(arguments, text):
     with pytest.raises(ValueError, match=text):
         qa.weighted_front(CASES["arm"][0], **arguments)
-
-
-def test_ctrl_c_keeps_what_was_found():
-    def interrupt(done, total):
-        raise KeyboardInterrupt
-
-    task, bound = CASES["arm"]
-    profile = qa.CycloidPolynomial(3)
-    front = qa.weighted_front(task, profile, bound=bound, points=6, starts=1, report=interrupt)
-    assert not front.complete
-    assert len(front.points) == 3
-
-
-def test_a_limit_that_the_solvers_steps_pass_is_kept_by_solving_again():
-    """The solve that follows is of least energy, another form than that of the weighted sum."""
-    task = qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8, torque_limit=0.15)
-    front = qa.weighted_front(task, qa.CycloidPolynomial(4), bound=0.2, points=3, starts=1)
-    assert len(front.points) >= 3
-    for point in front.points:  # CVODES again; docs/accuracy.md
-        motion = qa.evaluate_coefficients(task, point.coefficients).motion
-        assert motion.peak_torque <= 0.15 * 1.001

@@ -113,6 +113,3 @@ def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
         alone = _solved(*one)
         assert found.status is alone.status
         assert found.energy == pytest.approx(alone.energy, rel=1e-9)
-
-
-LINK, ARM = qa.SingleLinkManipulator(), qa.ArmOnFlexibleLink()

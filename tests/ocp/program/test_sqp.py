@@ -138,12 +138,6 @@ def test_what_cannot_be_met_ends_at_the_least_largest_violation():
     assert found.x[0] == pytest.approx(np.array([x, 0.0]), abs=1e-2)
 
 
-def test_it_says_that_the_iterations_ran_out():
-    make, start, *_ = KNOWN["HS 7"]
-    found = make().solved(start, most=2)
-    assert (found.ends, found.iterations.tolist()) == ([End.UNFINISHED], [2])
-
-
 def test_rows_end_independently():
     make, *_ = KNOWN["HS 7"]
     problem, starts = make(), [[2.0, 2.0], [0.0, 1.7], [-1.5, 0.5]]

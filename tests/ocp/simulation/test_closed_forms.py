@@ -35,16 +35,6 @@ def test_braking_costs_as_much_as_driving(a, turns):
     assert motion.overshoot == pytest.approx(path(grid[::25]).max() - 1.0, abs=1e-5)
 
 
-@pytest.mark.parametrize("a", [[0.3, 0.4], SWINGS])
-def test_the_power_may_touch_zero(a):
-    # Friction alone, where the joint turns back: c theta'^2 is never negative.
-    friction = qa.SingleLinkManipulator(alpha1=1e-30, alpha2=0.0, c=0.03)
-    task, profile = qa.PointToPoint(friction, 1.0, 0.8), qa.CycloidPolynomial(len(a))
-    motion = qa.resimulate(task, profile, a)
-    assert profile.path(a, *task.move)(np.linspace(0, 0.8, 1001), 1).min() < -0.1
-    assert motion.energy == pytest.approx(motion.net_work, rel=1e-10)
-
-
 @dataclass(frozen=True)
 class _InPowers(JointProfile):
     """theta from the start to the target along a polynomial of t/T, without coefficients."""

@@ -5,7 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
@@ -20,7 +20,10 @@ def _undamped(omega, **changes):
     return qa.SingleLinkManipulator(omega=omega, zeta=0.0, beta2=0.0, **changes)
 
 
-@pytest.mark.parametrize("omega", [3.0, 10.43, 2 * pi / 0.8 * 1.5, 25.0])
+@pytest.mark.parametrize(
+    "omega",
+    [10.43, 25.0],
+)
 def test_an_undamped_oscillator_driven_by_the_plain_cycloid(omega):
     # W'' + omega^2 W = -beta1 theta'', theta'' = A sin(O t), O = 2 pi/T, A = 2 pi span/T^2:
     # W = -beta1 A/(omega^2 - O^2) (sin(O t) - O/omega sin(omega t)).
@@ -112,13 +115,6 @@ def test_default_steps_resolve_the_profile_and_the_fastest_mode():
     assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
 
 
-def test_a_rollout_says_how_many_steps_it_took():
-    task = qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8)
-    assert qa.rollout(task, PLAIN, []).steps == ROLLOUT_STEPS
-    assert qa.rollout(task, PLAIN, [], steps=50).steps == 50
-    assert qa.rollout(task, PLAIN, [], steps=1).steps == 1
-
-
 @pytest.mark.parametrize("name", ["single link", "arm", "two links"])
 def test_a_population_is_simulated_as_each_of_its_members(tasks, name):
     candidates, terms, steps = 6, 3, 60
@@ -142,12 +138,3 @@ def test_a_population_is_simulated_as_each_of_its_members(tasks, name):
 def test_the_weights_integrate_up_to_degree_five_exactly(power):
     integral = sum(w * x**power for w, x in zip(GAUSS_WEIGHTS, GAUSS_NODES, strict=True))
     assert integral == pytest.approx(1 / (power + 1), abs=1e-15)
-
-
-def test_the_steps_are_finer_at_the_ends_and_the_same_from_both():
-    lengths = np.array([float(mesh(k, 100)[1]) for k in range(100)])
-    assert lengths == pytest.approx(lengths[::-1], rel=1e-9)
-    assert np.all(np.diff(lengths[:50]) > 0)
-    # Half even, half Chebyshev: 1/2 + pi/4 times the even length in the middle, 1/2 at the ends.
-    assert lengths[50] == pytest.approx((1 / 2 + math.pi / 4) / 100, rel=1e-3)
-    assert lengths[0] == pytest.approx(1 / 2 / 100, rel=0.05)

@@ -44,11 +44,3 @@ def test_it_is_checked_anew(call, monkeypatch):
     assert code == 1
     assert "is not what was certified" in err
     assert certificate.BEATEN == 1e-4  # docs/problems.md states what was measured
-
-
-def test_a_front_is_a_data_frame():
-    pytest.importorskip("pandas")
-    (front,) = problem_of(NAME).fronts()
-    frame = front.to_frame()
-    assert [*frame.columns] == ["residual_m", "energy_J", "a_1", "a_2"]
-    assert frame.energy_J.is_monotonic_decreasing

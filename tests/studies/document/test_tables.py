@@ -36,13 +36,6 @@ def test_markdown_stands_upright_with_the_moves_beside_each_other():
     )
 
 
-def test_screen_fits_a_narrow_terminal_without_cutting_a_figure():
-    text = on_screen(TABLE, width=50)
-    assert max(map(len, text.splitlines())) <= 50
-    assert "…" not in text
-    assert "0.06297" in text
-
-
 def test_csv_has_a_row_a_line_and_every_digit():
     rows = list(csv.reader(io.StringIO(TABLE.csv())))
     assert rows == [

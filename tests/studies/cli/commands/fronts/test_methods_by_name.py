@@ -28,15 +28,6 @@ def test_a_front_by_any_method_with_settings(call):
     assert Front.load("f.json") == wanted != directly("rvea")
 
 
-def test_several_seeds_of_any_method(call):
-    line = f"{FRONT} --method gde3 --setting repair=midway --runs 2 {SMALL_WORDS} --output f.json"
-    code, _, err = call(line)
-    assert (code, err) == (0, "")
-    for seed in (0, 1):
-        wanted = directly("gde3", settings={"repair": "midway"}, seed=seed)
-        assert Front.load(f"f-seed{seed}.json") == wanted
-
-
 def test_a_plan_by_any_method_with_settings(call, monkeypatch):
     asked = {}
 

@@ -16,13 +16,10 @@ from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import (
     CycloidPolynomial,
     Front,
-    Gain,
     PointToPoint,
-    Polish,
     epsilon_front,
     polish_front,
 )
-from quietarm.studies.figures.sweep import polish_figure
 
 
 @pytest.fixture(scope="module")
@@ -88,16 +85,6 @@ def test_ctrl_c_keeps_what_was_polished(call, monkeypatch):
     assert not Front.load("p.json").complete
 
 
-def test_the_picture_shows_both_fronts_and_the_gains(rough):
-    polish = Polish(rough, (Gain(1e-3, 0.2, 0.1), Gain(2e-3, 0.1, 0.1, tried=False)))
-    energies, saved = polish_figure(rough, polish).axes
-    for line in energies.lines:
-        np.testing.assert_allclose(line.get_xdata(), rough.residuals * 1e3)
-    assert [line.get_label() for line in energies.lines] == ["before", "after"]
-    (points,) = saved.lines
-    np.testing.assert_allclose(points.get_xydata(), [[1.0, 50.0]])
-
-
 def without(**changes):
     """A document of a front with these entries changed."""
     return json.dumps({**json.loads(Path("f.json").read_text()), **changes})
@@ -107,16 +94,10 @@ def without(**changes):
     ("content", "line", "words"),
     [
         (lambda: "{}", "", "bad.json is not a front"),
-        (lambda: "a,b\n", "", "bad.json is not a front"),
         (lambda: without(task={"plant": "crane"}), "", "crane"),
-        (lambda: without(profile={"kind": "spline"}), "", "bad.json"),
         (lambda: without(points=[]), "", "bad.json: the front has no point"),
-        (lambda: without(settings={"bound": "wide"}), "", "bound is 'wide'; give a number"),
         (without, "--points 1", "points is 1; give a whole number from 2 up"),
         (without, "--output ./bad.json", "are both bad.json; give two files"),
-        (without, "--csv a --output ./a", "are both a; give two files"),
-        (without, "--figure a.txt", "a.txt is no picture"),
-        (without, "--output nowhere/a", "folder nowhere does not exist"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(call, folder, content, line, words):

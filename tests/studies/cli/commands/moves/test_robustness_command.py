@@ -16,7 +16,6 @@ from quietarm.ocp import (
     shaped_cycloid,
 )
 from quietarm.studies.cli.commands import robustness as work
-from quietarm.studies.figures import draw_robustness, robustness_figure
 
 FILES = {"report.md", "robustness.csv", "sweeps.csv", "samples.csv", "robustness.png"}
 RANGES = {"frequency": 0.1, "damping": 0.5}
@@ -108,62 +107,9 @@ def test_errors_of_parameters_stand_between_plans_and_options(call):
     assert "frequency" not in out.split("- The joint")[0]
 
 
-def test_dashes_stand_for_underscores(call, folder):
-    (folder / "crane.py").write_text(CRANE)
-    from quietarm.models import load_plant_file
-
-    [kind] = load_plant_file(folder / "crane.py").values()
-    evaluate_coefficients(PointToPoint(kind(), 1.0, 1.0), []).save("crane.json")
-    code, out, _ = call("crane.json --plant-file crane.py --tip-mass 10% --samples 10 --quiet")
-    assert code == 0
-    assert "+-10 % of tip_mass" in out
-
-
-CRANE = """
-from dataclasses import dataclass
-from typing import ClassVar
-
-from quietarm.models import Plant
-
-
-@dataclass(frozen=True)
-class Crane(Plant):
-    name: ClassVar[str] = "crane-of-masses"
-    modes: ClassVar[int] = 1
-    tip_mass: float = 2.0
-
-    def modal_accelerations(self, joint, W, dW):
-        return [-(30 * W[0]) / self.tip_mass - joint.acceleration]
-
-    def torque(self, joint, W, dW, ddW):
-        return 3 * joint.acceleration + self.tip_mass * ddW[0]
-
-    def tip_displacements(self, W):
-        return [W[0]]
-"""
-
-
-def test_without_errors_frequency_and_damping_are_wrong(call):
-    code, out, _ = call("arm.json --samples 10 --quiet")
-    assert code == 0
-    assert "+-20 % of frequency, +-50 % of damping" in out
-
-
-def test_plans_of_different_plants_share_what_both_have(call):
-    code, out, _ = call("ours.json arm.json --omega 10% --samples 10 --quiet")
-    assert code == 0
-    assert "single-link" in out
-    assert "arm-on-flexible-link" in out
-
-
 @pytest.mark.parametrize(
     ("figure", "told"),
-    [
-        ("residual", "states residual"),
-        ("energy", "states energy"),
-        ("peak_torque", "states peak torque"),
-        ("peak_jerk", "states peak jerk"),
-    ],
+    [("residual", "states residual"), ("peak_torque", "states peak torque")],
 )
 def test_a_plan_is_a_claim(call, folder, figure, told):
     document = json.loads((folder / "arm.json").read_text())
@@ -179,7 +125,6 @@ def test_a_plan_is_a_claim(call, folder, figure, told):
     ("entry", "value", "told"),
     [
         ("residual", 1e-3, "robust.json states residual 0.001 m at worst, but its coefficients "),
-        ("errors", {"frequency": 0.01}, "but its coefficients leave there "),
         ("errors", {"damping": 0.01}, "robust.json states a worst with errors of damping, which"),
     ],
 )
@@ -217,27 +162,3 @@ def test_ctrl_c_keeps_the_plans_that_are_finished(call, folder, monkeypatch):
         "quietarm: interrupted; what was written until then is kept",
     )
     assert not (folder / "none").exists()
-
-
-def test_the_picture_has_a_panel_a_parameter_and_a_curve_a_plan(plans):
-    found = {
-        name: evaluate_robustness(
-            plans[name].task, plans[name].profile, plans[name].coefficients, RANGES, samples=1
-        )
-        for name in ("ours", "zv")
-    }
-    figure = robustness_figure(found)
-    assert [ax.get_xlabel() for ax in figure.axes] == [
-        "error of frequency [%]",
-        "error of damping [%]",
-    ]
-    ax = draw_robustness(found, "frequency")
-    drawn = {line.get_label(): line for line in ax.lines}
-    for name, one in found.items():
-        assert drawn[name].get_xdata() == pytest.approx(np.linspace(-10, 10, 201))
-        share = 100 * one.sweeps[0].figures.residual / one.cycloid
-        assert drawn[name].get_ydata() == pytest.approx(share)
-    assert drawn["5 %"].get_ydata() == [5, 5]
-    marked = [line.get_xdata() for line in ax.lines if line.get_label().startswith("_")]
-    ends = [[100 * end for end in one.sweeps[0].insensitivity] for one in found.values()]
-    assert [list(entry) for entry in marked] == ends

@@ -40,12 +40,6 @@ def test_reproduce_prints_every_printed_and_recomputed_energy(call, reproduced, 
         assert claim in out
 
 
-def test_reproduce_writes_nothing_unless_asked_to(call, reproduced, folder):
-    code, out, _ = call("reproduce --quiet")
-    assert (code, list(folder.iterdir())) == (0, [])
-    assert "wrote" not in out
-
-
 def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(
     call, reproduced, folder, monkeypatch
 ):
