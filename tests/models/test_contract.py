@@ -94,14 +94,3 @@ def test_a_right_angle_between_the_samples_is_looked_at():
     qa.PointToPoint(_plant(torque=torque), 3.0, 0.8)
     with pytest.raises(ValueError, match=r"with the joint at 3\.142 rad"):
         qa.PointToPoint(_plant(torque=torque), 3.21, 0.8)
-
-
-@pytest.mark.parametrize(
-    "name",
-    ["single-link"],
-)
-def test_a_plant_of_ones_own_does_not_take_the_place_of_quietarms(name):
-    before = qa.known_plants()[name]
-    with pytest.raises(ValueError, match="own"):
-        type("Mine", (Sound,), {"name": name})
-    assert qa.known_plants()[name] is before

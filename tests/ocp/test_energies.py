@@ -135,13 +135,6 @@ def test_positive_power_of_a_rigid_body_is_what_it_takes_to_start():
     assert spent == pytest.approx(0.02 * (2 * (math.pi / 6) / 0.8) ** 2 / 2, rel=1e-9)
 
 
-def test_a_front_by_the_gradient_is_of_the_tasks_energy(task):
-    front = qa.epsilon_front(task, qa.CycloidPolynomial(2), points=4)
-    for point in front.points:
-        again = qa.resimulate(task, front.profile, point.coefficients)
-        assert point.energy == pytest.approx(again.energy, rel=1e-6)
-
-
 def test_an_energy_that_is_not_known_is_refused(tasks, solved, tmp_path):
     path = tmp_path / "plan.json"
     solved(replace(tasks["single link"], energy=ENERGIES["mixed"])).save(path)

@@ -60,11 +60,8 @@ def test_what_a_run_leaves_does_not_change_the_next():
 
 @pytest.mark.parametrize(
     ("method", "name", "value"),
-    [
-("smsemoa", "crossover_eta", 5),
-("nsder", "variant", "DE/best/1/bin")
-],
-)  # fmt: skip
+    [("smsemoa", "crossover_eta", 5), ("nsder", "variant", "DE/best/1/bin")],
+)
 def test_settings_change_the_front_and_stand_in_it(method, name, value):
     plain = search(HALF, method, seed=2, **SMALL)
     other = search(HALF, method, seed=2, settings={name: value}, **SMALL)

@@ -53,22 +53,6 @@ def test_one_gene_in_a_hundred_mutates():
     assert abs(changed - 600) < 4 * 24
 
 
-def test_four_pairs_in_five_are_offered_for_crossover_gene_by_gene():
-    # Crossover rate 0.8 for a pair, then 0.5 for a gene: 0.8 * 0.5 of all genes, and a pair is left
-    # alone with probability 0.2 + 0.8 * 0.5^6 = 0.2125; four standard deviations of 4000 pairs.
-    X = np.random.default_rng(0).uniform(-0.5, 0.5, (8000, 6))
-    parents = np.arange(8000).reshape(-1, 2)
-    crossover = PaperNSGA2().mating.crossover
-    children = crossover.do(
-        BOX, Population.new(X=X), parents, random_state=np.random.default_rng(1)
-    ).get("X")
-    first, second = children[:4000], children[4000:]
-    changed = (first != X[0::2]) | (second != X[1::2])
-    assert np.mean(~changed.any(axis=1)) == pytest.approx(0.2125, abs=4 * 0.0065)
-    # six genes of a pair stand or fall together: sd of the mean 0.5 * sqrt(0.8 * 0.2 / 4000) + ...
-    assert np.mean(changed) == pytest.approx(0.4, abs=4 * 0.0045)
-
-
 VALUES = st.sampled_from([0.0, -0.0, 1.0, 0.1 + 0.2, 0.3, -1e-9])
 
 

@@ -4,12 +4,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-from quietarm.metaheuristics.budget.problem import BudgetProblem, BudgetSpentError
 from quietarm.metaheuristics.budget.record import CORNER, Scale, Visits, marks_of
 from quietarm.metaheuristics.budget.run import search_within
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.ocp import CycloidPolynomial
-from small_searches import BOUNDS, HALF, LIMITED, METHODS, SIXTH, SWARMS, TASKS
+from small_searches import BOUNDS, HALF, LIMITED, METHODS, SWARMS, TASKS
 
 PROFILE = CycloidPolynomial(2)
 SCALES = {
@@ -99,22 +98,6 @@ def test_a_longer_budget_begins_as_a_shorter_one():
     both = [mark for mark in long.marks if mark.evaluations in known]
     assert len(both) > 5
     assert all(known[mark.evaluations] == mark.hypervolume for mark in both)
-
-
-def problem(budget):
-    return BudgetProblem(PopulationObjective(SIXTH, PROFILE), 0.2, budget, SCALES["vepso"])
-
-
-def test_work_that_is_no_candidate_counts_against_the_budget():
-    counted = problem(100)
-    counted.spend(30)
-    assert (counted.spent, counted.left) == (30, 70)
-    assert [mark.hypervolume for mark in counted.record.marks] == [0.0] * len(counted.record.marks)
-    assert counted.record.marks[-1].evaluations <= 30
-    counted.spend(70)  # to the last
-    with pytest.raises(BudgetSpentError):
-        counted.spend(1)
-    assert counted.spent == counted.record.marks[-1].evaluations == 100
 
 
 @pytest.mark.parametrize(

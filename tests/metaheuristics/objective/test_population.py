@@ -90,40 +90,7 @@ def test_violations_are_the_rollouts_peaks_over_the_limits(tasks, name):
     assert values.energy == pytest.approx(without.energy, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize(
-    "chosen",
-    [("deflection", "jerk", "torque")],
-)
-def test_each_limit_keeps_its_own_column(chosen):
-    limits = {"torque": 0.3, "speed": 3.0, "acceleration": 70.0, "jerk": 900.0, "deflection": 0.01}
-    task = PointToPoint(ARM, pi / 2, 0.8, **{f"{name}_limit": limits[name] for name in chosen})
-    objective, X = PopulationObjective(task, PROFILE), candidates(10, 0.5)
-    motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
-    # in the order of the task's own list, whatever the order they were given in
-    columns = [name for name in LIMITS if name in chosen]
-    expected = [[m.peak(name) / limits[name] - 1 for name in columns] for m in motions]
-    assert objective(X).violations == pytest.approx(np.array(expected), rel=0, abs=1e-12)
-
-
 # -- populations --
-
-
-@pytest.mark.parametrize(
-    "count",
-    [1, 201],
-)
-def test_the_order_is_kept_for_any_size(tasks, count):
-    task, bound = tasks["arm"]
-    limited = dataclasses.replace(task, speed_limit=3.0)
-    objective, X = PopulationObjective(limited, PROFILE), candidates(450, bound)
-    values = objective(X[:count])
-    assert values.residual.shape == values.energy.shape == (count,)
-    assert values.violations.shape == (count, 1)
-    rows = sorted({0, 1, count // 2, count - 2, count - 1, 198, 199, 200} & set(range(count)))
-    for row in rows:
-        motion = rollout(limited, PROFILE, X[row], objective.steps).motion
-        assert values.energy[row] == pytest.approx(motion.energy, rel=1e-12, abs=0)
-        assert values.violations[row, 0] == pytest.approx(motion.peak_speed / 3.0 - 1, abs=1e-12)
 
 
 def test_a_candidate_costs_the_same_bits_wherever_it_stands(tasks):

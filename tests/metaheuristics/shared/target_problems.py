@@ -1,7 +1,6 @@
 """Small problems for VEPSO whose answers are known, and what its tests ask of its states."""
 
 import numpy as np
-from pymoo.core.callback import Callback
 from pymoo.core.problem import Problem
 
 
@@ -35,17 +34,6 @@ def state_of(algorithm):
     names = ("velocities", "best_X", "best_merit", "swarm_best")
     known = {name: getattr(algorithm, name).copy() for name in names}
     return {**known, "random_state": algorithm.random_state.bit_generator.state}
-
-
-class States(Callback):
-    """Collects the state after every iteration."""
-
-    def __init__(self):
-        super().__init__()
-        self.states = []
-
-    def notify(self, algorithm):
-        self.states.append(state_of(algorithm))
 
 
 def step(algorithm):

@@ -5,7 +5,6 @@ from functools import cache
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.ocp.front.sweep import Sweep
 
 import quietarm as qa
 
@@ -30,17 +29,6 @@ def _scaled(front, others):
         (others.residuals - front.residuals[0]) / np.ptp(front.residuals),
         (others.energies - front.energies[-1]) / np.ptp(front.energies),
     ])  # fmt: skip
-
-
-def test_its_points_are_those_of_the_residual_limit(case):
-    # KKT: a minimum of a weighted sum is the least energy at its own residual
-    task, bound, front = case
-    assert len(front.points) == POINTS
-    for point in front.points[1:-1:3]:
-        sweep = Sweep(task, front.profile, qa.SolveSettings(bound=bound))
-        at_limit = sweep.best([np.array(point.coefficients)], sweep.ask(point.residual))
-        energy = qa.resimulate(task, front.profile, at_limit.coefficients).energy
-        assert point.energy == pytest.approx(energy, rel=1e-4)
 
 
 def test_gaps_are_where_the_front_is_above_its_chord():

@@ -69,24 +69,6 @@ def test_searches_see_what_cvodes_does(next_move):
         assert fixed.motion.residual == pytest.approx(exact.residual, rel=3e-4)
 
 
-def test_errors_of_the_plant_begin_in_the_same_state(next_move):
-    a, error = [0.05, -0.1, 0.02], 0.07
-    robustness = qa.evaluate_robustness(
-        next_move, qa.CycloidPolynomial(3), a, {"frequency": error}, samples=1
-    )
-    wrong = replace(next_move, plant=qa.with_errors(next_move.plant, {"frequency": error}))
-    exact, figures = qa.resimulate(wrong, qa.CycloidPolynomial(3), a), robustness.sweeps[0].figures
-    assert figures.residual[-1] == pytest.approx(exact.residual, rel=1e-4)
-    assert figures.energy[-1] == pytest.approx(exact.energy, rel=1e-5)
-    uncertain = replace(next_move, plant=qa.UncertainPlant(next_move.plant, {"frequency": error}))
-    most = max(exact.residual, figures.residual[0], figures.residual[100])
-    found = PopulationObjective(uncertain, qa.CycloidPolynomial(3), steps=140)(np.array([a]))
-    assert found.residual[0] == pytest.approx(most, rel=3e-4)
-    assert qa.resimulate(uncertain, qa.CycloidPolynomial(3), a).residual == pytest.approx(
-        most, rel=1e-4
-    )
-
-
 def test_both_solvers_fronts_and_the_floor_begin_in_the_same_state(tasks):
     task = qa.evaluate_coefficients(tasks["single link"], []).next_move(0.0, 0.8, wait=WAIT)
     profile, settings = qa.CycloidPolynomial(4), {"bound": 0.3, "starts": 1}

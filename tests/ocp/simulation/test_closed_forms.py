@@ -63,13 +63,6 @@ def test_a_power_that_is_exactly_zero_at_a_sample_parts_the_work():
     assert motion.energy == pytest.approx(0.02 * (1.5 * 0.7) ** 2, rel=1e-9)
 
 
-def test_a_motion_at_constant_speed_pays_from_its_first_moment():
-    # torque = c theta': c span^2/T in all, as much at the first moment as at any other.
-    friction = qa.SingleLinkManipulator(alpha1=1e-30, alpha2=0.0, c=0.03)
-    motion = qa.resimulate(qa.PointToPoint(friction, 0.7, 0.8), _InPowers((0.0, 1.0)), [])
-    assert motion.energy == pytest.approx(0.03 * 0.7**2 / 0.8, rel=1e-9)
-
-
 def test_every_sign_change_of_a_long_ringing_move_is_found():
     # theta'' = A from the first moment on: W'' = -beta1 A cos(omega t), and with alpha1 = c = 0
     # the power is -alpha2 beta1 A^2 t cos(omega t): 477 sign changes in 1500 radians.

@@ -2,7 +2,6 @@
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
@@ -113,25 +112,6 @@ def test_default_steps_resolve_the_profile_and_the_fastest_mode():
     assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(omega=9999.5), 1.0, 1.0)) == 19999
     assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 10.0)) == 209  # 2 * 104.3
     assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
-
-
-@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-def test_a_population_is_simulated_as_each_of_its_members(tasks, name):
-    candidates, terms, steps = 6, 3, 60
-    task, profile = tasks[name], qa.CycloidPolynomial(terms)
-    population = np.random.default_rng(8).uniform(-0.3, 0.3, (candidates, terms))
-    a, move = ca.MX.sym("a", candidates, terms), ca.MX.sym("move", 3)
-    columns = [ca.repmat(column, 1, steps) for column in ca.horzsplit(a)]
-    together = qa.symbolic_rollout(
-        task.plant, profile, columns, ca.vertsplit(move), steps, candidates
-    )
-    function = ca.Function("population", [a, move], [together.arrival, together.energy])
-    arrival, energy = (value.full() for value in function(population, ca.DM(task.move)))
-    assert arrival.shape == (candidates, 2 * task.plant.modes)
-    for row, member in enumerate(population):
-        alone = qa.rollout(task, profile, member, steps=steps)
-        assert arrival[row] == pytest.approx(alone.arrival, rel=1e-11)
-        assert energy[row, 0] == pytest.approx(alone.motion.energy, rel=1e-11)
 
 
 @pytest.mark.parametrize("power", range(2 * NODES))

@@ -91,20 +91,6 @@ def test_moves_of_different_durations_share_a_clock(plan, task):
     assert third.tips[:19, 0] == pytest.approx(expected, abs=2e-6)
 
 
-@pytest.mark.parametrize(
-    ("settings", "message"),
-    [
-        ({"speed": 0}, "speed is 0; give a positive number"),
-        ({"speed": 0.001}, "make 45000 frames, where 500 are the most"),
-        ({"width": 100}, "width is 100; give a whole number from 200 up"),
-        ({"format": "avi"}, "format is 'avi'; give 'gif' or 'mp4'"),
-    ],
-)
-def test_settings_that_cannot_be_are_refused(plan, settings, message):
-    with pytest.raises(ValueError, match=message):
-        animate([Line(plan, "plan")], **settings)
-
-
 # -- MP4 --
 
 FAKE = """#!{python}

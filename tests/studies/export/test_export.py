@@ -115,21 +115,6 @@ def test_matlab_reads_columns_and_coefficients(plan, tmp_path):
     assert read["duration_s"].item() == 0.8
 
 
-@pytest.mark.parametrize(
-    ("name", "settings", "words"),
-    [
-        ("move.txt", {}, r"does not say in which form it is; end its name in one of \.csv"),
-        ("2nd-move.c", {}, "which is no name in C"),
-        ("m.csv", {"columns": "time,tork"}, "unknown column 'tork'; did you mean 'torque'"),
-        ("m.csv", {"rate": 0}, "sample rate is 0"),
-    ],
-)
-def test_what_cannot_be_exported_is_refused(plan, tmp_path, name, settings, words):
-    with pytest.raises(ValueError, match=words):
-        export_plan(plan, tmp_path / name, **settings)
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_the_command_writes_source_and_header(call, plan, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     plan.save("plan.json")

@@ -52,20 +52,3 @@ def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small,
     assert len(names) == len(set(names)) == 16
     assert "arm-on-flexible-link-0-to-90-deg-in-0.8-s-nsga2-polished-seed0.json" in names
     assert _file_name("-90 to 45 deg") == "minus-90-to-45-deg"
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("study --target 1", "--target is for a task of your own: give its plant as well"),
-        ("study single-link --target 1", "give --duration with the plant"),
-        (f"{MOVE} --points 1", "points is 1; give a whole number from 2 up"),
-        ("study singel-link --target 1 --duration 1", "did you mean 'single-link'?"),
-    ],
-)
-def test_bad_input_is_refused_in_a_line_before_any_work(call, folder, monkeypatch, line, words):
-    monkeypatch.setattr(study_module, "run_study", lambda *given: pytest.fail("work was begun"))
-    code, out, err = call(line)
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert words in err
-    assert list(folder.iterdir()) == []

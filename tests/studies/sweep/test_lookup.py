@@ -141,17 +141,3 @@ def test_the_command_writes_the_move(call):
     assert (code, err) == (0, "")
     assert "more energy than plans of their own, of 100 random moves" in " ".join(out.split())
     assert Plan.load("p.json").task.target == pytest.approx(math.radians(37))
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("moves.zarr --target 70deg --duration 0.9", "target is 1.22173 rad, and the grid has"),
-        ("moves.zarr --target 30deg", "give a value of each axis, target, duration"),
-        ("nowhere.zarr --target 30deg --duration 0.9", "nowhere.zarr is no dataset of a sweep"),
-    ],
-)
-def test_what_is_not_there_is_refused(call, line, said):
-    code, out, err = call(f"lookup {line} --quiet")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert said in err

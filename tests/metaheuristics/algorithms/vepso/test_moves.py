@@ -14,7 +14,7 @@ from quietarm.metaheuristics.algorithms.velocity import (
     reflect,
 )
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
-from target_problems import States, Targets, step
+from target_problems import Targets, step
 
 
 @pytest.mark.parametrize(
@@ -68,20 +68,6 @@ def test_falling_inertia_needs_the_number_of_iterations():
     implicit = minimize(Targets(), VEPSO(10, INERTIA_2002), ("n_gen", 7), seed=3)
     assert np.array_equal(explicit.F, implicit.F)
     minimize(Targets(), VEPSO(10, INERTIA_2002, iterations=3), ("n_gen", 7), seed=3)  # stays at end
-
-
-def test_bests_are_those_of_the_own_objective_over_the_whole_run():
-    problem, states = Targets(n_obj=3), States()
-    minimize(problem, VEPSO(6), ("n_gen", 30), seed=4, callback=states)
-    state = states.states[-1]
-    X = np.reshape(problem.X, (30, 3, 6, 3))
-    F = np.reshape(problem.F, (30, 3, 6, 3))
-    for swarm in range(3):
-        when = F[:, swarm, :, swarm].argmin(axis=0)
-        assert np.array_equal(state["best_X"][swarm], X[when, swarm, np.arange(6)])
-        own = F[:, swarm, :, swarm].min(axis=0)
-        assert np.array_equal(state["best_merit"][swarm, :, 1], own)
-        assert state["swarm_best"][swarm] == own.argmin()
 
 
 def test_reflect_mirrors_and_reverses():

@@ -60,7 +60,6 @@ def test_compare_fills_a_folder(call, files, good, poor):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (None, "cannot be read: no such file"),
         ("t_s,theta_rad\n0,0\n", "is not a front: it is not whole, valid JSON"),
         (
             '{"format": "quietarm-plan", "version": 1}',

@@ -1,24 +1,12 @@
 """`quietarm floor`: what it says, what it writes, what it refuses."""
 
-import math
 import re
 
-import matplotlib.pyplot as plt
 import pytest
-from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import Floor, FloorSettings, PointToPoint, energy_floor
-from quietarm.studies.figures.motion import floor_figure
+from quietarm.ocp import Floor, FloorSettings
 from quietarm.studies.reports.floor import plan_beside
 
 MOVE = "arm-on-flexible-link --target pi/2 --duration 0.8"
-
-
-@pytest.fixture(scope="module")
-def floor():
-    """The arm's floor with no limit: it starts and stops with a jolt."""
-    return energy_floor(
-        PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8), starts=1, tolerance=0.05
-    )
 
 
 @pytest.fixture
@@ -59,28 +47,3 @@ def test_limits_without_any_plan_still_have_a_floor(call):
     )
     assert (code, err) == (0, "")
     assert "none within these limits" in out
-
-
-def test_the_picture_holds_the_floor_over_the_plan(floor):
-    plan = plan_beside(floor)
-    figure = floor_figure(floor, plan)
-    angle, speed, acceleration, tip, torque = figure.axes[:5]
-    for axis, expected in (
-        (angle, floor.trajectory.joint[:, 0]),
-        (speed, floor.trajectory.joint[:, 1]),
-        (acceleration, floor.trajectory.joint[:, 2]),
-        (tip, floor.trajectory.tips[:, 0] * 1e3),
-        (torque, floor.trajectory.torque),
-    ):
-        drawn = next(line for line in axis.get_lines() if "floor" in str(line.get_label()))
-        assert drawn.get_ydata() == pytest.approx(expected)
-    labels = [text.get_text() for text in figure.axes[5].get_legend().get_texts()]
-    assert labels == [
-        f"plan of 6 terms, {plan.energy:.4g} J",
-        f"floor, {floor.energy:.4g} J",
-    ]
-    # The jolts, hundreds of N m, leave the panel; all of the plan's torque stays in it.
-    assert floor.motion.peak_torque > 100
-    assert plan.motion.peak_torque < torque.get_ylim()[1] < 5 * plan.motion.peak_torque
-    assert "jolts left out" in torque.get_title(loc="left")
-    plt.close("all")

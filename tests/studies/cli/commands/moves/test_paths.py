@@ -70,15 +70,3 @@ def test_a_path_that_cannot_be_is_refused(call, folder, change, words):
     code, out, err = call(f"evaluate single-link --path {folder}/changed.csv")
     assert (code, out) == (2, "")
     assert re.search(words, err)
-
-
-@pytest.mark.parametrize(
-    ("words", "remedy"),
-    [
-        ("--target 30deg", "--target is in the file of --path; leave it out"),
-        ("--output x.json", "--output is not for a --path"),
-    ],
-)
-def test_what_a_path_does_not_take_is_refused(call, folder, words, remedy):
-    code, _, err = call(f"evaluate single-link --path {folder}/path.csv {words}")
-    assert (code, remedy in err) == (2, True)
