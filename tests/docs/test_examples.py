@@ -156,9 +156,7 @@ LOUD = {"export", "plants"}
 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
-    words = [
-        word.replace(":90deg:", ":50deg:").replace("600ms:1.4s:", "600ms:1s:") for word in words
-    ]
+    words = [word.replace(":90deg:", ":50deg:").replace(":1.4s:", ":1s:") for word in words]
     quiet = ["--quiet"] * (words[0] not in LOUD)
     fewer = SHORTER.get(words[0], [])
     if words[0] == "front" and "--method" in words:

@@ -3,9 +3,7 @@
 import dataclasses
 
 import pytest
-from pymoo.algorithms.moo.gde3 import GDE3
 from pymoo.algorithms.moo.moead import MOEAD
-from pymoo.algorithms.moo.mopso_cd import MOPSO_CD
 from pymoo.algorithms.moo.sms import SMSEMOA
 from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.algorithms.soo.nonconvex.nelder import NelderMead
@@ -46,24 +44,13 @@ def test_the_settings_of_any_algorithm_are_in_the_front():
     def settings(algorithm):
         return dict(search(HALF, algorithm, bound=0.5, generations=2).settings)
 
-    small, large = settings(SMSEMOA(pop_size=10)), settings(SMSEMOA(pop_size=12, n_offsprings=3))
-    assert (small["population"], small["offspring"]) == (10, 10)
-    assert (large["population"], large["offspring"]) == (12, 3)
+    found = settings(SMSEMOA(pop_size=12, n_offsprings=3, mutation=PM(eta=30)))
+    assert (found["population"], found["offspring"]) == (12, 3)
     # pymoo's defaults for SMS-EMOA, from its source
-    assert small["sampling"] == "FloatRandomSampling"
-    assert "pressure=2" in small["selection"]
-    assert small["crossover"].startswith("SBX(eta=15, ")
-    assert small["mutation"] == "PM(at_least_once=False, eta=20, prob=0.9)"
-    assert small["survival"].startswith("LeastHypervolumeContributionSurvival(")
-    steep = SMSEMOA(pop_size=10, mutation=PM(eta=30))
-    assert settings(steep)["mutation"] == "PM(at_least_once=False, eta=30, prob=0.9)"
-    moead = settings(_moead())
-    assert (moead["n_neighbors"], moead["population"]) == (4, 10)
+    assert found["crossover"].startswith("SBX(eta=15, ")
+    assert found["mutation"] == "PM(at_least_once=False, eta=30, prob=0.9)"
     other = MOEAD(0.9 * get_reference_directions("uniform", 2, n_partitions=9), n_neighbors=4)
-    assert moead["reference_directions"].startswith("10, sha256 ")
-    assert moead["reference_directions"] != settings(other)["reference_directions"]
-    assert settings(MOPSO_CD(pop_size=10))["c1"] == 2.0
-    assert settings(GDE3(pop_size=10, CR=0.95))["CR"] == 0.95
+    assert settings(_moead()) != settings(other)  # by a digest of their directions
 
 
 @pytest.mark.parametrize(

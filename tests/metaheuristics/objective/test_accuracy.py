@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from populations import ARM, CONDITIONS, PROFILE, SINGLE_LINK, candidates, pi
+from populations import CONDITIONS, PROFILE, SINGLE_LINK, candidates, pi
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
@@ -70,29 +70,3 @@ def test_other_plants_and_durations_are_as_accurate(two_links, plant, duration, 
     residuals = np.array([motion.residual for motion in motions])
     allowed = 5.2e-5 * residuals + task.plant.phi * math.sqrt(2) * 1e-6
     assert np.all(np.abs(values.residual - residuals) <= allowed)
-
-
-@pytest.mark.parametrize(
-    ("plant", "target", "coefficients", "energy", "deflection"),
-    [
-        (SINGLE_LINK, pi / 6, [3.347e-3, -1.697e-1, 0, 0, 0, 0], 0.06297, 1.12e-4),
-        (
-            SINGLE_LINK,
-            pi / 6,
-            [-1.889e-3, -1.427e-1, -4.247e-2, -1.187e-1, 4.800e-2, -1.890e-1],
-            0.05143,
-            1.58e-4,
-        ),
-        (
-            ARM,
-            pi / 2,
-            [-9.346e-2, -3.488e-1, 1.989e-1, -1.515e-1, -2.993e-2, -2.377e-1],
-            0.14915,
-            6.6e-4,
-        ),
-    ],
-)
-def test_the_papers_own_coefficients(plant, target, coefficients, energy, deflection):
-    values = PopulationObjective(PointToPoint(plant, target, 0.8), PROFILE)([coefficients])
-    assert values.energy[0] == pytest.approx(energy, rel=0, abs=1.5e-5)  # five digits are printed
-    assert values.residual[0] == pytest.approx(plant.phi * deflection, rel=0.01)

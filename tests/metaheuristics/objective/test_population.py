@@ -57,15 +57,6 @@ def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
     )
 
 
-def test_a_mirrored_move_costs_the_same(tasks):
-    task, bound = tasks["single link"]
-    X = candidates(10, bound)
-    there = PopulationObjective(task, PROFILE)(X)
-    back = PopulationObjective(dataclasses.replace(task, target=-task.target), PROFILE)(X)
-    assert back.energy == pytest.approx(there.energy, rel=1e-12, abs=0)
-    assert back.residual == pytest.approx(there.residual, rel=1e-10, abs=0)
-
-
 # -- limits --
 
 

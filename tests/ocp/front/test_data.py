@@ -58,15 +58,6 @@ def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
 
 
 @pytest.mark.parametrize(
-    ("rows", "words"),
-    [([0.1, 0.2], "shape"), ([[0.1, 0.5]], "0.5, .*0.2")],
-)
-def test_what_is_no_table_of_coefficients_is_refused(task, rows, words):
-    with pytest.raises(ValueError, match=words):
-        Front.from_coefficients(task, rows, method="mine", settings={"bound": 0.2})
-
-
-@pytest.mark.parametrize(
     "points",
     [None],
 )

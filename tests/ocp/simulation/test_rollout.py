@@ -7,7 +7,6 @@ import pytest
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
-from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
 
 import quietarm as qa
 
@@ -103,15 +102,6 @@ def test_the_error_falls_with_the_sixth_power_of_the_step():
     exact = np.array(qa.rollout(task, profile, a, steps=320).arrival)
     errors = [np.abs(qa.rollout(task, profile, a, steps=k).arrival - exact).max() for k in (20, 40)]
     assert errors[0] / errors[1] == pytest.approx(64, rel=0.25)
-
-
-def test_default_steps_resolve_the_profile_and_the_fastest_mode():
-    # ROLLOUT_STEPS at least; two a radian of the fastest mode.
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8)) == ROLLOUT_STEPS
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 400
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(omega=9999.5), 1.0, 1.0)) == 19999
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 10.0)) == 209  # 2 * 104.3
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
 
 
 @pytest.mark.parametrize("power", range(2 * NODES))

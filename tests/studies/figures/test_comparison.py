@@ -91,22 +91,14 @@ def test_the_picture_holds_the_fronts_as_staircases(comparison):
 def test_the_picture_holds_floor_and_papers_points(front_of):
     task = ARM_HALF.task
     fronts = [front_of([(0, 0.2), (5, 0.1)], m, task=task, terms=6) for m in ("nsga2", "vepso")]
-    fronts[1] = front_of([(1, 0.3)], "vepso", task=task, terms=6)
     (point,) = paper_points(task, {6})
     # docs/physics.md: 0.1492 J for Table 4, N = 6, with a_5 mended
     assert point.energy == pytest.approx(0.1492, rel=1e-3)
-    figure = comparison_figure(compare(fronts, floor=0.09), [point])
-    for axis in figure.axes[:2]:
+    for axis in comparison_figure(compare(fronts, floor=0.09), [point]).axes[:2]:
         np.testing.assert_allclose(
             drawn(axis, "paper, N = 6"), [[point.residual * 1e3, 0.1492]], rtol=1e-3
         )
         assert set(drawn(axis, "floor: any joint motion, at rest")[:, 1]) == {0.09}
-        low, high = axis.get_ylim()
-        assert low < 0.09 < point.energy < high
-    (legend,) = [axis.get_legend() for axis in figure.axes if axis.get_legend()]
-    assert [text.get_text() for text in legend.get_texts()] == [
-        "NSGA-II", "VEPSO", "paper, N = 6", "floor: any joint motion, at rest"
-    ]  # fmt: skip
 
 
 def test_where_the_paper_prints_no_coefficients_its_energy_is_known(task):

@@ -14,13 +14,6 @@ from quietarm.studies.figures import (
     motion_figure,
 )
 
-TITLES = [
-    "joint angle [rad]",
-    "joint speed [rad/s]",
-    "joint acceleration [rad/s^2]",
-    "tip displacement [mm]",
-    "joint torque [N m]",
-]
 HEADS = {".png": b"\x89PNG\r\n\x1a\n", ".pdf": b"%PDF-", ".svg": b"<?xml"}
 TAILS = {".png": b"IEND\xaeB`\x82", ".pdf": b"%%EOF\n", ".svg": b"</svg>\n"}
 
@@ -52,12 +45,6 @@ def legend(figure):
     """The texts of its one legend."""
     (found,) = [*figure.legends, *filter(None, (axis.get_legend() for axis in figure.axes))]
     return [text.get_text() for text in found.get_texts()]
-
-
-def test_panels_name_their_quantity_with_its_unit(figure):
-    named = [f"({letter}) {title}" for letter, title in zip("abcde", TITLES, strict=True)]
-    assert [axis.get_title(loc="left") for axis in panels(figure)] == named
-    assert figure.get_suptitle() == "A title"
 
 
 def test_a_plan_alone_is_drawn_over_the_plain_cycloid_of_its_task(figure, plan, cycloid):

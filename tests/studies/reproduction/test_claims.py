@@ -94,39 +94,6 @@ def test_other_figures_of_the_gradient_refute_a_claim(reproduction, key, figures
     assert any(words in line for line in verdict.evidence)
 
 
-def level_above_six(reproduction, gains):
-    """N = 8 and 10 at the energy of N = 6, less a gain for some of them."""
-    return with_more_terms(
-        reproduction,
-        {
-            key: costing(
-                plan,
-                energy=(1 - gains.get(key, 0.0))
-                * reproduction.more_terms[key[0], 6, key[2]].energy,
-            )
-            for key, plan in reproduction.more_terms.items()
-            if key[1] > 6
-        },
-    )
-
-
-@pytest.mark.parametrize(
-    "condition",
-    [ARM_HALF],
-    ids=lambda value: value.label,
-)
-@pytest.mark.parametrize(
-    "terms",
-    [10],
-)
-@pytest.mark.parametrize("boxed", [True, False])
-def test_one_gain_above_six_refutes_that_there_is_none(reproduction, condition, terms, boxed):
-    doctored = level_above_six(reproduction, {(condition, terms, boxed): 0.05})
-    verdict = claims(doctored)[ABOVE_SIX]
-    assert verdict.word == "refuted"
-    assert any(f"5.0% less at N = {terms}" in line for line in verdict.evidence)
-
-
 def test_the_method_beats_the_earlier_studies_only_while_each_row_does(reproduction):
     def beaten(row):
         if (row.table, row.condition) != (6, ARM_WHOLE):

@@ -104,20 +104,3 @@ def test_more_terms_never_cost_more(reproduction, condition, boxed):
 
 
 # The paper's own searches
-
-
-def test_a_search_is_judged_at_the_residual_of_the_papers_own_coefficients(reproduction):
-    for result in reproduction.rows:
-        own = result.mended_or_printed
-        if own is None:  # else that of the N = 6 row for the same plant, mended
-            single = result.row.condition.task.plant == SINGLE_LINK_SIXTH.task.plant
-            six = reproduction.result(SINGLE_LINK_SIXTH if single else ARM_HALF, 6)
-            own = six.mended or six.printed
-        for found in result.searched.values():
-            assert found.level == own.residual
-            (front,), spread = found.fronts, found.energies
-            energies = [p.energy for p in front.points if p.residual <= own.residual]
-            assert spread.count == bool(energies)
-            if energies:
-                assert spread.median == min(energies)
-    assert any(found.energies.count for row in reproduction.rows for found in row.searched.values())

@@ -1,7 +1,5 @@
 """The headline study: every method runs, what fails is left out, Ctrl-C keeps what was found."""
 
-from dataclasses import replace
-
 import pytest
 import quietarm.metaheuristics.ensemble as ensemble
 import quietarm.studies.study.work as study_pieces
@@ -9,18 +7,12 @@ from quietarm.ocp import (
     PointToPoint,
     SolverFailedError,
 )
-from quietarm.studies.document.files import page as page_of
 from quietarm.studies.paper import Case
 from quietarm.studies.study.findings import case_findings
-from quietarm.studies.study.page import study_document
 from quietarm.studies.study.work import amount_of_work, run_study
 from small_study import CASES, METHODS, QUICK
 
 # What is run
-
-
-def study_page(study):
-    return page_of(study_document(study))
 
 
 def test_every_method_runs_on_every_task(small, announced):
@@ -82,24 +74,3 @@ def test_a_method_that_fails_is_left_out_with_its_reason(monkeypatch, let_sweep,
     assert found.failures == ("weighted: it would not", "floor: it would not")
     assert found.floor is None
     assert set(found.failures) <= set(case_findings(found))
-
-
-@pytest.mark.usefixtures("no_pictures")
-def test_a_search_that_is_interrupted_ends_the_study_and_what_was_found_is_kept(monkeypatch, known):
-    cut = replace(known[2], complete=False)
-    searches_that_find(monkeypatch, lambda method: [cut])
-    begun = []
-    found = run_study(CASES, QUICK, begun.append)
-    assert len(begun) == 3
-    assert found.done == 2
-    (case,) = found.cases
-    assert [run.front for run in case.comparison.runs] == [*known[:2], cut]
-    assert case.failures == (
-        "nsga2 (1 of 2 seeds): interrupted, with what was found until then",
-        "nsga2 (1 of 2 seeds): not done before the interruption",
-        "nsga2, polished: not done before the interruption",
-        "vepso (2 of 2 seeds): not done before the interruption",
-        "vepso, polished: not done before the interruption",
-        "floor: not done before the interruption",
-    )
-    assert "not done before the interruption" in study_page(found)

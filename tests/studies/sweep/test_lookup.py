@@ -67,15 +67,6 @@ def test_a_cell_is_what_it_was_and_between_it_is_as_still_as_stated():
     assert MoveLibrary("moves.zarr").between() == stated  # kept
 
 
-def test_many_moves_are_looked_up_at_once():
-    library, random = MoveLibrary("moves.zarr"), np.random.default_rng(0)
-    target, duration = random.uniform(0.4, 1.0, 1000), random.uniform(0.8, 1.1, 1000)
-    found = library.coefficients(target=target, duration=duration)
-    assert found.shape == (1000, 6)
-    one = library.coefficients(target=target[7], duration=duration[7])
-    assert found[7] == pytest.approx(one, rel=1e-9)
-
-
 def test_between_cells_it_is_the_polynomial_through_the_nearest_six():
     axes = [np.linspace(0, 1, 9), np.array([0.0, 0.3, 0.4, 1.0, 1.7, 2.0, 2.2])]
     x, y = np.meshgrid(*axes, indexing="ij")

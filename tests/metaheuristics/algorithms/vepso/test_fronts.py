@@ -56,14 +56,6 @@ def test_variants_find_the_front_of_three_variables(
     assert hv > smallest_hv
 
 
-def test_bounded_archive_covers_the_front():
-    F, true = fronts("zdt1", 5, VEPSO(archive_size=50), 40)
-    igd, hv = quality(F, true)
-    assert len(F) == 50
-    assert igd < 0.015  # measured: 0.0079
-    assert hv > 0.98  # measured: 0.989
-
-
 def test_three_objectives_cover_the_sphere():
     F = minimize(get_problem("dtlz2", n_var=8), VEPSO(50), ("n_gen", 100), seed=1).F
     assert len(F) > 500  # measured: 872

@@ -17,26 +17,6 @@ from quietarm.metaheuristics.algorithms.vepso import VEPSO
 from target_problems import Targets, step
 
 
-@pytest.mark.parametrize(
-    "n_obj",
-    [2, 3],
-)
-def test_social_term_pulls_to_the_best_of_the_next_swarm(n_obj):
-    particles, problem = 5, Targets(n_obj=n_obj, n_var=4)
-    algorithm = VEPSO(particles, VelocityRule(0.0, 0.0, 1.0, 0.0, 1.0), iterations=9)
-    algorithm.setup(problem, seed=1)
-    algorithm.next()
-    x = problem.X[0].reshape(n_obj, particles, -1)
-    F = problem.F[0].reshape(n_obj, particles, n_obj)
-    moved = algorithm.ask().get("X").reshape(x.shape)
-    for swarm in range(n_obj):
-        following = (swarm + 1) % n_obj
-        best = x[following, F[following, :, following].argmin()]
-        fraction = (moved[swarm] - x[swarm]) / (best - x[swarm])
-        assert ((fraction >= 0) & (fraction < 1)).all()
-        assert len(np.unique(fraction)) == fraction.size  # random per particle and coordinate
-
-
 def test_velocity_is_inertia_plus_both_pulls():
     rule, problem = VelocityRule(0.6, 0.6, 0.7, 1.5, 1.2), Targets()
     algorithm = VEPSO(4, rule, velocity_limit=0.4).setup(problem, seed=5)

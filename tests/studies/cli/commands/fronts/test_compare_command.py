@@ -45,16 +45,9 @@ def test_compare_fills_a_folder(call, files, good, poor):
     assert {path.name for path in (files / "compared").iterdir()} == set(FILES)
     report = (files / "compared" / "report.md").read_text()
     assert "![Fronts](fronts.png)" in report
-    assert "| hypervolume (more is better) |" in report
-    assert (files / "compared" / "fronts.png").read_bytes().startswith(b"\x89PNG")
     rows = list(csv.reader((files / "compared" / "coverage.csv").read_text().splitlines()))
-    shown = [line.strip("| ").split(" | ") for line in report.split("**Coverage**")[1].splitlines()]
-    assert rows[0] == shown[2] == ["points beaten or equalled [%]", "epsilon constraint", "NSGA-II"]
     # all of `poor` is beaten by `good`, and none of `good` by `poor`
     assert rows[1:] == [["by epsilon constraint", "", "100.0"], ["by NSGA-II", "0.0", ""]]
-    assert [[cell.strip() for cell in row] for row in shown[4:6]] == [
-        ["by epsilon constraint", "-", "100"], ["by NSGA-II", "0", "-"]
-    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -27,16 +27,10 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     assert floor.provenance.settings == FloorSettings(smooth=False, starts=2, seed=3, tolerance=0.2)
     shown = dict(re.findall(r"^(\S+(?: \S+)*)  +(\S.*?) *$", out, re.MULTILINE))
     assert float(shown["least energy"].split()[0]) == pytest.approx(floor.energy, rel=1e-5)
-    assert shown["limits"] == "acceleration 100 rad/s^2"
     assert shown["starts"].startswith(f"{floor.agreeing()} of 2")
     left = re.search(r"about (\S+) J \((\S+)%\)", shown["left"])
     assert float(left[1]) == pytest.approx(floor.left, rel=0.06)
-    assert float(left[2]) == pytest.approx(100 * floor.left / floor.energy, abs=0.006)
-    for level in floor.levels:
-        assert f"{level.steps}: {level.energy:.6g} J" in shown["intervals"]
-    plan = plan_beside(floor)
-    assert shown["plan, 6 terms"].startswith(f"{plan.energy:.6g} J")
-    assert f"{plan.energy / floor.energy:.3g} times the floor" in shown["plan, 6 terms"]
+    assert shown["plan, 6 terms"].startswith(f"{plan_beside(floor).energy:.6g} J")
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from lines import MOVE
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
+from quietarm.ocp import Plan, PointToPoint, UncertainPlant, evaluate_coefficients
 from quietarm.ocp.record import SolveSettings
 from quietarm.studies.document.terminal import show
 from quietarm.studies.reports.plan import plan_document
@@ -55,26 +55,3 @@ def test_a_plan_that_is_not_robust_enough_says_so(cycloid, excess, stopped, says
     (row,) = [line.strip() for line in text.getvalue().splitlines() if "at worst" in line]
     assert says in row
     assert ("not robust" in row) == (excess > 0.05)
-
-
-@pytest.mark.parametrize(
-    "method",
-    ["epsilon --points 2 --starts 1"],
-)
-def test_a_front_says_what_its_points_leave_between_the_samples(call, method):
-    line = f"front {MOVE} --terms 4 --bound 0.5 --robust frequency=10% --quiet --output f.json"
-    code, out, err = call(f"{line} --method {method}")
-    assert (code, err) == (0, "")
-    front = Front.load("f.json")
-    held = "residuals hold for any frequency within 10 %: between the samples CVODES finds "
-    assert (held in out) == (front.excess is not None) == method.startswith("epsilon")
-    for name in ("stillest", "cheapest"):
-        point = getattr(front, name)()
-        plan = evaluate_coefficients(front.task, point.coefficients, profile=front.profile)
-        (said,) = [line for line in out.splitlines() if line.startswith(f"  {name} ")]
-        error = 100 * plan.worst.errors["frequency"]
-        assert plan.worst.residual >= point.residual * (1 - 1e-3)
-        assert said.endswith(
-            f" J at {1e3 * point.residual:.3g} mm; at worst {1e3 * plan.worst.residual:.3g} mm "
-            f"with frequency {error:+.3g} %"
-        )
