@@ -116,17 +116,6 @@ def interrupt_at(seeds, generation=1):
     return report
 
 
-def test_ctrl_c_one_after_another_keeps_what_is_done_and_what_was_found_so_far():
-    report = interrupt_at({1}, generation=2)
-    done = []
-    fronts = search_many(TASK, "vepso", 3, report=report, done=done.append, **SMALL)
-    assert [(front.seed, front.complete) for front in fronts] == [(0, True), (1, False)]
-    assert fronts[0] == search(TASK, "vepso", seed=0, **SMALL)
-    assert len(fronts[1].history) == 2
-    assert fronts[1].points
-    assert [front.seed for front in done] == [0]
-
-
 def test_ctrl_c_ends_processes_and_keeps_what_they_found():
     report = interrupt_at({0, 1})
     fronts = search_many(TASK, "nsga2", 4, workers=2, report=report, **LONG)

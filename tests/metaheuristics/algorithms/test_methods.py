@@ -56,14 +56,3 @@ def test_what_a_run_leaves_does_not_change_the_next():
     first = search(HALF, "spea2", seed=2, **SMALL)
     search(dataclasses.replace(HALF, duration=2.0), "spea2", seed=2, **SMALL)
     assert exactly(search(HALF, "spea2", seed=2, **SMALL)) == exactly(first)
-
-
-@pytest.mark.parametrize(
-    ("method", "name", "value"),
-    [("smsemoa", "crossover_eta", 5), ("nsder", "variant", "DE/best/1/bin")],
-)
-def test_settings_change_the_front_and_stand_in_it(method, name, value):
-    plain = search(HALF, method, seed=2, **SMALL)
-    other = search(HALF, method, seed=2, settings={name: value}, **SMALL)
-    assert plain.points != other.points
-    assert other.settings == {**plain.settings, name: value} != plain.settings

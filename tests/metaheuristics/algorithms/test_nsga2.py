@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.core.population import Population
 from pymoo.core.problem import Problem
 from pymoo.indicators.igd import IGD
@@ -20,13 +19,6 @@ BOX = Problem(n_var=6, n_obj=2, xl=-0.5, xu=0.5)
 
 
 # -- settings --
-
-
-def test_the_papers_population_is_the_default():
-    # section 3.2
-    algorithm = PaperNSGA2()
-    assert isinstance(algorithm, NSGA2)
-    assert (algorithm.pop_size, algorithm.n_offsprings) == (200, 200)
 
 
 def test_operators_are_those_stated():

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from quietarm.metaheuristics.budget.record import CORNER, Scale, Visits, marks_of
+from quietarm.metaheuristics.budget.record import CORNER, Scale, marks_of
 from quietarm.metaheuristics.budget.run import search_within
 from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.ocp import CycloidPolynomial
@@ -109,24 +109,6 @@ def test_marks_rise_by_a_twentieth_to_the_budget(budget):
     assert marks[-1] == budget
     assert (np.diff(marks) > 0).all()
     assert (marks[1:] <= 1.05 * marks[:-1] + 1).all()
-
-
-def test_visits_are_counted_by_thirds_of_the_residual():
-    scaled = np.array([[0.0, 0.5], [0.3, 1.0], [0.4, 0.0], [0.9, 0.1], [1.05, 0.2], [0.1, 1.2]])
-    assert Visits.of(scaled) == Visits(still=2, middle=1, cheap=2, outside=1)
-    assert Visits.of(np.empty((0, 2))) == Visits()
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"evaluations": 0}, "evaluations is 0; give a whole number from 1 up"),
-        ({"evaluations": 10**9}, "give at most 10000000"),
-    ],
-)
-def test_a_budget_out_of_range_is_refused(given, words):
-    with pytest.raises(ValueError, match=words):
-        run("nsga2", **given)
 
 
 @pytest.mark.parametrize("method", ["nsga2+polish", "nsga2+seeds", "multistart"])

@@ -10,8 +10,6 @@ from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     PointToPoint,
     resimulate,
-    rollout,
-    sample_trajectory,
 )
 
 FINE = 140  # ocp.simulation.rollout.ROLLOUT_STEPS
@@ -45,23 +43,13 @@ def test_energy_and_residual_are_those_of_the_independent_integrator(
     assert np.all(np.abs(values.residual - residuals) <= allowed)
 
 
-@pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)
-def test_the_amplitude_at_arrival_is_within_a_micrometre(plant, start, target, duration, bound):
-    # `CANDIDATE_STEPS`
-    task = PointToPoint(plant, target, duration, start)
-    steps = PopulationObjective(task, PROFILE).steps
-    for x in candidates(8, bound, seed=6):
-        W = sample_trajectory(task, PROFILE, x, [duration]).modes[0, 0]
-        assert rollout(task, PROFILE, x, steps).arrival[0] == pytest.approx(W, rel=0, abs=1e-6)
-
-
 @pytest.mark.parametrize(
     ("plant", "duration", "bound"),
     [(SingleLinkManipulator(omega=30.0), 0.8, 0.2), (SINGLE_LINK, 3.0, 0.2)],
-    ids=["fast link", "fast arm", "long move", "two links"],
+    ids=["fast link", "long move"],
 )
-def test_other_plants_and_durations_are_as_accurate(two_links, plant, duration, bound):
-    task = PointToPoint(plant or two_links, pi / 2, duration)
+def test_other_plants_and_durations_are_as_accurate(plant, duration, bound):
+    task = PointToPoint(plant, pi / 2, duration)
     X = candidates(10, bound, seed=8)
     values = PopulationObjective(task, PROFILE)(X)
     motions = [resimulate(task, PROFILE, x) for x in X]

@@ -34,12 +34,6 @@ def test_hypervolume_by_generation(method):
     assert shares[-1] == pytest.approx(_hypervolume(front), rel=1e-3)
 
 
-def test_the_reference_is_the_residual_of_the_plain_cycloid_and_twice_its_energy():
-    # docs/physics.md: max |W| 3.382e-2 m (times phi) and 0.09115 J; 2.947e-2 m and 0.12457 J.
-    assert found("vepso").reference == pytest.approx((2.28 * 3.382e-2, 2 * 0.09115), rel=2e-4)
-    assert found("nsga2").reference == pytest.approx((0.508 * 2.947e-2, 2 * 0.12457), rel=2e-4)
-
-
 @METHODS
 def test_a_report_comes_after_every_generation(method):
     seen = []

@@ -3,12 +3,10 @@
 import math
 
 import pytest
-from pymoo.algorithms.moo.nsga2 import NSGA2
 from quietarm.metaheuristics import search
 from quietarm.ocp import CycloidPolynomial, PointToPoint, resimulate, rollout
 from small_searches import (
     BOUNDS,
-    HALF,
     METHODS,
     TASKS,
     assert_is_a_front,
@@ -87,11 +85,6 @@ def test_a_missing_bound_names_the_papers(method):
     one_line(caught)
 
 
-def _cancel(progress):
-    if progress.generation > 20:
-        raise RuntimeError("the search went on in spite of its odd settings")
-
-
 @METHODS
 @pytest.mark.parametrize(
     ("name", "value"),
@@ -100,16 +93,9 @@ def _cancel(progress):
 def test_odd_settings_are_named_with_a_remedy(method, name, value):
     settings = {"population": 4, "generations": 2, name: value}
     with pytest.raises(ValueError, match=f"{name}.* is .*; give ") as caught:
-        run(method, **settings, report=_cancel)
+        run(method, **settings)
     assert str(value) in str(caught.value)
     one_line(caught)
-
-
-def test_an_algorithm_of_your_own_needs_generations_and_has_its_population():
-    with pytest.raises(ValueError, match="number of generations for NSGA2"):
-        search(HALF, NSGA2(pop_size=10), bound=0.5)
-    with pytest.raises(ValueError, match="population is set in the algorithm"):
-        search(HALF, NSGA2(pop_size=10), bound=0.5, generations=3, population=10)
 
 
 def test_a_plant_of_two_modes(two_links):

@@ -22,7 +22,7 @@ def test_limited_to_200_the_arm_needs_what_other_transcriptions_find(coarse_of):
 @pytest.mark.parametrize(
     "limits",
     [{}, {"torque_limit": 0.5, "speed_limit": 3.6}],
-    ids=["no limit", "torque and speed", "deflection"],
+    ids=["no limit", "torque and speed"],
 )
 def test_no_plan_is_cheaper(solved, coarse_of, limits):
     task = replace(ARM, **limits)

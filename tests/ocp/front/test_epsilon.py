@@ -83,19 +83,6 @@ def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     assert len(front.points) > 2
 
 
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        ({"points": 1}, "points is 1"),
-        ({"bound": -1.0}, "-1"),
-        ({"solver": "snopt"}, "solver is 'snopt'"),
-    ],
-)
-def test_bad_input_is_refused(arguments, text):
-    with pytest.raises(ValueError, match=text):
-        qa.epsilon_front(CASES["arm"][0], **arguments)
-
-
 def test_there_is_a_point_at_every_residual_that_is_asked_for():
     task, bound = CASES["arm"]
     at, told = (1e-4, 1e-3, 5e-3, 1.0), []  # at 1 m there is no front

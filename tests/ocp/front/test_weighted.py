@@ -62,12 +62,3 @@ def test_the_figures_are_those_of_the_independent_integrator(case):
         motion = qa.resimulate(task, front.profile, point.coefficients)
         assert (point.residual, point.energy) == (motion.residual, motion.energy)
         assert np.abs(point.coefficients).max() <= bound
-
-
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [({"weights": [(1.0, -2.0)]}, "-2"), ({"weights": [(0.5, 0.5), (0, 0.0)]}, "0")],
-)
-def test_bad_input_is_refused(arguments, text):
-    with pytest.raises(ValueError, match=text):
-        qa.weighted_front(CASES["arm"][0], **arguments)

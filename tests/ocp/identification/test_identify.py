@@ -118,14 +118,14 @@ def test_pushes_of_different_machines_have_an_interval_that_has_them_all():
 
 
 def test_intervals_cover_the_truth():
-    # benchmarks/coverage_of_identify.py has 200 with a moving hub; binomial: 34 of 40 or fewer
-    # has a chance of 1 in 30 for 95 %, of 1 in 30,000 for 99 %
+    # benchmarks/coverage_of_identify.py has 200 with a moving hub; binomial: 16 of 20 or fewer
+    # has a chance of 1 in 60 for 95 %
     hits = 0
-    for seed in range(40):
-        found = qa.identify([rung(2 + seed / 20, seconds=3.0, seed=seed)], qa.FlexibleBeam())
+    for seed in range(20):
+        found = qa.identify([rung(2 + seed / 10, seconds=3.0, seed=seed)], qa.FlexibleBeam())
         low, high = ends_of(found)["omega"]
-        hits += low < 2 * math.pi * (2 + seed / 20) < high
-    assert hits >= 34
+        hits += low < 2 * math.pi * (2 + seed / 10) < high
+    assert hits >= 17
 
 
 def test_a_machine_is_saved_and_planned_for_robustly(tmp_path):
@@ -152,16 +152,3 @@ RING = np.cos(20 * T)
 def test_what_cannot_be_a_recording_is_refused(make, said):
     with pytest.raises(ValueError, match=said):
         make()
-
-
-@pytest.mark.parametrize(
-    ("recording", "free", "said"),
-    [
-        (rung(seconds=0.5), None, "has no ring-down: it lasts 1.* periods"),
-        (rung(), ["omge"], "has no parameter 'omge'; did you mean 'omega'"),
-        (rung(), ["hub_inertia"], "the joint does not move"),
-    ],
-)
-def test_what_tells_nothing_is_refused(recording, free, said):
-    with pytest.raises(ValueError, match=said):
-        qa.identify([recording], qa.FlexibleBeam(), free)

@@ -88,11 +88,3 @@ def test_an_overdamped_plant_is_brought_to_rest_from_its_stillest_motion():
     task = qa.PointToPoint(plant, math.pi / 6, 0.8)
     plan = qa.plan_move(task, qa.CycloidPolynomial(3), starts=1)
     assert plan.residual < 1e-8
-
-
-def test_a_profile_is_told_by_its_own_size(tasks):
-    task = qa.PointToPoint(tasks["arm"].plant, math.pi / 2, 0.8, torque_limit=0.02)
-    with pytest.raises(qa.InfeasibleTaskError, match=r"no motion of 5 nodes .* more nodes or"):
-        qa.plan_move(task, qa.CycloidNetwork(5), starts=1)
-    with pytest.raises(ValueError, match=r"zv shaper .* has one motion for a move"):
-        qa.epsilon_front(tasks["arm"], qa.shaped_cycloid(tasks["arm"], "zv"), points=3)

@@ -140,16 +140,3 @@ def test_a_deflection_held_before_the_move_saves_energy(tasks):
     bent = {W: qa.plan_move(replace(task, initial=qa.ModalState((W,), (0.0,)))).energy
             for W in (-0.02, 0.02)}  # fmt: skip
     assert bent[-0.02] < 0.75 * from_rest < from_rest < bent[0.02]
-
-
-@pytest.mark.parametrize(
-    ("W", "dW", "told"),
-    [
-        ([float("nan")], [0.0], "W of mode 1 is nan; give a finite"),
-        ([0.0, 1.0], [0.0], "2 amplitudes and 1 rates; give one of each"),
-        ([0.0, 0.0], [0.0, 0.0], "initial state has 2 modes and single-link has 1; give"),
-    ],
-)
-def test_a_wrong_state_is_refused_with_the_remedy(tasks, W, dW, told):
-    with pytest.raises(ValueError, match=told):
-        replace(tasks["single link"], initial=qa.ModalState(W, dW))

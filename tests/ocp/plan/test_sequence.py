@@ -59,18 +59,6 @@ def test_a_sequence_begins_each_move_with_what_the_last_one_left(tmp_path):
     assert qa.Plan.load(tmp_path / "third.json") == found[2].plan
 
 
-@pytest.mark.parametrize(
-    ("task", "told"),
-    [
-        (qa.PointToPoint(qa.ArmOnFlexibleLink(), 0.0, 0.8, start=0.5), "different plants; give"),
-        (qa.PointToPoint(LINK, 0.0, 0.8, start=0.5), "starts at 0.5 rad .* ends at 0.523599 rad"),
-    ],
-)
-def test_a_move_that_does_not_follow_is_refused(earlier, task, told):
-    with pytest.raises(ValueError, match=told):
-        qa.plan_after(earlier, task, 0.0)
-
-
 def test_as_many_waits_as_gaps(back):
     with pytest.raises(ValueError, match="1 waits are given for 1 moves; give one between"):
         qa.plan_sequence([back], [0.1])

@@ -50,14 +50,6 @@ def test_a_linear_plant_is_left_with_the_closed_form(shaper, r):
     )
 
 
-@pytest.mark.parametrize("shaper", ["zv", "zvd"])
-def test_two_damped_modes_are_both_left_at_rest(shaper):
-    task = qa.PointToPoint(qa.DualLinkManipulator(b1=0.0, b2=0.0), pi / 2, 1.3)
-    profile = qa.shaped_cycloid(task, shaper)
-    assert len(profile.frequencies) == 2
-    assert qa.resimulate(task, profile, []).residual < 1e-9
-
-
 @pytest.mark.parametrize(
     ("plant", "modes", "duration"),
     [

@@ -72,15 +72,6 @@ def test_joint_rests_at_start_and_target(a, start, target, duration):
         assert path(ends, order) == pytest.approx([0.0, 0.0], abs=close)
 
 
-@settings(max_examples=40)
-@given(a=coefficients, order=st.integers(1, 3), outside=st.floats(1e-6, 100.0))
-def test_joint_rests_before_and_after_the_move(a, order, outside):
-    path = _path(a, -0.3, 1.1, 0.8)
-    times = [-outside, 0.8 + outside]
-    assert path(times) == pytest.approx([-0.3, 1.1], abs=1e-14)
-    assert path(times, order).tolist() == [0.0, 0.0]
-
-
 @settings(max_examples=25)
 @given(a=coefficients, start=angles, target=angles, duration=durations, fraction=st.floats(0, 1))
 def test_derivatives_are_those_of_the_angle(a, start, target, duration, fraction):

@@ -71,16 +71,3 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     again = qa.resimulate(replace(task, plant=there), evaluated.profile, MOVE)
     # With the errors as parameters CVODES takes other steps: within its tolerance the same.
     assert evaluated.worst.residual == pytest.approx(again.residual, rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("ranges", "samples", "complaint"),
-    [
-        (dict.fromkeys(["phi", "beta2", "c", "zeta", "omega"], 0.1), (), "give at most 4"),
-        ({"omega": 0.1}, ((0.1, 0.1),), "has 2 errors; give 1"),
-        ({"omega": 0.1}, ((0.2,),), r"error of omega in a sample is 0.2; give one within \+-0.1"),
-    ],
-)
-def test_what_is_wrong_is_said_in_a_line(ranges, samples, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        qa.UncertainPlant(qa.SingleLinkManipulator(), ranges, samples)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, mesh
 from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     energy_derivatives,
@@ -70,17 +70,6 @@ def test_the_gradient_is_the_integral_of_the_sign(name):
     expected = [_with_sign(quadratic, function) for function in BASIS]
     assert _energy(quadratic(NODE)) == pytest.approx(_with_sign(quadratic, quadratic), abs=1e-14)
     assert gradient == pytest.approx(np.array(expected), abs=1e-13)
-
-
-@pytest.mark.parametrize("name", QUADRATICS)
-def test_the_curvature_is_two_over_the_slope_at_each_zero(name):
-    # The derivative of the integral of sign(p) q: q jumps by twice itself where the zero moves.
-    quadratic = QUADRATICS[name]
-    bends, expected = _derivatives(quadratic(NODE))[1], np.zeros((NODES, NODES))
-    for zero in _zeros(quadratic):
-        at_zero = np.array([function(zero) for function in BASIS])
-        expected += 2 * np.outer(at_zero, at_zero) / abs(quadratic.deriv()(zero))
-    assert bends == pytest.approx(expected, rel=1e-10, abs=1e-13)
 
 
 def test_where_the_power_touches_zero_the_gradient_is_that_of_one_sign():

@@ -2,8 +2,6 @@
 
 import io
 import math
-import stat
-import sys
 
 import numpy as np
 import pytest
@@ -87,41 +85,6 @@ def test_moves_of_different_durations_share_a_clock(plan, task):
 
 
 # -- MP4 --
-
-FAKE = """#!{python}
-import sys
-content = sys.stdin.buffer.read({read})
-with open(sys.argv[-1], "wb") as file:
-    file.write(" ".join(sys.argv[1:-1]).encode() + b"|" + str(len(content)).encode())
-print("could not", file=sys.stderr)
-sys.exit({status})
-"""
-
-
-@pytest.fixture
-def ffmpeg(tmp_path, monkeypatch):
-    """Put a program of this name in the place of the real one."""
-
-    def put(status=0, read=""):
-        program = tmp_path / "bin" / "ffmpeg"
-        program.parent.mkdir()
-        program.write_text(FAKE.format(python=sys.executable, status=status, read=read))
-        program.chmod(program.stat().st_mode | stat.S_IXUSR)
-        monkeypatch.setenv("PATH", str(program.parent))
-
-    return put
-
-
-def test_ffmpeg_is_given_every_pixel(plan, ffmpeg):
-    ffmpeg()
-    film = animate([Line(plan, "plan")], format="mp4", width=301, frames_per_second=4)
-    options, count = film.content.decode().split("|")
-    words = options.split()
-    width, height = map(int, words[words.index("-s") + 1].split("x"))
-    assert width == 301
-    assert words[words.index("-r") + 1] == "4"
-    assert int(count) == 8 * width * height * 3  # 1.8 s at 4 frames a second
-    assert film._repr_html_().startswith('<video controls loop src="data:video/mp4;base64,')
 
 
 def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch):

@@ -46,13 +46,6 @@ def test_plants_are_listed_with_what_their_parameters_mean(call):
     assert out.startswith("crane")
 
 
-def test_plans_and_floors_are_found(call):
-    for command in ("plan", "floor --starts 1 --tolerance 0.1"):
-        code, out, err = call(f"{command} {MOVE} --plant-file crane.py --quiet --starts 1")
-        assert (code, err) == (0, ""), command
-        assert "crane, 0 to" in out
-
-
 def test_what_was_saved_is_read_with_the_plant_file_alone(call):
     code, _, err = call(
         f"front {MOVE} --plant-file crane.py --method nsga2 {SHORT} --output f.json "

@@ -14,9 +14,7 @@ from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
     epsilon_front,
-    evaluate_coefficients,
 )
-from quietarm.studies.comparison.staircase import filled
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
 compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)
@@ -124,17 +122,6 @@ def real():
     """A gradient's front of the README's move, of a few points."""
     task = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
     return epsilon_front(task, CycloidPolynomial(2), bound=0.2, points=9)
-
-
-def test_between_points_lie_motions_with_coefficients_in_between(real):
-    one, other = real.points[3:5]
-    middle = np.mean([one.coefficients, other.coefficients], axis=0)
-    plan = evaluate_coefficients(real.task, middle)  # by CVODES
-    table = filled(real, 2 * (len(real.points) - 1))  # one between each two
-    found = table[np.argmin(np.abs(table[:, 0] - plan.residual))]
-    assert tuple(found) == pytest.approx((plan.residual, plan.energy), rel=1e-4)
-    assert one.residual < found[0] < other.residual
-    assert one.energy > found[1] > other.energy
 
 
 def test_the_number_of_points_does_not_decide(real):

@@ -2,20 +2,16 @@
 
 import math
 
-import numpy as np
 import pytest
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
-    CycloidPolynomial,
     InfeasibleTaskError,
     PointToPoint,
     epsilon_front,
     evaluate_coefficients,
-    evaluate_robustness,
     plan_move,
 )
 from quietarm.studies.cli import main
-from quietarm.studies.explore.drawn import robustness_curves
 from quietarm.studies.explore.opening import of_file, of_plant
 from quietarm.studies.sweep.library import MoveLibrary
 
@@ -58,12 +54,6 @@ def test_a_move_that_is_none_is_refused_with_its_remedy(begun):
         begun.changed({"torque_limit": 0.01}).solved()
 
 
-def test_the_answer_is_the_gradients(begun):
-    limited = begun.changed({"acceleration_limit": 40.0, "residual_limit": 1.0, "bound": 0.3})
-    task = PointToPoint(LINK, math.pi / 6, 0.8, acceleration_limit=40.0)
-    assert limited.solved().plan == plan_move(task, residual_limit=1e-3, bound=0.3)
-
-
 def test_a_point_of_the_front_is_picked_and_another_move_has_none(begun):
     told = []
     now = begun.changed({"bound": 0.2}).with_front(lambda *counts: told.append(counts))
@@ -75,13 +65,6 @@ def test_a_point_of_the_front_is_picked_and_another_move_has_none(begun):
     assert picked.changed({"a1": 0.1}).front is now.front
     assert picked.changed({"duration": 0.9}).front is None
     assert picked.changed({"bound": None}).front is None
-
-
-def test_the_robustness_is_that_of_the_motion(begun):
-    curve, tolerated = robustness_curves(begun)
-    own = evaluate_robustness(TASK, CycloidPolynomial(), np.zeros(6), {"frequency": 0.2}, samples=1)
-    assert curve.y == pytest.approx(1e3 * own.sweeps[0].figures.residual, rel=1e-3)
-    assert tolerated.y == pytest.approx([1e3 * own.tolerated] * 2, rel=1e-3)
 
 
 def test_a_plan_and_a_front_are_opened_with_what_they_were_asked_for(tmp_path):

@@ -8,15 +8,13 @@ import pytest
 import quietarm.studies.comparison.measures
 import quietarm.studies.reading.saved
 import quietarm.studies.reports.comparison
-from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import PointToPoint
 from quietarm.studies.comparison.tables import runs_table, tables
 from quietarm.studies.document.files import table_in_markdown
 from quietarm.studies.figures.comparison import (
     BANDS,
     comparison_figure,
 )
-from quietarm.studies.paper import ARM_HALF, SINGLE_LINK_HALF_1_0, condition_of, paper_points
+from quietarm.studies.paper import ARM_HALF, paper_points
 
 compare = partial(quietarm.studies.comparison.measures.compare_fronts, fill=0)
 
@@ -99,11 +97,3 @@ def test_the_picture_holds_floor_and_papers_points(front_of):
             drawn(axis, "paper, N = 6"), [[point.residual * 1e3, 0.1492]], rtol=1e-3
         )
         assert set(drawn(axis, "floor: any joint motion, at rest")[:, 1]) == {0.09}
-
-
-def test_where_the_paper_prints_no_coefficients_its_energy_is_known(task):
-    (point,) = paper_points(SINGLE_LINK_HALF_1_0.task, {6})
-    assert (point.energy, point.residual) == (0.296, None)  # Table 3
-    assert paper_points(SINGLE_LINK_HALF_1_0.task, {3}) == []
-    assert paper_points(PointToPoint(ArmOnFlexibleLink(), 1.0, 1.0), {6}) == []
-    assert condition_of(task).label == "0 to pi/6, 0.8 s"

@@ -104,17 +104,6 @@ def test_limits_are_lines_where_a_motion_comes_near_them(task, limit, shown):
     }
 
 
-def test_the_jerk_is_drawn_where_a_task_limits_it(task):
-    # the cycloid's largest: span (2 pi)^2 / duration^3 = 40.4 rad/s^3
-    limited = evaluate_coefficients(dataclasses.replace(task, jerk_limit=50.0), [])
-    titles = [axis.get_title(loc="left") for axis in panels(motion_figure([Line(limited, "it")]))]
-    assert "(d) joint jerk [rad/s^3]" in titles
-    assert len(titles) == 6
-    axis = draw_quantity([Line(limited, "it")], "jerk")
-    assert limits(axis) == [-50.0, 50.0]
-    assert np.max(motions(axis)[0].get_ydata()) == pytest.approx(40.37, rel=1e-3)
-
-
 # Axes
 
 

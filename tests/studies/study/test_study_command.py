@@ -4,7 +4,6 @@ import pytest
 import quietarm.studies.study.work as study_module
 from quietarm.ocp import Front
 from quietarm.studies.study.findings import case_findings
-from quietarm.studies.study.page import _file_name, front_files
 from quietarm.studies.study.work import Study
 from small_study import QUICK
 
@@ -45,10 +44,3 @@ def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
     saved = [Front.load(path) for path in (folder / "fronts").iterdir()]
     assert len(saved) == len(runs) == 8
     assert all(run.front in saved for run in runs)
-
-
-def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small, tmp_path):
-    names = [path.name for path, _ in front_files(small, tmp_path)]
-    assert len(names) == len(set(names)) == 16
-    assert "arm-on-flexible-link-0-to-90-deg-in-0.8-s-nsga2-polished-seed0.json" in names
-    assert _file_name("-90 to 45 deg") == "minus-90-to-45-deg"

@@ -4,10 +4,8 @@ import pytest
 import quietarm.metaheuristics.ensemble as ensemble
 import quietarm.studies.study.work as study_pieces
 from quietarm.ocp import (
-    PointToPoint,
     SolverFailedError,
 )
-from quietarm.studies.paper import Case
 from quietarm.studies.study.findings import case_findings
 from quietarm.studies.study.work import amount_of_work, run_study
 from small_study import CASES, METHODS, QUICK
@@ -35,15 +33,6 @@ def test_polish_never_makes_worse_what_it_starts_from(small):
             gained = polished.hypervolume_found - first.hypervolume_found
             assert gained > -1e-5  # the two integrators differ by that much
             assert len(found.polishes[method].gains) == len(first.front.points)
-
-
-def test_a_plant_of_ones_own_needs_a_bound(two_links):
-    task = PointToPoint(two_links, 1.5, 0.9)
-    with pytest.raises(ValueError, match="give a bound on the coefficients"):
-        Case(task)
-    assert Case(task, 0.3).bound == 0.3
-    with pytest.raises(ValueError, match="bound on the coefficients is -1"):
-        Case(task, -1)
 
 
 def searches_that_find(monkeypatch, answer):

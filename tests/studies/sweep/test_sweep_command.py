@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from quietarm.models import FlexibleBeam, SingleLinkManipulator
-from quietarm.ocp import PointToPoint, epsilon_front, plan_move
+from quietarm.ocp import PointToPoint, plan_move
 from quietarm.studies.sweep.library import MoveLibrary
 
 QUIETARM = [str(Path(sys.executable).parent / "quietarm")]
@@ -95,17 +95,6 @@ def test_two_parts_and_a_killed_run_end_as_one_that_ran_through(call, folder):
     killed.wait(timeout=60)
     assert call(f"{MOVES} --output killed.zarr")[0] == 0
     assert same(dataset("killed.zarr"), whole)
-
-
-def test_fronts_over_a_grid(call, folder):
-    line = "sweep single-link --target 30deg --duration 0.8,1 --front 6 --bound 0.2 --quiet"
-    code, _, err = call(f"{line} --output fronts.zarr --figure fronts.png")
-    assert (code, err) == (0, "")
-    found = dataset("fronts.zarr").sel(duration=0.8)
-    task = PointToPoint(SingleLinkManipulator(), math.radians(30), 0.8)
-    front = epsilon_front(task, bound=0.2, points=6)
-    assert found.front_energy.values == pytest.approx(front.energies, rel=1e-3)
-    assert found.front_residual.values == pytest.approx(front.residuals, rel=0.02, abs=1e-6)
 
 
 def test_a_grid_is_refined_until_its_moves_are_still_enough(call, folder):

@@ -10,7 +10,6 @@ from quietarm.metaheuristics.algorithms.velocity import (
     CONSTRICTION,
     INERTIA_2002,
     PAPER_GROUP,
-    VelocityRule,
 )
 from quietarm.metaheuristics.algorithms.vepso import VEPSO
 from target_problems import Targets, state_of
@@ -31,16 +30,6 @@ def test_wrong_arguments_are_named_with_the_remedy(arguments, message):
     with pytest.raises(ValueError, match=message) as caught:
         VEPSO(**arguments)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(VelocityRule)])
-@pytest.mark.parametrize(
-    "value",
-    [-0.1, float("nan")],
-)
-def test_constants_of_the_velocity_are_checked(field, value):
-    with pytest.raises(ValueError, match=f"{field} is {value!r}; give"):
-        dataclasses.replace(CONSTRICTION, **{field: value})
 
 
 def test_presets_are_the_published_constants():

@@ -2,7 +2,6 @@
 
 import csv
 import dataclasses
-import re
 
 import pytest
 import quietarm.studies.comparison.measures
@@ -26,16 +25,6 @@ def files(good, poor, tmp_path, monkeypatch):
 
 
 # The command
-
-
-def test_compare_shows_tables_and_what_they_mean(call, files):
-    code, out, err = call("compare good.json poor.json --as-found --no-floor")
-    assert (code, err) == (0, "")
-    assert "single-link, 0 to 30 deg in 0.8 s" in out
-    for words in ("epsilon constraint", "hypervolume", "IGD+", "epsilon", "Coverage"):
-        assert words in out
-    assert re.search(r"up to 8.8 mm and 0.84 J, a tenth beyond its ends", " ".join(out.split()))
-    assert {path.name for path in files.iterdir()} == {"good.json", "poor.json"}
 
 
 def test_compare_fills_a_folder(call, files, good, poor):

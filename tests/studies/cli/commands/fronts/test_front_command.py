@@ -66,15 +66,6 @@ def test_an_interrupted_search_goes_on_to_the_same_front(call, interrupted_at, m
     assert Front.load("resumed.json") == Front.load("whole.json")
 
 
-@pytest.mark.parametrize(
-    ("other", "difference"),
-    [(SMALL.replace("30deg", "31deg"), "target"), (f"{SMALL} --seed 1", "seed")],
-)
-def test_a_checkpoint_of_another_search_is_refused(call, refused, other, difference):
-    assert call(f"{SMALL} --quiet --checkpoint state")[0] == 0
-    assert difference in refused(f"{other} --resume state --output f.json")
-
-
 # Several seeds
 
 

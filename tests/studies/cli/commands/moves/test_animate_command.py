@@ -27,15 +27,6 @@ def test_plans_of_different_plants_and_durations_share_a_picture(call, folder):
     assert out == f"8 frames, 2.5 s, {kilobytes:.0f} kB\nwrote move.gif\n"
 
 
-def test_a_plan_alone_stands_beside_the_plain_cycloid(call):
-    line = "animate plan.json --speed 200% --deflection-scale 3 --width 240 --frames-per-second 4"
-    code, _, err = call(f"{line} --output move.gif")
-    assert (code, err.splitlines()[-1]) == (0, "4 of 4 frames")
-    assert call(f"{line} cycloid.json --output two.gif")[0] == 0
-    with Image.open("move.gif") as alone, Image.open("two.gif") as two:
-        assert alone.size == two.size
-
-
 def test_ctrl_c_leaves_nothing_behind(at_a_terminal, ctrl_c, folder):
     before = set(folder.iterdir())
     line = "animate plan.json --output m.gif --width 2000 --frames-per-second 50 --speed 20%"

@@ -32,12 +32,3 @@ def test_it_prints_the_floor_and_writes_it(call, tmp_path):
     assert float(left[1]) == pytest.approx(floor.left, rel=0.06)
     assert shown["plan, 6 terms"].startswith(f"{plan_beside(floor).energy:.6g} J")
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_limits_without_any_plan_still_have_a_floor(call):
-    # Six terms need 34 rad/s^2 on this move; a free motion does it with 27.
-    code, out, err = call(
-        f"floor {MOVE} --acceleration-limit 30 --starts 1 --tolerance 0.5 --quiet"
-    )
-    assert (code, err) == (0, "")
-    assert "none within these limits" in out

@@ -30,13 +30,6 @@ def test_an_exported_plan_comes_back_as_it_was(call, folder):
     assert "161 points, 5 ms apart" in out
 
 
-def test_what_errors_of_the_plant_leave_is_said(call, folder):
-    line = f"evaluate single-link --path {folder}/path.csv --robust frequency=5%"
-    out = call(line)[1]
-    for error in ("-5", "+5"):
-        assert re.search(rf"residual +[0-9.]+ mm with frequency \{error} %", out)
-
-
 def changed(folder, change):
     """The path's columns after a change, in a file."""
     table = np.genfromtxt(folder / "path.csv", delimiter=",", names=True)
