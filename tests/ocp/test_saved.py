@@ -74,14 +74,3 @@ def test_a_wrong_entry_is_named(saved, place, value, word):
     inner[last] = value
     saved.write_text(json.dumps(document))
     assert word in refusal(saved)
-
-
-@pytest.mark.parametrize(
-    "name",
-    ["coefficients"],
-)
-def test_a_missing_entry_is_named(saved, name):
-    document = json.loads(saved.read_text())
-    del document[name]
-    saved.write_text(json.dumps(document))
-    assert name in refusal(saved)

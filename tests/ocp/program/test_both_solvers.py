@@ -1,6 +1,5 @@
 """Two ways through the same program: sequential quadratic programs, and IPOPT."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ from quietarm.ocp.program.solving import SOLVERS, Row, solve
 
 import quietarm as qa
 
-pi, STEPS, TERMS = math.pi, 48, 6
+TERMS = 6
 PROFILE = qa.CycloidPolynomial(TERMS)
 AT_REST = {RESIDUAL: 0.0}
 LIMITED = Ask({RESIDUAL: 2e-3})

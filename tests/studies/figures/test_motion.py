@@ -115,14 +115,3 @@ def test_pictures_are_saved_whole(picture, tmp_path, suffix):
     assert content.startswith(HEADS[suffix])
     assert content.endswith(TAILS[suffix])
     assert list(tmp_path.iterdir()) == [path]
-
-
-@pytest.mark.parametrize(
-    "name",
-    ["move.txt"],
-)
-def test_other_endings_are_refused_and_the_endings_named(picture, tmp_path, name):
-    with pytest.raises(ValueError, match=r"is no picture; .* \.png, \.pdf, \.svg") as refused:
-        save_figure(picture, tmp_path / name)
-    assert str(tmp_path / name) in str(refused.value)
-    assert list(tmp_path.iterdir()) == []

@@ -34,12 +34,8 @@ def of_gradient(found):
     return found.isdisjoint(HEAVY) and rooms <= {"algorithms", "runs", "search"}
 
 
-@pytest.mark.parametrize(
-    "line",
-    ["--help"],
-)
-def test_help_and_version_load_no_command(tmp_path, line):
-    found = loaded(line, tmp_path)
+def test_help_and_version_load_no_command(tmp_path):
+    found = loaded("--help", tmp_path)
     assert found.isdisjoint(HEAVY)
     assert not [name for name in found if name.startswith("quietarm.studies.cli.commands")]
 

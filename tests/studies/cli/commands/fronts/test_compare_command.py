@@ -1,13 +1,11 @@
 """`quietarm compare`: what it shows, what it writes, what it refuses."""
 
 import csv
-import dataclasses
 
 import pytest
 import quietarm.studies.comparison.measures
 import quietarm.studies.reading.saved
 import quietarm.studies.reports.comparison
-from quietarm.ocp import FrontPoint, evaluate_coefficients
 
 # The fronts are invented, not motions of the plant: nothing can be evaluated between their points.
 FILES = ("report.md", "runs.csv", "coverage.csv", "fronts.png")
@@ -60,30 +58,3 @@ def test_what_is_no_front_is_refused_in_a_line(call, files, content, words):
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert "bad.json" in err
     assert words in err
-
-
-@pytest.fixture
-def moved(task):
-    """Three motions of the plant, with the figures that CVODES gives them."""
-    points = []
-    for a in (0.0, 0.02, 0.04):
-        plan = evaluate_coefficients(task, [a, 0.0])
-        points.append(FrontPoint((a, 0.0), plan.residual, plan.energy))
-    return points
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [({"energy": 0.002}, "states energy 0.002 J, but its coefficients give 0.0")],
-)
-def test_edited_figures_are_refused_in_a_line(call, front_of, moved, tmp_path, change, words):
-    edited = dataclasses.replace(moved[1], **change)
-    of_points(front_of, moved[:1]).save(tmp_path / "a.json")
-    of_points(front_of, [edited]).save(tmp_path / "b.json")
-    code, out, err = call(f"compare {tmp_path / 'a.json'} {tmp_path / 'b.json'} --no-floor")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert f"b.json: point 1 of 1 {words}" in err
-
-
-def of_points(front_of, points):
-    return dataclasses.replace(front_of([(1, 1)]), points=tuple(points))

@@ -81,11 +81,8 @@ def test_an_energy_that_is_not_the_papers_is_named(call):
     assert "energy positive+copper:0.12" in out
 
 
-@pytest.mark.parametrize(
-    "line",
-    [f"evaluate {MOVE} --coefficients=0.003347,-0.1697"],
-)
-def test_sensitivities_are_a_row_a_parameter_where_asked_for(call, line):
+def test_sensitivities_are_a_row_a_parameter_where_asked_for(call):
+    line = f"evaluate {MOVE} --coefficients=0.003347,-0.1697"
     code, out, err = call(f"{line} --sensitivities")
     assert (code, err) == (0, "")
     rows = out.split("Sensitivities")[1]
