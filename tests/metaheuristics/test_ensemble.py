@@ -123,12 +123,3 @@ def test_ctrl_c_ends_processes_and_keeps_what_they_found():
     for found in fronts:
         assert found.points
         assert found.evaluations == 40 * len(found.history)  # whole generations
-
-
-@pytest.mark.parametrize("name", ["checkpoint", "resume"])
-def test_runs_cannot_share_a_checkpoint(tmp_path, name):
-    with pytest.raises(ValueError, match="a checkpoint holds one search, and there are 2 runs"):
-        search_many(TASK, "vepso", 2, **SMALL, **{name: tmp_path / "state"})
-    assert list(tmp_path.iterdir()) == []
-    search_many(TASK, "vepso", 1, **SMALL, checkpoint=tmp_path / "state")
-    assert (tmp_path / "state").exists()

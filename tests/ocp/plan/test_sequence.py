@@ -59,16 +59,6 @@ def test_a_sequence_begins_each_move_with_what_the_last_one_left(tmp_path):
     assert qa.Plan.load(tmp_path / "third.json") == found[2].plan
 
 
-def test_as_many_waits_as_gaps(back):
-    with pytest.raises(ValueError, match="1 waits are given for 1 moves; give one between"):
-        qa.plan_sequence([back], [0.1])
-
-
-def test_a_wait_before_the_arrival_is_refused(earlier):
-    with pytest.raises(ValueError, match=r"wait is -0\.1 s; give 0 or more"):
-        earlier.state_after(-0.1)
-
-
 def test_ctrl_c_keeps_the_moves_until_then(back, monkeypatch):
     def interrupted(*given, **settings):
         raise KeyboardInterrupt

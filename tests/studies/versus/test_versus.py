@@ -1,6 +1,5 @@
 """Plans against shapers and ruckig on the same move."""
 
-import csv
 from dataclasses import replace
 from math import pi
 
@@ -72,15 +71,3 @@ def test_a_shaped_motion_is_the_sum_of_its_delayed_shares():
             share * angle_at(free, time - begin) for share, begin in zip(*impulses, strict=True)
         )
         assert angle_at(both, time) == pytest.approx(sum(parts), abs=1e-12)
-
-
-def test_the_command_writes_a_row_each(call, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    line = "versus flexible-beam --set omega=3.2Hz --target 60deg --duration 0.7"
-    code, out, err = call(f"{line} --terms 2 --output against")
-    assert (code, err) == (0, "")
-    assert "ruckig: ruckig needs an acceleration limit" in out
-    rows = list(csv.DictReader((tmp_path / "against" / "versus.csv").read_text().splitlines()))
-    assert [row["motion"] for row in rows][:3] == ["plan", "plain cycloid", "zv, cycloid"]
-    assert float(rows[0]["residual_mm"]) < 1e-5
-    assert (tmp_path / "against" / "versus.png").read_bytes().startswith(b"\x89PNG")

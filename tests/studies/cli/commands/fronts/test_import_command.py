@@ -127,21 +127,6 @@ def test_files_of_many_kinds(call, folder, name):
     assert words in out
 
 
-def test_motions_that_others_beat_or_that_break_limits_are_left_out(call, folder):
-    rows = [*X.tolist(), [0.0, 0.0], [0.2, 0.2], [1e200, 0.0]]
-    written("f.csv", table(["a_1", "a_2"], rows))
-    assert call(f"import f.csv {IMPORT} --output f.json")[0] == 0
-    front = Front.load("f.json")
-    assert_same(front)
-    assert (front.evaluations, front.failed) == (len(rows), 1)
-    limited = f"import f.csv {IMPORT} --torque-limit 0.17 --output g.json"
-    assert call(limited)[0] == 0
-    kept = Front.load("g.json")
-    assert 0 < len(kept.points) < len(front.points)
-    assert kept.infeasible > 0
-    assert set(kept.points) < set(front.points)
-
-
 BAD = [
     ("a_1,a_2\n0.1\n", "line 2 has 1 columns, the first 2"),
     ("a_1,a_3\n0.1,0.1\n", "there is no column for coefficient 2; give all"),
