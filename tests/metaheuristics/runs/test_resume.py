@@ -97,6 +97,12 @@ def test_a_checkpoint_of_another_search_is_refused(checkpoints, changes, words):
     assert words in str(told.value)
 
 
+def test_a_checkpoint_of_another_version_is_refused(checkpoints, monkeypatch):
+    monkeypatch.setattr("quietarm.metaheuristics.runs.settings.versions", lambda: {"casadi": "1"})
+    with pytest.raises(ValueError, match="other software: its version of"):
+        run("nsga2", resume=checkpoints / "nsga2")
+
+
 @pytest.mark.parametrize(
     "spoil",
     [lambda b: b[: len(b) // 2], lambda b: b"a,b\n1,2\n"],

@@ -65,6 +65,11 @@ def test_a_table_has_a_row_for_every_tick_up_to_arrival(plan, tmp_path, rate, ro
     assert table[-2, 0] < 0.8
 
 
+def test_a_duration_that_is_a_tick_but_for_rounding_ends_at_that_tick(tasks, tmp_path):
+    plan = qa.evaluate_coefficients(replace(tasks["arm"], duration=0.1 + 0.2), [])
+    assert len(_table(plan, tmp_path / "move.csv", 1000)[1]) == 301
+
+
 def test_a_table_agrees_with_path_and_trajectory(any_plan, tmp_path):
     _, table = _table(any_plan, tmp_path / "move.csv", 200)
     t, digits = table[:, 0], 1e-9  # ten digits are written

@@ -69,6 +69,15 @@ def test_searches_see_what_cvodes_does(next_move):
         assert fixed.motion.residual == pytest.approx(exact.residual, rel=3e-4)
 
 
+def test_errors_of_the_plant_begin_in_the_same_state(next_move):
+    profile, a, errors = qa.CycloidPolynomial(3), [0.05, -0.1, 0.02], {"frequency": 0.07}
+    figures = qa.evaluate_robustness(next_move, profile, a, errors, samples=1).sweeps[0].figures
+    wrong = replace(next_move, plant=qa.with_errors(next_move.plant, errors))
+    exact = qa.resimulate(wrong, profile, a)
+    assert figures.residual[-1] == pytest.approx(exact.residual, rel=1e-4)
+    assert figures.energy[-1] == pytest.approx(exact.energy, rel=1e-5)
+
+
 def test_both_solvers_fronts_and_the_floor_begin_in_the_same_state(tasks):
     task = qa.evaluate_coefficients(tasks["single link"], []).next_move(0.0, 0.8, wait=WAIT)
     profile, settings = qa.CycloidPolynomial(4), {"bound": 0.3, "starts": 1}

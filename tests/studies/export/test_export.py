@@ -24,7 +24,7 @@ from scipy.io import loadmat
 
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
 STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"]
-LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8)
+LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8, start=-0.2)
 PROFILES = {
     "polynomial": CycloidPolynomial(6),
     "spline": CycloidSpline(6),
@@ -71,7 +71,7 @@ def test_c_gives_the_joints_motion_at_any_time(profile, tmp_path):
     expected = plan.sampled(times).joint
     found = np.array([joint(time) for time in times])
     assert found == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max())
-    assert joint(-1.0) == [0.0, 0.0, 0.0]
+    assert joint(-1.0) == [-0.2, 0.0, 0.0]
     assert joint(5.0) == [pi / 6, 0.0, 0.0]
 
 
