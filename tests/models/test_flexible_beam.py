@@ -66,14 +66,6 @@ def test_section_and_material_give_the_frequency():
     assert beam.mass_per_length == pytest.approx(0.314)
 
 
-@pytest.mark.parametrize(
-    "modes",
-    [1, 6],
-)
-def test_it_keeps_the_contract_of_plants(modes):
-    FlexibleBeam(mode_count=modes, hub_radius=0.05).validate()
-
-
 def test_a_plan_needs_the_second_mode_and_hardly_the_third():
     def left(planned, judged):
         move = [PointToPoint(FlexibleBeam(mode_count=n), pi / 6, 0.8) for n in (planned, judged)]

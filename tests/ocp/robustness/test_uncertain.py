@@ -31,12 +31,6 @@ def evaluated(task):
     return qa.evaluate_coefficients(task, MOVE)
 
 
-def test_the_samples_are_the_corners(task):
-    corners = {(-0.1, -0.05), (-0.1, 0.05), (0.1, -0.05), (0.1, 0.05)}
-    assert set(task.plant.samples) == corners
-    assert task.plant.modes == 5
-
-
 @pytest.mark.parametrize("of", ["task", "two_links_task"])
 def test_figures_are_the_worst_of_the_parts_alone(of, request):
     task = request.getfixturevalue(of)

@@ -1,6 +1,5 @@
 """A document says the same on a terminal, in Markdown and on a page that stands alone."""
 
-import base64
 import io
 import xml.etree.ElementTree as ElementTree
 
@@ -82,11 +81,3 @@ def test_every_form_holds_every_word_and_number(form):
         "page": lambda: "".join(of_the_page().itertext()),
     }[form]()
     assert [word for word in (*WORDS, NASTY) if word not in text] == []
-
-
-def test_a_picture_is_inside_the_page_with_words_for_those_who_do_not_see_it():
-    image = of_the_page().find(".//img")
-    assert image.get("alt") == "A line."
-    head, data = image.get("src").split(",")
-    assert head == "data:image/svg+xml;base64"
-    assert ElementTree.fromstring(base64.b64decode(data)).tag == "{http://www.w3.org/2000/svg}svg"
