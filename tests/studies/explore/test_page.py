@@ -13,7 +13,7 @@ CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
 )
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here")
-GUARD = 30
+GUARD = 240
 """Seconds after which what does not come has hung, on any machine."""
 api.expect.set_options(1e3 * GUARD)
 # Where a point of the front is on the page.
