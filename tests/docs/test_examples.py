@@ -149,6 +149,7 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
     "study": [*SEARCH, "--runs", "1", "--points", "4"],
     "contest": ["--runs", "1", "--evaluations", "150", "--methods", "nsga2,vepso"],
     "floor": ["--starts", "1", "--tolerance", "0.05"],
+    "versus": ["--terms", "4"],
 }
 LOUD = {"export", "plants"}
 """Commands that have no --quiet."""

@@ -13,14 +13,6 @@ def parent(known, say):
     return os.getppid()
 
 
-def kill_once(path, known, say):
-    """End the worker with SIGKILL, unless it was done before."""
-    if not Path(path).exists():
-        Path(path).touch()
-        os.kill(os.getpid(), signal.SIGKILL)
-    return "done by another"
-
-
 def kill_always(path, known, say):
     """End every worker with SIGKILL, and note it."""
     with Path(path).open("a") as file:

@@ -75,14 +75,6 @@ def test_its_workers_find_the_fronts_of_single_searches(address):
     assert heard == {0, 1, 2}
 
 
-@SIGKILL
-def test_a_piece_whose_worker_is_killed_is_done_by_another(address, tmp_path):
-    killing = partial(small_pieces.kill_once, str(tmp_path / "killed"))
-    pieces = [Piece("killing", "killing", killing), Piece("other", "other", small_pieces.add)]
-    done = run_pieces(pieces, workers=Workers(scheduler=address))
-    assert done.answers == {"killing": "done by another", "other": 1}
-
-
 def test_after_ctrl_c_what_was_found_is_there_and_the_workers_are_free(address):
     heard = set()
 

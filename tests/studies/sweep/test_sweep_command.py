@@ -98,11 +98,11 @@ def test_two_parts_and_a_killed_run_end_as_one_that_ran_through(call, folder):
 
 
 def test_a_grid_is_refined_until_its_moves_are_still_enough(call, folder):
-    line = "sweep single-link --target 30deg --duration 800ms:1s:100ms --quiet --refine 0.02mm"
+    line = "sweep single-link --target 30deg --duration 800ms:1s:100ms --quiet --refine 0.1mm"
     code, _, err = call(f"{line} --output fine.zarr")
     assert (code, err) == (0, "")
     library = MoveLibrary("fine.zarr")
-    assert library.between().residual <= 2e-5
+    assert library.between().residual <= 1e-4
     assert library.grid.cells > 3
     assert not list(folder.glob("fine.zarr.*"))
     assert call(f"{line} --output fine.zarr")[0] == 0  # nothing is left to do
