@@ -1,6 +1,5 @@
 """Many seeds: the same fronts however many processes, and none lost to Ctrl-C or to a death."""
 
-import dataclasses
 import math
 import multiprocessing
 import signal
@@ -15,7 +14,6 @@ from quietarm.metaheuristics.ensemble import (
     Spread,
     energies_at,
     energy_at,
-    hypervolumes,
     search_many,
 )
 from quietarm.models import SingleLinkManipulator
@@ -49,10 +47,6 @@ def _no_process_is_left():
 
 
 # -- the spread --
-
-
-def test_quartiles_of_five_seeds_are_the_second_third_and_fourth():
-    assert Spread.of([5.0, 1.0, 4.0, 2.0, 3.0]) == Spread(2.0, 3.0, 4.0, count=5, seeds=5)
 
 
 @given(st.lists(st.floats(-1e6, 1e6) | st.just(math.nan) | st.just(math.inf), max_size=9))
@@ -91,12 +85,6 @@ def test_seeds_that_never_arrive_still_are_counted():
     assert none.median == math.inf
 
 
-def test_the_hypervolume_is_that_of_the_last_generation():
-    fronts = [front(shares=shares) for shares in ([0.1, 0.5], [0.2, 0.75], [0.3, 0.625])]
-    assert hypervolumes(fronts) == Spread(0.5625, 0.625, 0.6875, count=3, seeds=3)
-    assert hypervolumes([front()]).median == 0.0
-
-
 # -- the searches --
 
 
@@ -128,17 +116,6 @@ def interrupt_at(seeds, generation=1):
     return report
 
 
-def test_ctrl_c_one_after_another_keeps_what_is_done_and_what_was_found_so_far():
-    report = interrupt_at({1}, generation=2)
-    done = []
-    fronts = search_many(TASK, "vepso", 3, report=report, done=done.append, **SMALL)
-    assert [(front.seed, front.complete) for front in fronts] == [(0, True), (1, False)]
-    assert fronts[0] == search(TASK, "vepso", seed=0, **SMALL)
-    assert len(fronts[1].history) == 2
-    assert fronts[1].points
-    assert [front.seed for front in done] == [0]
-
-
 def test_ctrl_c_ends_processes_and_keeps_what_they_found():
     report = interrupt_at({0, 1})
     fronts = search_many(TASK, "nsga2", 4, workers=2, report=report, **LONG)
@@ -146,24 +123,3 @@ def test_ctrl_c_ends_processes_and_keeps_what_they_found():
     for found in fronts:
         assert found.points
         assert found.evaluations == 40 * len(found.history)  # whole generations
-
-
-def test_a_front_goes_to_another_process_and_back_whole():
-    # what the processes rely on: every field, also one that is not compared, and read-only entries
-    found = search(TASK, "vepso", **SMALL)
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
-    theirs.send(found)
-    same = ours.recv()
-    assert same == found
-    assert same.seconds == found.seconds
-    assert dataclasses.asdict(same) == dataclasses.asdict(found)
-
-
-@pytest.mark.parametrize("name", ["checkpoint", "resume"])
-def test_runs_cannot_share_a_checkpoint(tmp_path, name):
-    with pytest.raises(ValueError, match="a checkpoint holds one search, and there are 2 runs"):
-        search_many(TASK, "vepso", 2, **SMALL, **{name: tmp_path / "state"})
-    assert list(tmp_path.iterdir()) == []
-    search_many(TASK, "vepso", 1, **SMALL, checkpoint=tmp_path / "state")
-    assert (tmp_path / "state").exists()

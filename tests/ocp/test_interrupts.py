@@ -19,13 +19,11 @@ def _swallow_ctrl_c():
         time.sleep(1.0)  # Python runs the handler at the next opportunity, at once
 
 
-@pytest.mark.parametrize("error", [None, AttributeError("'NoneType' object has no attribute 'T'")])
-def test_a_swallowed_ctrl_c_comes_after_the_block_in_place_of_errors_that_it_causes(error):
+def test_a_swallowed_ctrl_c_comes_after_the_block_in_place_of_errors_that_it_causes():
     def work():
         with keep_interrupts():
             _swallow_ctrl_c()
-            if error:
-                raise error
+            raise AttributeError("'NoneType' object has no attribute 'T'")
 
     with pytest.raises(KeyboardInterrupt):
         work()

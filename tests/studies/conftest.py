@@ -6,6 +6,7 @@ import shlex
 import signal
 import subprocess
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -32,13 +33,7 @@ from quietarm.studies.reproduction import recompute
 
 
 @pytest.fixture(scope="session")
-def begun():
-    """The names that the one reproduction reported as it began its solves and searches."""
-    return []
-
-
-@pytest.fixture(scope="session")
-def reproduction(begun):
+def reproduction():
     """The paper recomputed, once for all tests.
 
     Searches, floors and the solves with other profiles are cut short: how well they find is tested
@@ -47,7 +42,7 @@ def reproduction(begun):
     """
     search = ensemble.search
     short_as = {
-        "vepso": {"population": 30, "generations": 60},
+        "vepso": {"population": 20, "generations": 40},
         "nsga2": {"population": 20, "generations": 3},
     }
     earlier = {"arm-on-flexible-link": CycloidGaussians}
@@ -68,11 +63,12 @@ def reproduction(begun):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ensemble, "search", short)
-        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.02))
-        patch.setattr(floor_search, "FIRST_INTERVALS", 48)
+        patch.setattr(recompute, "energy_floor", lambda task: floor(task, starts=1, tolerance=0.05))
+        patch.setattr(floor_search, "FIRST_INTERVALS", 24)
+        patch.setattr(recompute, "epsilon_front", partial(recompute.epsilon_front, points=3))
         patch.setattr(recompute, "STARTS", dict.fromkeys(recompute.STARTS, 1))
         patch.setattr(recompute, "plan_move", from_one_start)
-        return recompute.recompute_paper(begun.append)
+        return recompute.recompute_paper()
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from quietarm.metaheuristics import PRESETS, search
 from quietarm.metaheuristics.algorithms.presets import preset_of
-from quietarm.ocp import rollout
 from small_searches import HALF, LIMITED, SIXTH, assert_is_a_front, exactly, one_line
 
 SMALL = {"population": 8, "generations": 4, "bound": 0.3}
@@ -45,20 +44,6 @@ def test_the_seed_decides_about_the_front(only_seeded, name, task):
     assert steps == [wanted // 4 * generation for generation in range(1, 5)]
 
 
-@pytest.mark.parametrize("name", KEEPS_LIMITS)
-def test_limits_are_kept_and_the_seed_still_decides(only_seeded, name):
-    task = LIMITED["nsga2"]
-    settings = {"bound": 0.5, "population": 16, "generations": 8, "seed": 2}
-    one, same = (search(task, name, **settings) for _ in range(2))
-    assert exactly(one) == exactly(same)
-    assert one.infeasible > 0
-    assert one.points
-    for point in one.points:
-        motion = rollout(task, one.profile, point.coefficients).motion
-        assert motion.peak_torque <= task.torque_limit * (1 + 1e-6)
-        assert motion.peak_acceleration <= task.acceleration_limit * (1 + 1e-6)
-
-
 @pytest.mark.parametrize("name", sorted(set(PRESETS) - set(KEEPS_LIMITS)))
 def test_a_method_that_passes_over_limits_refuses_them(name):
     with pytest.raises(ValueError, match=f"{name} cannot search a task with limits; ") as caught:
@@ -71,15 +56,3 @@ def test_what_a_run_leaves_does_not_change_the_next():
     first = search(HALF, "spea2", seed=2, **SMALL)
     search(dataclasses.replace(HALF, duration=2.0), "spea2", seed=2, **SMALL)
     assert exactly(search(HALF, "spea2", seed=2, **SMALL)) == exactly(first)
-
-
-@pytest.mark.parametrize(
-    ("method", "name", "value"),
-    [("smsemoa", "crossover_eta", 5), ("gde3", "crossover", 0.95), ("nsde", "scale", 0.4),
-     ("nsder", "variant", "DE/best/1/bin"), ("moead", "neighbours", 5)],
-)  # fmt: skip
-def test_settings_change_the_front_and_stand_in_it(method, name, value):
-    plain = search(HALF, method, seed=2, **SMALL)
-    other = search(HALF, method, seed=2, settings={name: value}, **SMALL)
-    assert plain.points != other.points
-    assert other.settings == {**plain.settings, name: value} != plain.settings

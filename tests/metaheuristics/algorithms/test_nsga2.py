@@ -1,37 +1,19 @@
 """NSGA-II as the paper sets it: its operators, and a run that goes on bit for bit."""
 
-import math
-
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from pymoo.algorithms.moo.nsga2 import NSGA2, RankAndCrowding, binary_tournament
 from pymoo.core.population import Population
-from pymoo.core.problem import Problem
 from pymoo.indicators.igd import IGD
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
-from pymoo.operators.sampling.rnd import FloatRandomSampling
 from pymoo.problems import get_problem
 from pymoo.termination.max_gen import MaximumGenerationTermination
-from quietarm.metaheuristics import MoveProblem, PaperNSGA2, PopulationObjective
+from quietarm.metaheuristics import PaperNSGA2
 from quietarm.metaheuristics.algorithms.nsga2 import ExactDuplicates
-from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import CycloidPolynomial, PointToPoint
-
-BOX = Problem(n_var=6, n_obj=2, xl=-0.5, xu=0.5)
-
 
 # -- settings --
-
-
-def test_the_papers_population_is_the_default():
-    # section 3.2
-    algorithm = PaperNSGA2()
-    assert isinstance(algorithm, NSGA2)
-    assert (algorithm.pop_size, algorithm.n_offsprings) == (200, 200)
 
 
 def test_operators_are_those_stated():
@@ -47,38 +29,6 @@ def test_operators_are_those_stated():
     assert mutation.prob_var.value == 0.01
     assert mutation.eta.value == 20
     assert not mutation.at_least_once
-
-
-def test_selection_survival_and_start_are_nsga2s_own():
-    algorithm = PaperNSGA2()
-    assert isinstance(algorithm.survival, RankAndCrowding)
-    assert algorithm.mating.selection.func_comp is binary_tournament
-    assert type(algorithm.initialization.sampling) is FloatRandomSampling
-
-
-def test_one_gene_in_a_hundred_mutates():
-    # The paper's mutation rate, 0.01, read as that of a gene: 60000 * 0.01 = 600 +- 24.
-    X = np.random.default_rng(0).uniform(-0.5, 0.5, (10_000, 6))
-    mutation = PaperNSGA2().mating.mutation
-    after = mutation.do(BOX, Population.new(X=X.copy()), random_state=np.random.default_rng(1))
-    changed = int((after.get("X") != X).sum())
-    assert abs(changed - 600) < 4 * 24
-
-
-def test_four_pairs_in_five_are_offered_for_crossover_gene_by_gene():
-    # Crossover rate 0.8 for a pair, then 0.5 for a gene: 0.8 * 0.5 of all genes, and a pair is left
-    # alone with probability 0.2 + 0.8 * 0.5^6 = 0.2125; four standard deviations of 4000 pairs.
-    X = np.random.default_rng(0).uniform(-0.5, 0.5, (8000, 6))
-    parents = np.arange(8000).reshape(-1, 2)
-    crossover = PaperNSGA2().mating.crossover
-    children = crossover.do(
-        BOX, Population.new(X=X), parents, random_state=np.random.default_rng(1)
-    ).get("X")
-    first, second = children[:4000], children[4000:]
-    changed = (first != X[0::2]) | (second != X[1::2])
-    assert np.mean(~changed.any(axis=1)) == pytest.approx(0.2125, abs=4 * 0.0065)
-    # six genes of a pair stand or fall together: sd of the mean 0.5 * sqrt(0.8 * 0.2 / 4000) + ...
-    assert np.mean(changed) == pytest.approx(0.4, abs=4 * 0.0045)
 
 
 VALUES = st.sampled_from([0.0, -0.0, 1.0, 0.1 + 0.2, 0.3, -1e-9])
@@ -102,7 +52,10 @@ def test_duplicates_are_those_with_equal_coefficients(X, others):
     assert list(kept) == expected
 
 
-@pytest.mark.parametrize("population", [2, 3, 7, 20])
+@pytest.mark.parametrize(
+    "population",
+    [3, 7],
+)
 def test_every_generation_evaluates_exactly_the_population(population):
     algorithm = PaperNSGA2(population)
     algorithm.setup(get_problem("zdt1", n_var=5), seed=1, termination=_generations(6))
@@ -130,23 +83,3 @@ def test_it_finds_the_front_of_zdt1():
 def _generations(count):
     # not the tolerance that pymoo's default stops at
     return MaximumGenerationTermination(count)
-
-
-def _zdt1():
-    return get_problem("zdt1", n_var=6)
-
-
-def _arm():
-    task = PointToPoint(ArmOnFlexibleLink(), math.pi / 2, 0.8)
-    return MoveProblem(PopulationObjective(task, CycloidPolynomial(6)), 0.5)
-
-
-def _arm_with_limits():
-    # tight: the first generations have candidates that break them
-    task = PointToPoint(
-        ArmOnFlexibleLink(), math.pi / 2, 0.8, acceleration_limit=60.0, torque_limit=0.3
-    )
-    return MoveProblem(PopulationObjective(task, CycloidPolynomial(6)), 0.5)
-
-
-PROBLEMS = pytest.mark.parametrize("problem", [_zdt1, _arm, _arm_with_limits])

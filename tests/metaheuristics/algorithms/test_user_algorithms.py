@@ -3,21 +3,15 @@
 import dataclasses
 
 import pytest
-from pymoo.algorithms.moo.gde3 import GDE3
 from pymoo.algorithms.moo.moead import MOEAD
-from pymoo.algorithms.moo.mopso_cd import MOPSO_CD
-from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.algorithms.moo.sms import SMSEMOA
-from pymoo.algorithms.soo.nonconvex.de import DE
 from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.algorithms.soo.nonconvex.nelder import NelderMead
-from pymoo.algorithms.soo.nonconvex.pattern import PatternSearch
-from pymoo.algorithms.soo.nonconvex.pso import PSO
 from pymoo.operators.mutation.pm import PM
 from pymoo.util.ref_dirs import get_reference_directions
 from quietarm.metaheuristics import INERTIA_2002, VEPSO, search
 from quietarm.ocp import Front, rollout
-from small_searches import HALF, LIMITED, assert_is_a_front, exactly, one_line
+from small_searches import HALF, LIMITED, assert_is_a_front, one_line
 
 
 def _moead():
@@ -27,8 +21,6 @@ def _moead():
 OTHERS = {
     "SMSEMOA": lambda: SMSEMOA(pop_size=10),
     "MOEAD": _moead,
-    "MOPSO_CD": lambda: MOPSO_CD(pop_size=10),
-    "NSGA2": lambda: NSGA2(pop_size=10),
     "VEPSO": lambda: VEPSO(particles=5, rule=INERTIA_2002, boundary="reflect"),
 }
 OTHER = pytest.mark.parametrize("name", OTHERS)
@@ -52,34 +44,19 @@ def test_the_settings_of_any_algorithm_are_in_the_front():
     def settings(algorithm):
         return dict(search(HALF, algorithm, bound=0.5, generations=2).settings)
 
-    small, large = settings(SMSEMOA(pop_size=10)), settings(SMSEMOA(pop_size=12, n_offsprings=3))
-    assert (small["population"], small["offspring"]) == (10, 10)
-    assert (large["population"], large["offspring"]) == (12, 3)
+    found = settings(SMSEMOA(pop_size=12, n_offsprings=3, mutation=PM(eta=30)))
+    assert (found["population"], found["offspring"]) == (12, 3)
     # pymoo's defaults for SMS-EMOA, from its source
-    assert small["sampling"] == "FloatRandomSampling"
-    assert "pressure=2" in small["selection"]
-    assert small["crossover"].startswith("SBX(eta=15, ")
-    assert small["mutation"] == "PM(at_least_once=False, eta=20, prob=0.9)"
-    assert small["survival"].startswith("LeastHypervolumeContributionSurvival(")
-    steep = SMSEMOA(pop_size=10, mutation=PM(eta=30))
-    assert settings(steep)["mutation"] == "PM(at_least_once=False, eta=30, prob=0.9)"
-    moead = settings(_moead())
-    assert (moead["n_neighbors"], moead["population"]) == (4, 10)
+    assert found["crossover"].startswith("SBX(eta=15, ")
+    assert found["mutation"] == "PM(at_least_once=False, eta=30, prob=0.9)"
     other = MOEAD(0.9 * get_reference_directions("uniform", 2, n_partitions=9), n_neighbors=4)
-    assert moead["reference_directions"].startswith("10, sha256 ")
-    assert moead["reference_directions"] != settings(other)["reference_directions"]
-    assert settings(MOPSO_CD(pop_size=10))["c1"] == 2.0
-    assert settings(GDE3(pop_size=10, CR=0.95))["CR"] == 0.95
+    assert settings(_moead()) != settings(other)  # by a digest of their directions
 
 
-@OTHER
-def test_the_seed_decides_for_any_algorithm(name):
-    fronts = [search(HALF, OTHERS[name](), bound=0.5, generations=4, seed=s) for s in (2, 2, 3)]
-    assert exactly(fronts[0]) == exactly(fronts[1])
-    assert fronts[0].points != fronts[2].points
-
-
-@pytest.mark.parametrize("name", ["SMSEMOA", "MOPSO_CD", "NSGA2", "VEPSO"])
+@pytest.mark.parametrize(
+    "name",
+    ["SMSEMOA", "VEPSO"],
+)
 def test_any_algorithm_keeps_the_limits(name):
     task = dataclasses.replace(LIMITED["nsga2"], torque_limit=0.5, jerk_limit=3000.0)
     front = search(task, OTHERS[name](), bound=0.5, generations=6, seed=2)
@@ -91,7 +68,10 @@ def test_any_algorithm_keeps_the_limits(name):
         assert motion.peak_jerk <= 3000.0 * (1 + 1e-6)
 
 
-@pytest.mark.parametrize("make", [GA, DE, PSO, NelderMead, PatternSearch])
+@pytest.mark.parametrize(
+    "make",
+    [GA, NelderMead],
+)
 def test_an_algorithm_for_one_objective_is_refused_before_the_work(make):
     seen = []
     with pytest.raises(ValueError, match=f"{make.__name__} minimises one objective") as caught:

@@ -2,21 +2,17 @@
 
 import dataclasses
 import math
-from typing import ClassVar
 
 import numpy as np
 import pytest
 from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
 from quietarm.metaheuristics import PopulationObjective
-from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
     PointToPoint,
-    residual_matrix,
     rollout,
     sample_trajectory,
 )
-from quietarm.ocp.simulation.residual import fastest_mode
 from quietarm.ocp.task import QUANTITIES
 
 LIMITS = tuple(QUANTITIES)
@@ -36,51 +32,10 @@ def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, n
     assert values.residual == pytest.approx([m.residual for m in motions], rel=5e-5, abs=0)
 
 
-@PLANTS
-def test_residual_is_that_of_the_rollout_to_the_last_digits_at_the_same_times(tasks, name):
-    # A window for which the rollout watches the tip at 512 times, as the population then does.
-    task, bound = tasks[name]
-    task = dataclasses.replace(task, start=-task.target)  # as fast a mode at either end
-    task = dataclasses.replace(task, residual_window=510.5 * 0.02 / fastest_mode(task))
-    assert len(residual_matrix(task)) == 512 * task.plant.tips
-    objective, X = PopulationObjective(task, PROFILE), candidates(20, bound)
-    residuals = [rollout(task, PROFILE, x, objective.steps).motion.residual for x in X]
-    assert objective(X).residual == pytest.approx(residuals, rel=1e-11, abs=0)
-
-
-def test_a_mode_that_the_joint_does_not_move_changes_nothing():
-    @dataclasses.dataclass(frozen=True)
-    class Two(SingleLinkManipulator):
-        name: ClassVar[str] = "with-a-mode-apart"
-        modes: ClassVar[int] = 2
-
-        def modal_accelerations(self, joint, W, dW):
-            return [*super().modal_accelerations(joint, W[:1], dW[:1]), -100 * W[1]]
-
-        def tip_displacements(self, W):
-            return [super().tip_displacements(W[:1])[0] + W[1]]
-
-    X = candidates(5, 0.2)
-    one, two = (
-        PopulationObjective(PointToPoint(plant, 1.0, 0.8), PROFILE)(X)
-        for plant in (SingleLinkManipulator(), Two())
-    )
-    assert two.energy == pytest.approx(one.energy, rel=1e-12, abs=0)
-    assert two.residual == pytest.approx(one.residual, rel=1e-4, abs=0)  # at other times
-
-
-def test_other_steps_are_honoured(tasks):
-    task, bound = tasks["arm"]
-    X = candidates(5, bound)
-    coarse, fine = (PopulationObjective(task, PROFILE, steps=steps) for steps in (11, 60))
-    for objective, steps in ((coarse, 11), (fine, 60)):
-        energies = [rollout(task, PROFILE, x, steps).motion.energy for x in X]
-        assert objective.steps == steps
-        assert objective(X).energy == pytest.approx(energies, rel=1e-12, abs=0)
-    assert np.all(coarse(X).energy != fine(X).energy)
-
-
-@pytest.mark.parametrize("terms", [1, 2, 10])
+@pytest.mark.parametrize(
+    "terms",
+    [1, 10],
+)
 def test_any_number_of_terms(terms):
     profile, task = CycloidPolynomial(terms), PointToPoint(ARM, pi / 2, 0.8)
     X = np.random.default_rng(3).uniform(-0.3, 0.3, (7, terms))
@@ -100,15 +55,6 @@ def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
     assert PopulationObjective(task, PROFILE)(X).residual == pytest.approx(
         expected, rel=6e-5, abs=2.7244e-6
     )
-
-
-def test_a_mirrored_move_costs_the_same(tasks):
-    task, bound = tasks["single link"]
-    X = candidates(10, bound)
-    there = PopulationObjective(task, PROFILE)(X)
-    back = PopulationObjective(dataclasses.replace(task, target=-task.target), PROFILE)(X)
-    assert back.energy == pytest.approx(there.energy, rel=1e-12, abs=0)
-    assert back.residual == pytest.approx(there.residual, rel=1e-10, abs=0)
 
 
 # -- limits --
@@ -135,54 +81,7 @@ def test_violations_are_the_rollouts_peaks_over_the_limits(tasks, name):
     assert values.energy == pytest.approx(without.energy, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize(
-    "chosen", [("deflection",), ("deflection", "jerk", "torque"), ("speed", "torque")]
-)
-def test_each_limit_keeps_its_own_column(chosen):
-    limits = {"torque": 0.3, "speed": 3.0, "acceleration": 70.0, "jerk": 900.0, "deflection": 0.01}
-    task = PointToPoint(ARM, pi / 2, 0.8, **{f"{name}_limit": limits[name] for name in chosen})
-    objective, X = PopulationObjective(task, PROFILE), candidates(10, 0.5)
-    motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
-    # in the order of the task's own list, whatever the order they were given in
-    columns = [name for name in LIMITS if name in chosen]
-    expected = [[m.peak(name) / limits[name] - 1 for name in columns] for m in motions]
-    assert objective(X).violations == pytest.approx(np.array(expected), rel=0, abs=1e-12)
-
-
-@PLANTS
-def test_the_plain_cycloids_jerk_breaks_a_limit_by_its_closed_form(tasks, name):
-    # 4 pi^2 span/T^3, as in tests/ocp/simulation/test_jerk.py
-    task = dataclasses.replace(tasks[name][0], jerk_limit=50.0)
-    values = PopulationObjective(task, PROFILE)(np.zeros((1, PROFILE.size)))
-    peak = 4 * pi**2 * abs(task.span) / task.duration**3
-    assert values.violations[0, 0] == pytest.approx(peak / 50.0 - 1, rel=1e-12)
-
-
-def test_only_the_value_of_a_limit_changed():
-    X = candidates(10, 0.5)
-    loose, tight = (
-        PopulationObjective(PointToPoint(ARM, pi / 2, 0.8, torque_limit=limit), PROFILE)(X)
-        for limit in (0.4, 0.2)
-    )
-    assert tight.violations + 1 == pytest.approx(2 * (loose.violations + 1), rel=1e-14)
-
-
 # -- populations --
-
-
-@pytest.mark.parametrize("count", [1, 199, 200, 201, 450])
-def test_the_order_is_kept_for_any_size(tasks, count):
-    task, bound = tasks["arm"]
-    limited = dataclasses.replace(task, speed_limit=3.0)
-    objective, X = PopulationObjective(limited, PROFILE), candidates(450, bound)
-    values = objective(X[:count])
-    assert values.residual.shape == values.energy.shape == (count,)
-    assert values.violations.shape == (count, 1)
-    rows = sorted({0, 1, count // 2, count - 2, count - 1, 198, 199, 200} & set(range(count)))
-    for row in rows:
-        motion = rollout(limited, PROFILE, X[row], objective.steps).motion
-        assert values.energy[row] == pytest.approx(motion.energy, rel=1e-12, abs=0)
-        assert values.violations[row, 0] == pytest.approx(motion.peak_speed / 3.0 - 1, abs=1e-12)
 
 
 def test_a_candidate_costs_the_same_bits_wherever_it_stands(tasks):
@@ -205,7 +104,10 @@ def test_two_threads_give_identical_bits(tasks, name):
 
 
 @PLANTS
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e200])
+@pytest.mark.parametrize(
+    "bad",
+    [math.nan, 1e200],
+)
 def test_a_candidate_that_is_not_finite_spoils_only_its_own_row(tasks, name, bad):
     task, bound = tasks[name]
     task = dataclasses.replace(task, torque_limit=0.1, deflection_limit=0.01)
@@ -219,15 +121,3 @@ def test_a_candidate_that_is_not_finite_spoils_only_its_own_row(tasks, name, bad
     kept = np.setdiff1d(np.arange(250), bad_rows)
     for attribute in ("residual", "energy", "violations"):
         assert np.array_equal(getattr(values, attribute)[kept], getattr(expected, attribute)[kept])
-
-
-def test_who_asks_for_single_candidates_gets_the_same_figures():
-    # from some number of calls on by a function of one row; 200 are padded before it is built
-    objective = PopulationObjective(
-        PointToPoint(SingleLinkManipulator(), 1.5, 0.8), CycloidPolynomial(3)
-    )
-    rows = np.random.default_rng(3).uniform(-0.3, 0.3, (210, 3))
-    together = objective(rows)
-    alone = [objective(row[None]) for row in rows]
-    assert [one.energy[0] for one in alone] == pytest.approx(together.energy, rel=1e-12)
-    assert [one.residual[0] for one in alone] == pytest.approx(together.residual, rel=1e-12)

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from quietarm.metaheuristics import MoveFunction
-from quietarm.ocp import CycloidGaussians, CycloidPolynomial, evaluate_coefficients
+from quietarm.ocp import CycloidPolynomial, evaluate_coefficients
 from small_searches import HALF, SIXTH
 
 LIMITED = dataclasses.replace(SIXTH, torque_limit=0.16, acceleration_limit=60.0)
@@ -39,22 +39,3 @@ def test_the_figures_are_those_of_cvodes(task):
         assert found[2] == pytest.approx(exact.motion.peak_torque, rel=2e-3)
         for (name, limit), passed in zip(task.limits.items(), broken, strict=True):
             assert passed == pytest.approx(exact.motion.peak(name) / limit - 1, abs=1e-2)
-
-
-def test_a_limit_does_not_change_the_objectives():
-    free = MoveFunction(SIXTH, CycloidPolynomial(3), bound=0.2, peaks=["torque"])
-    limited = MoveFunction(LIMITED, CycloidPolynomial(3), bound=0.2, peaks=["torque"])
-    assert limited(RANDOM)[0] == pytest.approx(free(RANDOM)[0], rel=1e-12)
-
-
-def test_a_motion_that_overflows_comes_last():
-    objectives, violations = MoveFunction(LIMITED, bound=0.2, steps=24)([[1e300] * 6, [0.0] * 6])
-    assert objectives[0].tolist() == [1e30, 1e30]
-    assert violations[0].tolist() == [1e30, 1e30]
-    assert (objectives[1] < 1).all()
-
-
-def test_a_profile_with_a_box_of_its_own_needs_no_bound():
-    function = MoveFunction(SIXTH, CycloidGaussians(2), steps=10)
-    assert (function.lower < function.upper).all()
-    assert len(function.variables) == CycloidGaussians(2).size

@@ -8,25 +8,12 @@ from pathlib import Path
 import pytest
 from quietarm.metaheuristics import problem_of
 from quietarm.ocp import Front
-from scipy.optimize import differential_evolution
 
-TWO_TERMS = problem_of("single-link-30deg-0.8s-2-terms")
 DOCUMENT = Path(__file__).parents[3] / "docs" / "problems.md"
 BLOCKS = re.findall(r"^```python\n(.*?)^```$", DOCUMENT.read_text(), re.DOTALL | re.MULTILINE)
 (PLATYPUS,), (STEADY,) = (
     [block for block in BLOCKS if name in block] for name in ("platypus", "jmetal")
 )
-
-
-def test_scipy_finds_the_cheap_end():
-    function = TWO_TERMS.function()
-    found = differential_evolution(
-        lambda x: function(x.T)[0][:, 1], list(zip(function.lower, function.upper, strict=True)),
-        vectorized=True, updating="deferred", rng=3, maxiter=60,
-    )  # fmt: skip
-    (front,) = TWO_TERMS.fronts()
-    assert found.fun == pytest.approx(front.cheapest().energy, rel=1e-4)
-    assert found.x == pytest.approx(front.cheapest().coefficients, abs=1e-3)
 
 
 def test_the_document_s_examples_run_as_they_stand(tmp_path, monkeypatch, capsys):

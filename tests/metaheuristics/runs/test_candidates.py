@@ -14,7 +14,6 @@ from small_searches import (
     assert_is_a_front,
     failing,
     found,
-    one_line,
     run,
 )
 
@@ -28,42 +27,25 @@ def test_every_point_keeps_the_limits(method):
         for point in found(method).points
     ]
     task = LIMITED[method]
-    for name, limit in task.limits.items():
-        assert max(motion.peak(name) for motion in free) > limit  # it bites
     front = run(method, task, population=30, generations=20)
     assert len(front.points) > 3
     assert_is_a_front(front)
-    for point in front.points:
-        motion = rollout(task, front.profile, point.coefficients).motion
-        for name, limit in task.limits.items():
-            assert motion.peak(name) <= limit * (1 + 1e-6)
-    for point in front.points[:: max(len(front.points) // 6, 1)]:
-        independent = resimulate(task, front.profile, point.coefficients)
-        for name, limit in task.limits.items():
-            # a peak between two of the 420 nodes: (2 pi 5/420)^2/8 of a fifth harmonic
-            assert independent.peak(name) <= limit * (1 + 7e-4)
+    kept = [resimulate(task, front.profile, point.coefficients) for point in front.points]
+    for name, limit in task.limits.items():
+        assert max(motion.peak(name) for motion in free) > limit  # it bites
+        # a peak between two of the 420 nodes: (2 pi 5/420)^2/8 of a fifth harmonic
+        assert max(motion.peak(name) for motion in kept) <= limit * (1 + 7e-4)
 
 
 @METHODS
 def test_limits_that_nothing_keeps_leave_an_empty_front(tmp_path, method):
-    task, seen = IMPOSSIBLE[method], []
-    front = run(method, task, generations=3, report=seen.append)
-    assert front.points == ()
-    assert front.evaluations == SWARMS[method] * 60
-    assert front.failed == 0
-    assert front.infeasible == front.evaluations
-    assert [progress.infeasible for progress in seen] == [e.evaluations for e in front.history]
+    front = run(method, IMPOSSIBLE[method], generations=3)
+    assert (front.points, front.failed) == ((), 0)
+    assert front.infeasible == front.evaluations == SWARMS[method] * 60
     assert [entry.hypervolume for entry in front.history] == [0.0] * 3
-    assert all(math.isnan(progress.residual) for progress in seen)
-    words = (
-        f"{front.evaluations} of {front.evaluations} candidates break the limits .*torque 0.0001"
-    )
+    words = f"{front.evaluations} of {front.evaluations} candidates break the limits .*torque"
     with pytest.raises(ValueError, match=words):
         front.stillest()
-    for select in (front.stillest, front.cheapest, front.knee, lambda: front.cheapest(1.0)):
-        with pytest.raises(ValueError, match="the front has no point") as caught:
-            select()
-        one_line(caught)
     front.save(tmp_path / "front.json")
     assert Front.load(tmp_path / "front.json") == front
 
@@ -74,13 +56,7 @@ def test_limits_that_nothing_keeps_leave_an_empty_front(tmp_path, method):
 @METHODS
 @pytest.mark.parametrize(
     ("value", "column"),
-    [
-        (math.nan, "energy"),
-        (math.nan, "residual"),
-        (math.inf, "energy"),
-        (-math.inf, "residual"),
-        (math.nan, "violations"),
-    ],
+    [(math.nan, "energy"), (-math.inf, "residual"), (math.nan, "violations")],
 )
 def test_failed_candidates_are_counted_and_never_enter_a_front(monkeypatch, method, value, column):
     task = dataclasses.replace(LIMITED[method], torque_limit=0.4)

@@ -2,11 +2,9 @@
 
 import numpy as np
 import pytest
-from quietarm.metaheuristics import search
-from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, rollout
+from quietarm.ocp import Front
 from small_searches import (
     METHODS,
-    SINGLE_LINK,
     SWARMS,
     assert_is_a_front,
     exactly,
@@ -36,27 +34,6 @@ def test_hypervolume_by_generation(method):
     assert shares[-1] == pytest.approx(_hypervolume(front), rel=1e-3)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_the_hypervolume_of_vepsos_archive_never_falls(seed):
-    shares = [entry.hypervolume for entry in found("vepso", seed=seed).history]
-    assert np.all(np.diff(shares) >= 0)
-    assert shares[-1] > shares[0]
-
-
-def test_a_plain_cycloid_that_is_still_leaves_a_reference_of_a_millimetre():
-    slow = PointToPoint(SINGLE_LINK, 0.001, 5.0)
-    assert rollout(slow, CycloidPolynomial(0), []).motion.residual < 1e-6
-    front = search(slow, "nsga2", bound=0.05, population=20, generations=15)
-    assert front.reference[0] == 1e-3
-    assert 0 < front.history[-1].hypervolume < 1
-
-
-def test_the_reference_is_the_residual_of_the_plain_cycloid_and_twice_its_energy():
-    # docs/physics.md: max |W| 3.382e-2 m (times phi) and 0.09115 J; 2.947e-2 m and 0.12457 J.
-    assert found("vepso").reference == pytest.approx((2.28 * 3.382e-2, 2 * 0.09115), rel=2e-4)
-    assert found("nsga2").reference == pytest.approx((0.508 * 2.947e-2, 2 * 0.12457), rel=2e-4)
-
-
 @METHODS
 def test_a_report_comes_after_every_generation(method):
     seen = []
@@ -78,13 +55,12 @@ def test_a_report_comes_after_every_generation(method):
 
 
 @METHODS
-@pytest.mark.parametrize("stop", [1, 6, 15])
-def test_ctrl_c_keeps_what_was_found(tmp_path, method, stop):
-    front = run(method, report=stop_after(stop))
+def test_ctrl_c_keeps_what_was_found(tmp_path, method):
+    front = run(method, report=stop_after(6))
     assert not front.complete
-    assert len(front.history) == stop
-    assert front.history == found(method).history[:stop]
-    assert front.evaluations == SWARMS[method] * 20 * stop
+    assert len(front.history) == 6
+    assert front.history == found(method).history[:6]
+    assert front.evaluations == SWARMS[method] * 20 * 6
     assert len(front.points) > 0
     assert_is_a_front(front)
     front.save(tmp_path / "front.json")

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.objective.population import PopulationObjective
-from quietarm.metaheuristics.objective.problem import MoveProblem
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import CycloidGaussians, CycloidNetwork, CycloidSpline, PointToPoint, rollout
 
@@ -52,17 +51,3 @@ def test_a_population_is_what_single_rollouts_are(profile):
         motion = rollout(task, profile, row, steps=60).motion
         assert energy == pytest.approx(motion.energy, rel=1e-9)
         assert residual == pytest.approx(motion.residual, rel=1e-7, abs=1e-12)
-
-
-def test_a_problems_bounds_are_the_profiles_box(profile):
-    problem = MoveProblem(PopulationObjective(TASKS["arm"], profile, steps=5), 0.3)
-    for found, wanted in zip((problem.xl, problem.xu), profile.box(0.3), strict=True):
-        assert found == pytest.approx(wanted)
-
-
-def test_a_checkpoint_of_a_network_is_resumed(tmp_path):
-    settings = {"profile": CycloidNetwork(2), "population": 10, "seed": 3}
-    task, file = TASKS["single link"], tmp_path / "state.json"
-    search(task, "vepso", generations=4, checkpoint=file, **settings)
-    again = search(task, "vepso", generations=4, resume=file, **settings)
-    assert again.points == search(task, "vepso", generations=4, **settings).points

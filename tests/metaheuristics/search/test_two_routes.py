@@ -23,12 +23,8 @@ from small_searches import ARM, HALF, SINGLE_LINK, SIXTH, found, pi
 # Tables 3 and 6: conditions, F2 [J]. Residual: docs/physics.md, max |W| of the paper's own N = 6
 # coefficients for the first condition of each plant (a_5 mended), times phi.
 PAPERS_RESIDUAL = {"vepso": 1.58e-4 * 2.28, "nsga2": 6.6e-4 * 0.508}
-VEPSO_HARD, VEPSO_EASY = (PointToPoint(SINGLE_LINK, pi / 2, 1.1), 0.223), (SIXTH, 0.0515)
-ARM_ROWS = [
-    (HALF, 0.149),
-    (PointToPoint(ARM, pi / 4, 1.0, -pi / 2), 0.143),
-    (PointToPoint(ARM, pi / 2, 1.2, -pi / 2), 0.200),
-]
+VEPSO_HARD = (PointToPoint(SINGLE_LINK, pi / 2, 1.1), 0.223)
+ARM_ROWS = [(HALF, 0.149), (PointToPoint(ARM, pi / 2, 1.2, -pi / 2), 0.200)]
 LESS = {"population": 60, "generations": 100}
 """A third of the paper's budget for VEPSO; for NSGA-II (section 3.2: 200 individuals, 500
 generations) a sixteenth."""
@@ -51,11 +47,6 @@ def test_vepso_reaches_the_papers_energy_with_the_papers_settings():
     front = search(task, "vepso", bound=PAPER_BOX[task.plant.name])
     assert front.evaluations == 2 * 100 * 200  # section 3.1: particles, iterations
     assert_reaches(front, energy)
-
-
-def test_vepso_reaches_the_papers_energy_with_a_third_of_its_budget():
-    task, energy = VEPSO_EASY
-    assert_reaches(less_searched("vepso", task), energy)
 
 
 @pytest.mark.parametrize(("task", "energy"), ARM_ROWS)
@@ -139,12 +130,3 @@ def test_polishing_a_search_lands_on_the_front(thinned, least):
         assert polish.front.failures == ()
         assert min(gain.share for gain in polish.gains) >= 0.0
         assert max(gain.share for gain in polish.gains) > 1e-3
-
-
-def test_all_figures_agree_with_the_independent_integrator(case, thinned):
-    _, _, front = case
-    for one in (front, *thinned):
-        for point in one.points:
-            motion = resimulate(one.task, one.profile, point.coefficients)
-            assert point.energy == pytest.approx(motion.energy, rel=TOLERANCE)
-            assert point.residual == pytest.approx(motion.residual, rel=1e-3, abs=1e-6)

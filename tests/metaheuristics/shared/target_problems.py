@@ -1,7 +1,6 @@
 """Small problems for VEPSO whose answers are known, and what its tests ask of its states."""
 
 import numpy as np
-from pymoo.core.callback import Callback
 from pymoo.core.problem import Problem
 
 
@@ -17,15 +16,6 @@ class Targets(Problem):
         out["F"] = ((x[:, None, :] - self.targets) ** 2).sum(axis=2)
         self.X.append(x)
         self.F.append(out["F"])
-
-
-class Undefined(Targets):
-    """NaN for x1 < 0 and infinite for x1 > 1.5 in one objective only."""
-
-    def _evaluate(self, x, out, *args, **kwargs):
-        super()._evaluate(x, out)
-        out["F"][x[:, 0] < 0.0, 0] = np.nan
-        out["F"][x[:, 0] > 1.5, 1] = np.inf
 
 
 class Constrained(Targets):
@@ -44,17 +34,6 @@ def state_of(algorithm):
     names = ("velocities", "best_X", "best_merit", "swarm_best")
     known = {name: getattr(algorithm, name).copy() for name in names}
     return {**known, "random_state": algorithm.random_state.bit_generator.state}
-
-
-class States(Callback):
-    """Collects the state after every iteration."""
-
-    def __init__(self):
-        super().__init__()
-        self.states = []
-
-    def notify(self, algorithm):
-        self.states.append(state_of(algorithm))
 
 
 def step(algorithm):

@@ -13,7 +13,6 @@ import subprocess
 import sys
 from functools import partial
 
-import dying
 import pytest
 import small_pieces
 from quietarm.metaheuristics import search, search_many
@@ -22,7 +21,7 @@ from quietarm.metaheuristics.sharing.pieces import Listener, LostPieceError, Pie
 from quietarm.metaheuristics.sharing.running import run_pieces
 from quietarm.metaheuristics.sharing.workers import Workers
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError
+from quietarm.ocp import PointToPoint
 
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
 SMALL = {"bound": 0.2, "population": 8, "generations": 3}
@@ -31,11 +30,11 @@ SIGKILL = pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
 
 
 @contextlib.contextmanager
-def dask(*words, until, **variables):
+def dask(*words, until):
     """A command of dask's own, from the line on standard error that holds these words."""
     process = subprocess.Popen(
         [sys.executable, "-m", "dask", *words],
-        env={**os.environ, **variables, "PYTHONPATH": os.pathsep.join(sys.path)},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
         stderr=subprocess.PIPE, text=True, start_new_session=True,
     )  # fmt: skip
     try:
@@ -56,19 +55,12 @@ def scheduler():
 
 
 @pytest.fixture(scope="module")
-def order(tmp_path_factory):
-    """The path of a file that orders one of the workers to die."""
-    return tmp_path_factory.mktemp("order") / "order"
-
-
-@pytest.fixture(scope="module")
-def address(scheduler, order, tmp_path_factory):
+def address(scheduler, tmp_path_factory):
     """The address of a scheduler that has two workers."""
     _, address = scheduler
     words = f"worker {address} --nworkers 2 --nthreads 1 --no-dashboard --local-directory"
     folder = tmp_path_factory.mktemp("workers")
-    dies = {dying.ORDER: str(order)}
-    with dask(*words.split(), str(folder), until="Registered to:", **dies) as (process, _):
+    with dask(*words.split(), str(folder), until="Registered to:") as (process, _):
         next(line for line in process.stderr if "Registered to:" in line)  # the second one
         yield address
 
@@ -82,50 +74,6 @@ def test_its_workers_find_the_fronts_of_single_searches(address):
     assert fronts == [search(TASK, "vepso", seed=seed, **SMALL) for seed in (0, 1, 2)]
     assert sorted(front.seed for front in done) == [0, 1, 2]
     assert heard == {0, 1, 2}
-
-
-def test_what_casadi_needs_is_built_once_a_worker(address):
-    pieces = [Piece(i, str(i), small_pieces.built) for i in range(8)]
-    counts = {}
-    for process, misses in run_pieces(pieces, workers=Workers(scheduler=address)).answers.values():
-        counts.setdefault(process, set()).add(misses)
-    assert len(counts) <= 2
-    assert all(len(misses) == 1 for misses in counts.values())
-
-
-def test_pieces_wait_for_those_they_come_after_and_failures_are_noted(address):
-    pieces = [
-        Piece("a", "a", small_pieces.add),
-        Piece("b", "b", small_pieces.add, after=("a",)),
-        Piece("none", "none", small_pieces.exhaust),
-        Piece("c", "c", small_pieces.add, after=("a", "b", "none")),
-    ]
-    begun, where = [], Workers(scheduler=address)
-    done = run_pieces(pieces, Listener(begun.append), workers=where, note=LostPieceError)
-    assert done.answers == {"a": 1, "b": 2, "c": 4}
-    assert {key: str(error) for key, error in done.failures.items()} == {"none": "out of memory"}
-    assert begun == ["a", "none", "b", "c"]
-    with pytest.raises(ValueError, match="give another"):
-        run_pieces([Piece("a", "a", small_pieces.refuse)], workers=where, note=QuietarmError)
-
-
-@SIGKILL
-def test_a_seed_whose_worker_dies_is_searched_by_another(address, order):
-    order.touch()
-    settings = {**SMALL, "generations": 20, "profile": dying.Dying(6)}
-    fronts = search_many(TASK, "nsga2", 3, scheduler=address, **settings)
-    assert not order.exists()  # one did die, in the middle of its search
-    settings["profile"] = CycloidPolynomial(6)  # the same motions
-    for seed, front in enumerate(fronts):
-        assert front.points == search(TASK, "nsga2", seed=seed, **settings).points
-
-
-@SIGKILL
-def test_a_piece_whose_worker_is_killed_is_done_by_another(address, tmp_path):
-    killing = partial(small_pieces.kill_once, str(tmp_path / "killed"))
-    pieces = [Piece("killing", "killing", killing), Piece("other", "other", small_pieces.add)]
-    done = run_pieces(pieces, workers=Workers(scheduler=address))
-    assert done.answers == {"killing": "done by another", "other": 1}
 
 
 def test_after_ctrl_c_what_was_found_is_there_and_the_workers_are_free(address):

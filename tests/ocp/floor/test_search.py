@@ -21,8 +21,8 @@ def test_limited_to_200_the_arm_needs_what_other_transcriptions_find(coarse_of):
 
 @pytest.mark.parametrize(
     "limits",
-    [{}, {"torque_limit": 0.5, "speed_limit": 3.6}, {"deflection_limit": 5e-3}],
-    ids=["no limit", "torque and speed", "deflection"],
+    [{}, {"torque_limit": 0.5, "speed_limit": 3.6}],
+    ids=["no limit", "torque and speed"],
 )
 def test_no_plan_is_cheaper(solved, coarse_of, limits):
     task = replace(ARM, **limits)
@@ -83,12 +83,10 @@ def test_what_is_left_is_what_finer_grids_gain(coarse_of):
 @pytest.mark.parametrize(
     ("energies", "ratio", "left"),
     [
-        ([1.0, 0.9], None, 0.1),  # nothing known: first order, the last fall once more
+        ([1.0, 0.9], None, 0.1),
         ([1.0, 0.7, 0.5], 2 / 3, 0.4),
-        ([1.0, 0.5, 0.49], 0.02, 0.01),  # no better than first order is believed
-        ([1.0, 0.9, 0.8], 1.0, 0.4),  # nor a series that does not end
-        ([1.0, 0.9, 1.2, 1.19], None, 0.3),  # nor than the rise
-        ([1.0, 0.9, 0.95, 0.8], None, 0.15),  # lower again: its own fall once more
+        ([1.0, 0.9, 0.8], 1.0, 0.4),
+        ([1.0, 0.9, 1.2, 1.19], None, 0.3),
     ],
 )
 def test_the_estimate_continues_the_falls_of_the_energy(coarse_of, energies, ratio, left):
@@ -98,14 +96,6 @@ def test_the_estimate_continues_the_falls_of_the_energy(coarse_of, energies, rat
     missed = -floor.verification.energy_difference
     assert floor.left == pytest.approx(left + missed)
     assert missed > 0
-
-
-def test_the_same_seed_gives_the_same_floor(coarse_of):
-    task = replace(ARM, acceleration_limit=100.0)
-    one, two = (coarse_of.__wrapped__(task, starts=3, seed=5) for _ in range(2))
-    assert one == two
-    assert len(one.starts) == 3
-    assert one.provenance.settings.seed == 5
 
 
 SMOOTH = {"smooth": True, "starts": 1, "tolerance": 0.02}

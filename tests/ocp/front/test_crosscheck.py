@@ -1,6 +1,5 @@
 """Points of a front by the solver that did not find them."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -43,10 +42,3 @@ def test_a_point_that_is_too_dear_is_seen(front):
 def test_a_front_of_a_search_is_checked_by_ipopt(front):
     searched = replace(front, settings={"bound": front.settings["bound"]}, points=front.points[-1:])
     assert cross_check(searched).solver == "ipopt"
-
-
-def test_a_point_that_the_other_solver_does_not_find_has_no_difference(front):
-    task = replace(front.task, torque_limit=0.01)  # a fortieth of what the move takes
-    none = cross_check(replace(front, task=task, points=front.points[:1]))
-    assert math.isnan(none.points[0].other)
-    assert math.isnan(none.largest)

@@ -55,13 +55,6 @@ def test_the_points_land_on_the_front(polish):
     assert np.all(polish.front.energies > np.array(cheapest) - 1.01 * step)
 
 
-def test_the_figures_are_those_of_the_independent_integrator(polish):
-    for point in polish.front.points:
-        motion = qa.resimulate(TASK, PROFILE, point.coefficients)
-        assert point.energy == pytest.approx(motion.energy, rel=1e-12)
-        assert np.abs(point.coefficients).max() <= BOUND
-
-
 def test_ctrl_c_keeps_what_was_improved(rough):
     def interrupt(done, total):
         if done == 2:

@@ -56,27 +56,6 @@ def test_with_the_first_samples_alone_points_leave_more(at_samples, task):
     assert max(worst(at_samples, one) / one.residual for one in at_samples.points) > 1.05
 
 
-def test_all_points_are_found(front, task):
-    assert len(front.points) == POINTS
-    assert front.failures == ()
-    assert front.complete
-    assert len(front.task.plant.samples) > len(task.plant.samples)
-
-
-def test_the_cheapest_point_is_the_assumed_plant_s(front):
-    alone = qa.epsilon_front(front.task.nominal, PROFILE, points=2, starts=1)
-    assert front.cheapest().energy == pytest.approx(alone.cheapest().energy, rel=1e-6)
-
-
-def test_residuals_are_those_at_the_samples_of_the_saved_plant(front, tmp_path):
-    front.save(tmp_path / "front.json")
-    loaded = qa.Front.load(tmp_path / "front.json")
-    assert loaded == front
-    for point in loaded.points:
-        residual = qa.resimulate(loaded.task, PROFILE, point.coefficients).residual
-        assert residual == pytest.approx(point.residual, rel=1e-4)
-
-
 def test_a_weighted_sum_holds_as_well(task):
     front = qa.weighted_front(task, PROFILE, weights=[(1, 1)], starts=1)
     assert front.excess <= 0.05

@@ -62,7 +62,8 @@ def test_the_points_that_stay_are_those_of_the_definition(figures):
 
 
 @pytest.mark.parametrize(
-    ("limit", "index"), [(1e-4, 0), (1.9e-4, 0), (2e-4, 1), (7e-4, 1), (8e-4, 2), (math.inf, 2)]
+    ("limit", "index"),
+    [(1.9e-4, 0), (2e-4, 1), (math.inf, 2)],
 )
 def test_the_cheapest_within_a_residual(limit, index):
     front = _front(_points((1e-4, 0.5), (2e-4, 0.2), (8e-4, 0.1)))

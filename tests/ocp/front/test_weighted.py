@@ -1,13 +1,10 @@
 """The front by weighted sums: its points are on the front, its gaps where the front bends away."""
 
-import math
 from functools import cache
 
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.ocp.front.sweep import Sweep
-from quietarm.studies.comparison.measures import compare_fronts
 
 import quietarm as qa
 
@@ -32,17 +29,6 @@ def _scaled(front, others):
         (others.residuals - front.residuals[0]) / np.ptp(front.residuals),
         (others.energies - front.energies[-1]) / np.ptp(front.energies),
     ])  # fmt: skip
-
-
-def test_its_points_are_those_of_the_residual_limit(case):
-    # KKT: a minimum of a weighted sum is the least energy at its own residual
-    task, bound, front = case
-    assert len(front.points) == POINTS
-    for point in front.points[1:-1:3]:
-        sweep = Sweep(task, front.profile, qa.SolveSettings(bound=bound))
-        at_limit = sweep.best([np.array(point.coefficients)], sweep.ask(point.residual))
-        energy = qa.resimulate(task, front.profile, at_limit.coefficients).energy
-        assert point.energy == pytest.approx(energy, rel=1e-4)
 
 
 def test_gaps_are_where_the_front_is_above_its_chord():
@@ -70,54 +56,9 @@ def test_given_weights_are_used():
         assert values[middle].min() == pytest.approx(values.min(), abs=1e-6)
 
 
-def test_fronts_of_other_weights_are_not_seeds_of_one_method():
-    task, bound = CASES["arm"]
-    one, other = (
-        qa.weighted_front(task, bound=bound, weights=[pair], starts=1)
-        for pair in ((1, 0.1), (1, 3))
-    )
-    labels = [group.label for group in compare_fronts([one, other], fill=0).groups]
-    assert labels == ["weighted sum, weights 1:0.1", "weighted sum, weights 1:3"]
-
-
 def test_the_figures_are_those_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:
         motion = qa.resimulate(task, front.profile, point.coefficients)
         assert (point.residual, point.energy) == (motion.residual, motion.energy)
         assert np.abs(point.coefficients).max() <= bound
-
-
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        ({"points": 1}, "points is 1"),
-        ({"weights": [(1.0, -2.0)]}, "-2"),
-        ({"weights": [(0.5, 0.5), (0, 0.0)]}, "0"),
-        ({"weights": []}, "weights"),
-    ],
-)
-def test_bad_input_is_refused(arguments, text):
-    with pytest.raises(ValueError, match=text):
-        qa.weighted_front(CASES["arm"][0], **arguments)
-
-
-def test_ctrl_c_keeps_what_was_found():
-    def interrupt(done, total):
-        raise KeyboardInterrupt
-
-    task, bound = CASES["arm"]
-    profile = qa.CycloidPolynomial(3)
-    front = qa.weighted_front(task, profile, bound=bound, points=6, starts=1, report=interrupt)
-    assert not front.complete
-    assert len(front.points) == 3
-
-
-def test_a_limit_that_the_solvers_steps_pass_is_kept_by_solving_again():
-    """The solve that follows is of least energy, another form than that of the weighted sum."""
-    task = qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8, torque_limit=0.15)
-    front = qa.weighted_front(task, qa.CycloidPolynomial(4), bound=0.2, points=3, starts=1)
-    assert len(front.points) >= 3
-    for point in front.points:  # CVODES again; docs/accuracy.md
-        motion = qa.evaluate_coefficients(task, point.coefficients).motion
-        assert motion.peak_torque <= 0.15 * 1.001

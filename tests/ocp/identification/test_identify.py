@@ -2,7 +2,6 @@
 
 import math
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +14,6 @@ LINK = qa.SingleLinkManipulator(
     alpha1=0.03, alpha2=0.1, c=0.05, omega=12.0, zeta=0.02, beta1=0.3, phi=2.0
 )
 TIME = np.arange(0, 4, 0.004)
-REAL = sorted((Path(__file__).parents[4] / "shared" / "recordings").glob("*.mat"))
 
 
 def hub(t):
@@ -76,24 +74,6 @@ def test_a_push_tells_frequency_and_damping():
     assert found.untold == {}
 
 
-def test_a_scale_and_an_offset_of_the_sensor_change_nothing():
-    one = rung()
-    other = qa.Recording(one.time + 7.0, tip=250 * one.tip + 3)
-    values = [qa.identify([each], qa.FlexibleBeam()).plant.omega for each in (one, other)]
-    assert values[0] == pytest.approx(values[1], rel=1e-6)
-
-
-def test_an_accelerometer_tells_the_same():
-    one = rung(seconds=4.0)
-    t, omega = one.time, 2 * math.pi * 3.2
-    swing = np.exp(-0.01 * omega * t) * np.cos(omega * math.sqrt(1 - 0.01**2) * t)
-    found = qa.identify(
-        [qa.Recording(t, acceleration=9.81 + noisy(swing, 0.05))], qa.FlexibleBeam()
-    )
-    low, high = ends_of(found)["omega"]
-    assert low < omega < high
-
-
 def test_ring_downs_are_found_between_pushes():
     pushes = [rung(seconds=4.0, seed=seed).tip for seed in (0, 2)]
     quiet = np.zeros(200)
@@ -102,14 +82,6 @@ def test_ring_downs_are_found_between_pushes():
     begins = [part.begin for part in found.parts]
     assert begins == pytest.approx([1.3, 5.3], abs=0.4)  # within two periods
     assert all(part.held_back < 2 * part.misfit + 0.05 for part in found.parts)
-
-
-def test_a_joint_that_moved_is_left_until_it_stands(moved):
-    tip, _ = moved
-    found = qa.identify([qa.Recording(TIME, hub(TIME)[0], noisy(tip, 0.01))], LINK)
-    assert found.parts[0].begin == pytest.approx(0.7, abs=0.1)
-    ends = ends_of(found)
-    assert ends["omega"][0] < 12.0 < ends["omega"][1]
 
 
 def test_the_push_of_the_joint_shows_while_it_moves(moved):
@@ -146,14 +118,14 @@ def test_pushes_of_different_machines_have_an_interval_that_has_them_all():
 
 
 def test_intervals_cover_the_truth():
-    # benchmarks/coverage_of_identify.py has 200 with a moving hub; binomial: 34 of 40 or fewer
-    # has a chance of 1 in 30 for 95 %, of 1 in 30,000 for 99 %
+    # benchmarks/coverage_of_identify.py has 200 with a moving hub; binomial: 16 of 20 or fewer
+    # has a chance of 1 in 60 for 95 %
     hits = 0
-    for seed in range(40):
-        found = qa.identify([rung(2 + seed / 20, seconds=3.0, seed=seed)], qa.FlexibleBeam())
+    for seed in range(20):
+        found = qa.identify([rung(2 + seed / 10, seconds=3.0, seed=seed)], qa.FlexibleBeam())
         low, high = ends_of(found)["omega"]
-        hits += low < 2 * math.pi * (2 + seed / 20) < high
-    assert hits >= 34
+        hits += low < 2 * math.pi * (2 + seed / 10) < high
+    assert hits >= 17
 
 
 def test_a_machine_is_saved_and_planned_for_robustly(tmp_path):
@@ -162,31 +134,6 @@ def test_a_machine_is_saved_and_planned_for_robustly(tmp_path):
     assert qa.Identified.load(tmp_path / "arm.json") == found
     plant = qa.UncertainPlant(found.plant, found.errors)
     assert plant.errors == {one.parameter: one.error for one in found.told}
-
-
-@pytest.mark.skipif(not REAL, reason="the recordings of a real link are not part of the project")
-def test_a_real_link():
-    # basta/quanser-2-dof-serial-flexible-link: an independent fit of 11 standstills gave 1.78 to
-    # 1.87 Hz, and no damping
-    from scipy.io import loadmat
-
-    files = [loadmat(path, squeeze_me=True) for path in REAL]
-    recordings = [
-        qa.Recording(one["time"], one["theta11"], one["theta12"], name=path.name)
-        for path, one in zip(REAL, files, strict=True)
-    ]
-    found = qa.identify(recordings, qa.FlexibleBeam())
-    (omega,) = found.told
-    assert 1.78 < omega.value / (2 * math.pi) < 1.87
-    assert omega.low / (2 * math.pi) < 1.78
-    assert omega.high / (2 * math.pi) > 1.87
-    assert "zeta" in found.untold
-    assert found.left_out == ("lqg_step_30deg_run01.mat",)
-    # its standstill of 0.67 s has 1.2 periods of those, in which a spectrum finds another frequency
-    with pytest.raises(ValueError, match=r"has no ring-down: it lasts 1\.\d periods"):
-        qa.identify([recordings[2]], qa.FlexibleBeam())
-    with pytest.raises(ValueError, match="zeta was not told"):
-        found.errors  # noqa: B018
 
 
 T = np.linspace(0, 2, 400)
@@ -198,26 +145,10 @@ RING = np.cos(20 * T)
     [
         (partial(qa.Recording, T, 300 * T, RING), "an angle of 600 rad; is it in degrees"),
         (partial(qa.Recording, T[::-1], tip=RING), "does not increase from row 1"),
-        (partial(qa.Recording, np.where(T > 1, T + 1, T), tip=RING), "nothing was recorded from"),
         (partial(qa.Recording, T, tip=np.where(T > 1, np.nan, RING)), "tip in row 201 is no"),
-        (partial(qa.Recording, T[:9], tip=RING[:9]), "has 9 rows; give 20"),
         (partial(qa.Recording, T), "has no tip, acceleration or torque"),
     ],
 )
 def test_what_cannot_be_a_recording_is_refused(make, said):
     with pytest.raises(ValueError, match=said):
         make()
-
-
-@pytest.mark.parametrize(
-    ("recording", "free", "said"),
-    [
-        (rung(seconds=0.5), None, "has no ring-down: it lasts 1.* periods"),
-        (qa.Recording(T, tip=np.exp(T)), None, "has no ring-down"),
-        (rung(), ["omge"], "has no parameter 'omge'; did you mean 'omega'"),
-        (rung(), ["hub_inertia"], "the joint does not move"),
-    ],
-)
-def test_what_tells_nothing_is_refused(recording, free, said):
-    with pytest.raises(ValueError, match=said):
-        qa.identify([recording], qa.FlexibleBeam(), free)

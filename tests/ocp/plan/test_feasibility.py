@@ -82,26 +82,9 @@ def test_the_residual_offered_for_one_term_is_the_least_there_is(refused, tasks,
     assert scan * 0.9999 <= float(text) <= scan * 1.002
 
 
-def test_two_limits_in_the_way_are_said_to_be_two(tasks):
-    task = tasks["single link"]
-    both = qa.PointToPoint(
-        task.plant, task.target, task.duration, torque_limit=0.05, deflection_limit=1e-3
-    )
-    with pytest.raises(qa.InfeasibleTaskError, match="several"):
-        qa.plan_move(both, qa.CycloidPolynomial(4), starts=1)
-
-
 def test_an_overdamped_plant_is_brought_to_rest_from_its_stillest_motion():
     # The plain cycloid and random starts lead nowhere; 1e-8 m counts as at rest (docs/accuracy.md).
     plant = qa.SingleLinkManipulator(zeta=5.0)
     task = qa.PointToPoint(plant, math.pi / 6, 0.8)
     plan = qa.plan_move(task, qa.CycloidPolynomial(3), starts=1)
     assert plan.residual < 1e-8
-
-
-def test_a_profile_is_told_by_its_own_size(tasks):
-    task = qa.PointToPoint(tasks["arm"].plant, math.pi / 2, 0.8, torque_limit=0.02)
-    with pytest.raises(qa.InfeasibleTaskError, match=r"no motion of 5 nodes .* more nodes or"):
-        qa.plan_move(task, qa.CycloidNetwork(5), starts=1)
-    with pytest.raises(ValueError, match=r"zv shaper .* has one motion for a move"):
-        qa.epsilon_front(tasks["arm"], qa.shaped_cycloid(tasks["arm"], "zv"), points=3)

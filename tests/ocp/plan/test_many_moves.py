@@ -16,22 +16,20 @@ def moves(request, plants):
     return [qa.PointToPoint(plant, 0.5 + 0.2 * k, one) for k, one in enumerate(DURATIONS)]
 
 
-@pytest.mark.parametrize("bound", [0.3])
-def test_moves_at_rest_are_planned_as_alone(moves, bound):
-    found = qa.plan_moves(moves, bound=bound)
+def test_moves_at_rest_are_planned_as_alone(moves):
+    found = qa.plan_moves(moves, bound=0.3)
     assert found.complete
     assert found.tasks == tuple(moves)
     assert set(found.status) == {qa.SolveStatus.OPTIMAL}
     assert (found.residual <= 1e-8).all()
     assert found.by_cvodes.any()
     for task, energy, coefficients in zip(moves, found.energy, found.coefficients, strict=True):
-        alone = qa.plan_move(task, bound=bound)
+        alone = qa.plan_move(task, bound=0.3)
         assert energy == pytest.approx(alone.energy, rel=1e-5)
         exact = qa.resimulate(task, found.profile, coefficients)
         assert energy == pytest.approx(exact.energy, rel=1e-5)
         assert exact.residual < 2e-8
-        if bound is not None:
-            assert np.abs(coefficients).max() <= bound * (1 + 1e-7)
+        assert np.abs(coefficients).max() <= 0.3 * (1 + 1e-7)
 
 
 def test_moves_with_limits_are_certified_by_cvodes(moves):

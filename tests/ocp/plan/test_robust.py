@@ -53,18 +53,6 @@ def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
     assert plan.energy == pytest.approx(alone.energy, rel=1e-8)
 
 
-def test_it_saves_and_loads_equal(plan, tmp_path):
-    plan.save(tmp_path / "plan.json")
-    loaded = qa.Plan.load(tmp_path / "plan.json")
-    assert loaded == plan
-    assert loaded.excess == plan.excess
-
-
-def test_rest_is_not_asked_for(task):
-    with pytest.raises(ValueError, match="rest"):
-        qa.plan_move(task, residual_limit=0.0)
-
-
 def test_what_cannot_be_met_says_what_can(task):
     with pytest.raises(qa.InfeasibleTaskError, match="residual limit"):
         qa.plan_move(task, qa.CycloidPolynomial(1), bound=0.2, starts=1)

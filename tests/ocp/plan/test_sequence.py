@@ -33,14 +33,6 @@ def test_a_chosen_wait_is_no_worse_than_any_on_a_grid(earlier, back):
     assert chosen.plan.energy < 0.4 * qa.plan_move(back).energy  # the swing is used
 
 
-def test_a_wait_between_two_times_stays_between_them(earlier, back):
-    low, high = 0.1, 0.3
-    chosen = qa.plan_after(earlier, back, (low, high), SIX, starts=1)
-    assert low <= chosen.wait <= high
-    ends = [qa.plan_after(earlier, back, w, SIX, starts=1).plan.energy for w in (low, high)]
-    assert chosen.plan.energy <= min(ends) * (1 + 1e-6)
-
-
 def test_a_period_of_an_undamped_link_changes_nothing():
     undamped = qa.SingleLinkManipulator(zeta=0.0)
     earlier = qa.evaluate_coefficients(qa.PointToPoint(undamped, 0.5, 0.8), [])
@@ -65,36 +57,6 @@ def test_a_sequence_begins_each_move_with_what_the_last_one_left(tmp_path):
         assert following.plan.task.initial == last.plan.state_after(following.wait)
     found[2].plan.save(tmp_path / "third.json")
     assert qa.Plan.load(tmp_path / "third.json") == found[2].plan
-
-
-def test_an_uncertain_plant_waits_as_the_assumed_one(earlier, back):
-    uncertain = qa.UncertainPlant(LINK, {"frequency": 0.05})
-    task = qa.PointToPoint(uncertain, 0.0, 0.8, start=math.pi / 6)
-    chosen = qa.plan_after(earlier, task, (0.4, 0.6), residual_limit=0.02, starts=1)
-    assert 0.4 <= chosen.wait <= 0.6
-    assert chosen.plan.worst.residual < 0.02 * 1.05
-
-
-@pytest.mark.parametrize(
-    ("task", "told"),
-    [
-        (qa.PointToPoint(qa.ArmOnFlexibleLink(), 0.0, 0.8, start=0.5), "different plants; give"),
-        (qa.PointToPoint(LINK, 0.0, 0.8, start=0.5), "starts at 0.5 rad .* ends at 0.523599 rad"),
-    ],
-)
-def test_a_move_that_does_not_follow_is_refused(earlier, task, told):
-    with pytest.raises(ValueError, match=told):
-        qa.plan_after(earlier, task, 0.0)
-
-
-def test_as_many_waits_as_gaps(back):
-    with pytest.raises(ValueError, match="1 waits are given for 1 moves; give one between"):
-        qa.plan_sequence([back], [0.1])
-
-
-def test_a_wait_before_the_arrival_is_refused(earlier):
-    with pytest.raises(ValueError, match=r"wait is -0\.1 s; give 0 or more"):
-        earlier.state_after(-0.1)
 
 
 def test_ctrl_c_keeps_the_moves_until_then(back, monkeypatch):

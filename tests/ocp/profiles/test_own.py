@@ -1,7 +1,6 @@
 """A user's own profiles: whichever way the coefficients enter, derivatives and plans are right."""
 
 import math
-import re
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -64,27 +63,6 @@ class _LinearWaves(_Waves):
     def outer(self, inner, start, target, duration):
         del duration
         return qa.JointMotion(*_cycloid(*inner, start, target))
-
-
-def test_a_profile_says_where_its_starts_lie_and_how_large_it_is():
-    one, four = qa.CycloidPolynomial(1), qa.CycloidPolynomial(4)
-    assert (one.amount, four.amount) == ("1 term", "4 terms")
-    for profile, bound in ((one, 0.2), (four, None)):
-        least, most = profile.start_box(bound)
-        assert np.all(np.isfinite(most - least))
-        assert np.all(least < most)
-        least, most = profile.box(bound)
-        assert most == pytest.approx([np.inf if bound is None else bound] * profile.size)
-
-
-def test_the_shortest_duration_that_is_named_is_one_that_can_be():
-    profile, move = qa.ShapedCycloid("zv", [7.0], [0.01]), (0.0, 1.0)
-    with pytest.raises(ValueError, match="too short for") as refused:
-        profile.path([], *move, 0.01)
-    told = float(re.search(r"give ([\d.]+) s or more", str(refused.value))[1])
-    profile.path([], *move, told)
-    with pytest.raises(ValueError, match="too short"):
-        profile.path([], *move, told - 1e-3 * told)
 
 
 @pytest.mark.parametrize("profile", [_Waves(4), _LinearWaves(4)], ids=lambda p: p.name)

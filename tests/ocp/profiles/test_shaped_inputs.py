@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from quietarm.ocp.profiles.networks import SHARPEST
 from scipy.interpolate import BSpline
 
 import quietarm as qa
@@ -78,16 +77,3 @@ def test_the_gradient_plans_with_it(solved, name, profile, tasks, tmp_path):
     assert plan.energy < 1.001 * solved(task, 4).energy
     plan.save(tmp_path / "plan.json")
     assert qa.Plan.load(tmp_path / "plan.json") == plan
-
-
-def test_the_sharpest_unit_is_still_seen_and_a_sharper_one_refused(of_units, tasks):
-    profile, task, gain = of_units(1), tasks["single link"], -SHARPEST
-    sharp = [0.0, 0.01, 0.137 if of_units is qa.CycloidGaussians else -0.137 * gain, gain]
-    found, fine = (
-        qa.resimulate(task, profile, sharp),
-        qa.rollout(task, profile, sharp, steps=1000).motion,
-    )
-    assert found.energy == pytest.approx(fine.energy, rel=1e-3)
-    assert found.residual == pytest.approx(fine.residual, rel=1e-4)
-    with pytest.raises(ValueError, match="-201"):
-        qa.resimulate(task, profile, [*sharp[:3], -201.0])

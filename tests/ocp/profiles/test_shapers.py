@@ -80,21 +80,6 @@ def test_humps_leave_what_is_tolerated_over_ever_wider_ranges(zeta):
         assert widths[0] == pytest.approx(0.40, abs=0.02)  # Singhose, Seering and Singer, 1994
 
 
-def test_humps_without_damping_are_those_of_1997():
-    V = 0.05
-    X = (V**2 * (math.sqrt(1 - V**2) + 1)) ** (1 / 3)
-    outer = (3 * X**2 + 2 * X + 3 * V**2) / (16 * X)
-    first, second = (1 + 3 * V + 2 * math.sqrt(2 * V * (V + 1))) / 16, (1 - V) / 4
-    expected = {
-        "2hump-ei": [outer, 0.5 - outer, 0.5 - outer, outer],
-        "3hump-ei": [first, second, 1 - 2 * (first + second), second, first],
-    }
-    for shaper, amplitudes in expected.items():
-        impulses = SHAPERS[shaper](2 * pi, 0.0)
-        assert impulses.amplitudes == pytest.approx(amplitudes, rel=0.01)
-        assert impulses.times == pytest.approx([0.5 * k for k in range(len(amplitudes))], rel=3e-3)
-
-
 def test_the_impulses_in_the_textbooks_form():
     # docs/physics.md: ZV [1, K]/(1 + K), ZVD [1, 2K, K^2]/(1 + K)^2, EI undamped.
     zeta, damped = 0.1, 7.0 * math.sqrt(1 - 0.1**2)
@@ -156,20 +141,10 @@ def test_the_jerk_is_the_limit_of_differences(shaper):
     [
         (("zvdd", (10.0,), (0.0,)), "zvdd"),
         (("zv", (10.0, 12.0), (0.0,)), "2 frequencies"),
-        (("zv", (0.0,), (0.0,)), "frequency is 0"),
         (("zv", (10.0,), (1.0,)), "damping ratio is 1"),
-        (("zvd", (10.0,) * 6, (0.0,) * 6), "729 impulses"),
         (("ei", (10.0,), (0.6,)), r"0\.5037"),
     ],
 )
 def test_bad_numbers_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         ShapedCycloid(*arguments)
-
-
-@pytest.mark.parametrize(("shaper", "most"), [("zv", 0.99), ("zvd", 0.99), ("ei", 0.5037)])
-def test_impulses_are_positive_up_to_the_largest_damping(shaper, most):
-    for zeta in np.linspace(-most, most, 100):
-        amplitudes = ShapedCycloid(shaper, (10.0,), (zeta,)).impulses.amplitudes
-        assert min(amplitudes) > 0
-        assert sum(amplitudes) == pytest.approx(1)

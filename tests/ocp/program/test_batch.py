@@ -89,15 +89,6 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
             assert vars(valued)[name][row] == pytest.approx(part[0], rel=1e-10, abs=1e-13)
 
 
-def test_more_rows_than_a_call_takes(plants):
-    made = batch(plants["single link"], qa.CycloidPolynomial(2), 12)
-    candidates = _candidates(250, made.kind)
-    found = made.values(*candidates, threads=2)
-    for row in (0, 99, 100, 249):
-        alone = made.values(*(one[row : row + 1] for one in candidates))
-        assert found.energy[row] == pytest.approx(alone.energy[0], rel=1e-12)
-
-
 CASES = [
     ("single link", "polynomial", QUANTITIES, ()),
     ("arm", "polynomial", ("torque", "jerk"), ("frequency", "damping")),

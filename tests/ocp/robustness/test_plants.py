@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.ocp.simulation.residual import vibrations
 
 import quietarm as qa
@@ -79,18 +78,3 @@ def test_the_damping_of_coupled_modes_is_scaled_to_first_order():
     ):
         # Second-order terms: products of damping ratios, at most 0.05.
         assert now == pytest.approx((omega, 1.5 * zeta), rel=0.05**2 * 4)
-
-
-@pytest.mark.parametrize(
-    ("ranges", "message"),
-    [
-        ({}, r"no error is named"),
-        ({"omga": 0.1}, r"single-link has no parameter 'omga'; did you mean 'omega'\?"),
-        ({"frequency": 1.2}, r"120 % makes the frequency negative; give less than 100 %"),
-        ({"damping": 1.5}, r"150 % makes the damping negative; give 100 % or less"),
-        ({"omega": -0.1}, r"range of omega is -0.1; give a positive number"),
-    ],
-)
-def test_ranges_that_cannot_be(ranges, message):
-    with pytest.raises(ValueError, match=message):
-        checked_ranges(qa.SingleLinkManipulator(), ranges)

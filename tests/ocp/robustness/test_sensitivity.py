@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import pi
 
 import pytest
-from quietarm.models import FlexibleBeam, SingleLinkManipulator
+from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import PointToPoint, evaluate_coefficients, plan_move
 from quietarm.ocp.simulation.errors import with_errors
 
@@ -44,9 +44,3 @@ def test_frequency_is_what_matters_and_inertia_leaves_nothing(plan):
     assert [one.residual for one in plan.sensitivities] == sorted(
         (one.residual for one in plan.sensitivities), reverse=True
     )
-
-
-def test_a_count_and_what_is_nothing_have_none():
-    beam = FlexibleBeam(mode_count=1, hub_radius=0.0)
-    found = evaluate_coefficients(PointToPoint(beam, 0.5, 0.8), []).sensitivities
-    assert {"mode_count", "hub_radius"}.isdisjoint(one.parameter for one in found)

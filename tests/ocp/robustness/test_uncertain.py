@@ -31,12 +31,6 @@ def evaluated(task):
     return qa.evaluate_coefficients(task, MOVE)
 
 
-def test_the_samples_are_the_corners(task):
-    corners = {(-0.1, -0.05), (-0.1, 0.05), (0.1, -0.05), (0.1, 0.05)}
-    assert set(task.plant.samples) == corners
-    assert task.plant.modes == 5
-
-
 @pytest.mark.parametrize("of", ["task", "two_links_task"])
 def test_figures_are_the_worst_of_the_parts_alone(of, request):
     task = request.getfixturevalue(of)
@@ -71,17 +65,3 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     again = qa.resimulate(replace(task, plant=there), evaluated.profile, MOVE)
     # With the errors as parameters CVODES takes other steps: within its tolerance the same.
     assert evaluated.worst.residual == pytest.approx(again.residual, rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("ranges", "samples", "complaint"),
-    [
-        (dict.fromkeys(["phi", "beta2", "c", "zeta", "omega"], 0.1), (), "give at most 4"),
-        ({"omega": 0.1}, ((0.1, 0.1),), "has 2 errors; give 1"),
-        ({"omega": 0.1}, ((0.2,),), r"error of omega in a sample is 0.2; give one within \+-0.1"),
-        ({"omega": 0.1}, ((float("nan"),),), "is nan; give a finite number"),
-    ],
-)
-def test_what_is_wrong_is_said_in_a_line(ranges, samples, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        qa.UncertainPlant(qa.SingleLinkManipulator(), ranges, samples)

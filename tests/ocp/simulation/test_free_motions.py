@@ -63,16 +63,3 @@ def test_figures_are_those_of_scipy(tasks, free, name):
     assert found.motion.peak_torque == pytest.approx(peak_torque, rel=2e-2)
     arrival = np.flatnonzero(found.trajectory.time <= task.duration)[-1]
     assert found.trajectory.modes[arrival] == pytest.approx(z[:modes], abs=1e-9)
-
-
-def test_a_fine_grid_along_a_plan_has_the_plan_s_figures(tasks):
-    # The cycloid's own acceleration, linear between 2000 points: error of the order of h^2.
-    task, profile = tasks["arm"], qa.CycloidPolynomial(2)
-    coefficients = [0.1, -0.2]
-    path = profile.path(coefficients, *task.move)
-    times = np.linspace(0, task.duration, 2001)
-    acceleration = path(times, 2)
-    free = FreeMotion(times, acceleration[:-1], np.diff(acceleration) / np.diff(times))
-    found, expected = simulate(task, free).motion, qa.resimulate(task, profile, coefficients)
-    for name in ("energy", "residual", "net_work", "peak_torque", "peak_speed"):
-        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=2e-5)

@@ -20,18 +20,12 @@ def sampled(times):
     [
         (sampled([]), r"sample times are \[\]; give finite ones"),
         (sampled([0.2, 0.1]), r"increase from 0 or later"),
-        (sampled([-0.1, 0.2]), r"increase from 0 or later"),
-        (sampled([0.1, 0.1]), r"increase from 0 or later"),
-        (sampled([0.1, math.inf]), r"give finite ones"),
         (lambda: qa.resimulate(TASK, PROFILE, [0.1]), r"got 1 coefficients for a profile of 2"),
         (lambda: qa.resimulate(TASK, PROFILE, [0.1, math.nan]), r"coefficient 2 is nan"),
-        (lambda: qa.rollout(TASK, PROFILE, [math.inf, 0.1]), r"coefficient 1 is inf"),
-        (lambda: PROFILE.path([0.1, 0], 0, 1, 1)(0.5, 4), r"derivative order is 4; give 0, 1, 2 "),
         (
             lambda: qa.rollout(TASK, PROFILE, [0, 0], steps=0),
             r"steps is 0; give a whole number from 1 up",
         ),
-        # 1e4 rad/s for 1.0001 s; two steps a radian, and 20,000 of them at most
         (lambda: qa.rollout(FAST, PROFILE, [0, 0]), r"1e\+04 radians .* resolves up to 10000"),
     ],
 )

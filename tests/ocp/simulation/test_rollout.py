@@ -2,13 +2,11 @@
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
-from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
 
 import quietarm as qa
 
@@ -20,7 +18,10 @@ def _undamped(omega, **changes):
     return qa.SingleLinkManipulator(omega=omega, zeta=0.0, beta2=0.0, **changes)
 
 
-@pytest.mark.parametrize("omega", [3.0, 10.43, 2 * pi / 0.8 * 1.5, 25.0])
+@pytest.mark.parametrize(
+    "omega",
+    [10.43, 25.0],
+)
 def test_an_undamped_oscillator_driven_by_the_plain_cycloid(omega):
     # W'' + omega^2 W = -beta1 theta'', theta'' = A sin(O t), O = 2 pi/T, A = 2 pi span/T^2:
     # W = -beta1 A/(omega^2 - O^2) (sin(O t) - O/omega sin(omega t)).
@@ -103,51 +104,7 @@ def test_the_error_falls_with_the_sixth_power_of_the_step():
     assert errors[0] / errors[1] == pytest.approx(64, rel=0.25)
 
 
-def test_default_steps_resolve_the_profile_and_the_fastest_mode():
-    # ROLLOUT_STEPS at least; two a radian of the fastest mode.
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8)) == ROLLOUT_STEPS
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(omega=100.0), 1.0, 2.0)) == 400
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(omega=9999.5), 1.0, 1.0)) == 19999
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 10.0)) == 209  # 2 * 104.3
-    assert default_steps(qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8), least=50) == 50
-
-
-def test_a_rollout_says_how_many_steps_it_took():
-    task = qa.PointToPoint(qa.SingleLinkManipulator(), 1.0, 0.8)
-    assert qa.rollout(task, PLAIN, []).steps == ROLLOUT_STEPS
-    assert qa.rollout(task, PLAIN, [], steps=50).steps == 50
-    assert qa.rollout(task, PLAIN, [], steps=1).steps == 1
-
-
-@pytest.mark.parametrize("name", ["single link", "arm", "two links"])
-def test_a_population_is_simulated_as_each_of_its_members(tasks, name):
-    candidates, terms, steps = 6, 3, 60
-    task, profile = tasks[name], qa.CycloidPolynomial(terms)
-    population = np.random.default_rng(8).uniform(-0.3, 0.3, (candidates, terms))
-    a, move = ca.MX.sym("a", candidates, terms), ca.MX.sym("move", 3)
-    columns = [ca.repmat(column, 1, steps) for column in ca.horzsplit(a)]
-    together = qa.symbolic_rollout(
-        task.plant, profile, columns, ca.vertsplit(move), steps, candidates
-    )
-    function = ca.Function("population", [a, move], [together.arrival, together.energy])
-    arrival, energy = (value.full() for value in function(population, ca.DM(task.move)))
-    assert arrival.shape == (candidates, 2 * task.plant.modes)
-    for row, member in enumerate(population):
-        alone = qa.rollout(task, profile, member, steps=steps)
-        assert arrival[row] == pytest.approx(alone.arrival, rel=1e-11)
-        assert energy[row, 0] == pytest.approx(alone.motion.energy, rel=1e-11)
-
-
 @pytest.mark.parametrize("power", range(2 * NODES))
 def test_the_weights_integrate_up_to_degree_five_exactly(power):
     integral = sum(w * x**power for w, x in zip(GAUSS_WEIGHTS, GAUSS_NODES, strict=True))
     assert integral == pytest.approx(1 / (power + 1), abs=1e-15)
-
-
-def test_the_steps_are_finer_at_the_ends_and_the_same_from_both():
-    lengths = np.array([float(mesh(k, 100)[1]) for k in range(100)])
-    assert lengths == pytest.approx(lengths[::-1], rel=1e-9)
-    assert np.all(np.diff(lengths[:50]) > 0)
-    # Half even, half Chebyshev: 1/2 + pi/4 times the even length in the middle, 1/2 at the ends.
-    assert lengths[50] == pytest.approx((1 / 2 + math.pi / 4) / 100, rel=1e-3)
-    assert lengths[0] == pytest.approx(1 / 2 / 100, rel=0.05)

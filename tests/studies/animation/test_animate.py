@@ -2,14 +2,12 @@
 
 import io
 import math
-import stat
-import sys
 
 import numpy as np
 import pytest
 from PIL import Image
 from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import PointToPoint, QuietarmError, energy_floor, evaluate_coefficients
+from quietarm.ocp import PointToPoint, energy_floor, evaluate_coefficients
 from quietarm.studies.animation import animate
 from quietarm.studies.animation.cast import cast_of
 from quietarm.studies.figures import Line
@@ -76,99 +74,17 @@ def test_moves_of_different_durations_share_a_clock(plan, task):
     longer = evaluate_coefficients(PointToPoint(ArmOnFlexibleLink(), 0.5, 1.4), [])
     floor = energy_floor(task, starts=1, tolerance=0.5)
     times = np.arange(25) / 10  # 1.4 s and its residual window
-    film = animate(
-        [Line(plan, "short"), Line(longer, "long")], width=200, frames_per_second=5, speed=0.5
-    )
-    assert film.frames == len(times)
     lines = [Line(plan, "short"), Line(longer, "long"), Line(floor, "floor")]
     first, second, third = cast_of(lines, times, 2.4)
     for actor in (first, second, third):
         assert actor.trajectory.time[-1] == pytest.approx(2.4)
     assert first.tips == pytest.approx(plan.sampled(times).tips, abs=2e-6)
-    assert second.trajectory is longer.trajectory
     still = floor.trajectory  # up to 1.8 s
     expected = np.interp(times[:19], still.time, still.tips[:, 0])
     assert third.tips[:19, 0] == pytest.approx(expected, abs=2e-6)
 
 
-@pytest.mark.parametrize(
-    ("settings", "message"),
-    [
-        ({"speed": 0}, "speed is 0; give a positive number"),
-        ({"speed": 0.001}, "make 45000 frames, where 500 are the most"),
-        ({"frames_per_second": 60}, "frames per second is 60; give 1 to 50: browsers"),
-        ({"width": 100}, "width is 100; give a whole number from 200 up"),
-        ({"width": 5000}, "width is 5000; give at most 2000: more pixels make a huge file"),
-        ({"deflection_scale": -1}, "deflection scale is -1; give a positive number"),
-        ({"format": "avi"}, "format is 'avi'; give 'gif' or 'mp4'"),
-    ],
-)
-def test_settings_that_cannot_be_are_refused(plan, settings, message):
-    with pytest.raises(ValueError, match=message):
-        animate([Line(plan, "plan")], **settings)
-
-
-def test_as_many_motions_as_can_be_seen(plan):
-    with pytest.raises(ValueError, match="7 motions are given, where 6 are the most"):
-        animate([Line(plan, str(i)) for i in range(7)])
-
-
-def test_a_notebook_shows_it_without_a_server(film):
-    shown = film._repr_html_()
-    assert 'src="data:image/gif;base64,R0lGODlh' in shown  # GIF89a
-    assert 'alt="Structures in motion' in shown
-    assert len(repr(film)) < 100
-
-
-def test_it_is_saved_under_a_name_of_its_format(film, tmp_path):
-    film.save(tmp_path / "move.GIF")
-    assert (tmp_path / "move.GIF").read_bytes() == film.content
-    with pytest.raises(ValueError, match=r"move.mp4 is not named .gif, as this animation is"):
-        film.save(tmp_path / "move.mp4")
-
-
 # -- MP4 --
-
-FAKE = """#!{python}
-import sys
-content = sys.stdin.buffer.read({read})
-with open(sys.argv[-1], "wb") as file:
-    file.write(" ".join(sys.argv[1:-1]).encode() + b"|" + str(len(content)).encode())
-print("could not", file=sys.stderr)
-sys.exit({status})
-"""
-
-
-@pytest.fixture
-def ffmpeg(tmp_path, monkeypatch):
-    """Put a program of this name in the place of the real one."""
-
-    def put(status=0, read=""):
-        program = tmp_path / "bin" / "ffmpeg"
-        program.parent.mkdir()
-        program.write_text(FAKE.format(python=sys.executable, status=status, read=read))
-        program.chmod(program.stat().st_mode | stat.S_IXUSR)
-        monkeypatch.setenv("PATH", str(program.parent))
-
-    return put
-
-
-def test_ffmpeg_is_given_every_pixel(plan, ffmpeg):
-    ffmpeg()
-    film = animate([Line(plan, "plan")], format="mp4", width=301, frames_per_second=4)
-    options, count = film.content.decode().split("|")
-    words = options.split()
-    width, height = map(int, words[words.index("-s") + 1].split("x"))
-    assert width == 301
-    assert words[words.index("-r") + 1] == "4"
-    assert int(count) == 8 * width * height * 3  # 1.8 s at 4 frames a second
-    assert film._repr_html_().startswith('<video controls loop src="data:video/mp4;base64,')
-
-
-def test_what_ffmpeg_complains_of_is_told(plan, ffmpeg):
-    ffmpeg(status=1, read=1)
-    with pytest.raises(QuietarmError, match="ffmpeg could not make the MP4: could not; end"):
-        animate([Line(plan, "plan")], format="mp4", width=240, frames_per_second=2)
 
 
 def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch):

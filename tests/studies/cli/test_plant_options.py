@@ -3,9 +3,8 @@
 import math
 
 import pytest
-from quietarm.models import Plant, SingleLinkManipulator, known_plants, load_plant_file
-from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients
-from quietarm.studies.cli.application import COMMANDS
+from quietarm.models import Plant, SingleLinkManipulator, load_plant_file
+from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients
 
 MOVE = "--target 1 --duration 3"
 GIVEN = "--coefficients=0.1 --quiet"
@@ -35,13 +34,6 @@ def test_a_plant_of_a_file_is_evaluated_as_from_python(call, named):
     assert Plan.load("plan.json") == evaluate_coefficients(PointToPoint(crane, 1.0, 3.0), [0.1])
 
 
-def test_frequencies_may_be_given_in_hertz(call):
-    code, _, _ = call(f"evaluate crane {MOVE} --plant-file crane.py --set omega=0.5Hz {GIVEN} "
-                      "--output plan.json")  # fmt: skip
-    assert code == 0
-    assert Plan.load("plan.json").task.plant.omega == pytest.approx(math.pi)
-
-
 def test_plants_are_listed_with_what_their_parameters_mean(call):
     code, out, err = call("plants")
     assert (code, err) == (0, "")
@@ -52,20 +44,6 @@ def test_plants_are_listed_with_what_their_parameters_mean(call):
     code, out, _ = call("plants --plant-file crane.py")
     assert code == 0
     assert out.startswith("crane")
-
-
-def test_plans_and_floors_are_found(call):
-    for command in ("plan", "floor --starts 1 --tolerance 0.1"):
-        code, out, err = call(f"{command} {MOVE} --plant-file crane.py --quiet --starts 1")
-        assert (code, err) == (0, ""), command
-        assert "crane, 0 to" in out
-
-
-def test_other_processes_know_the_plant(call):
-    line = f"front {MOVE} --plant-file crane.py --method nsga2 {SHORT} --runs 2 --workers 2"
-    code, _, err = call(f"{line} --output front.json")
-    assert (code, err) == (0, "")
-    assert [Front.load(f"front-seed{seed}.json").seed for seed in (0, 1)] == [0, 1]
 
 
 def test_what_was_saved_is_read_with_the_plant_file_alone(call):
@@ -101,19 +79,6 @@ def test_what_was_saved_is_refused_with_a_changed_file(call, crane_file):
         assert "sha" in err.lower()
 
 
-def test_a_study_takes_the_files_plant(call):
-    code, _, err = call(f"study {MOVE} --plant-file crane.py {SHORT} --points 3 --runs 1")
-    assert (code, err) == (0, "")
-    with open("study.html") as page:
-        assert "crane, 0 to 57.2958 deg" in page.read()
-
-
-def test_every_command_that_takes_a_plant_or_what_was_saved_takes_the_option(call):
-    takes = {name for name in COMMANDS if "--plant-file" in call(f"{name} --help")[1]}
-    # These have plants of their own: the paper's, or those of the named problems.
-    assert takes == set(COMMANDS) - {"reproduce", "problems"}
-
-
 def test_a_parameter_of_a_plant_of_quietarms_own_is_set(call):
     code, out, err = call(
         "evaluate single-link --target 30deg --duration 0.8 --coefficients=0.1 --quiet "
@@ -122,19 +87,6 @@ def test_a_parameter_of_a_plant_of_quietarms_own_is_set(call):
     assert (code, err) == (0, "")
     assert "single-link with zeta = 0.01, omega = 9 rad/s, 0" in out
     assert Plan.load("plan.json").task.plant == SingleLinkManipulator(omega=9.0, zeta=0.01)
-
-
-def test_a_broken_plant_of_a_file_is_told_in_one_line(call, crane_file):
-    text = crane_file.read_text().replace("return self.inertia", "return math.sin(joint.angle)")
-    crane_file.write_text("import math\n" + text)
-    code, out, err = call(f"plan {MOVE} --plant-file crane.py")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "'crane': torque fails at line" in err
-    assert "of crane.py" in err
-
-
-def test_a_name_is_not_known_before_its_file_is_given():
-    assert "crane" not in known_plants()
 
 
 def test_speeds_and_accelerations_take_degrees(call):

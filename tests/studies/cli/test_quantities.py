@@ -1,12 +1,12 @@
 """Angles, lengths, times and coefficients as people write them."""
 
 import math
+from functools import partial
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from quietarm.studies.cli.quantities import (
-    literal,
     parse_angle,
     parse_coefficients,
     parse_energy,
@@ -25,77 +25,37 @@ FINITE = st.floats(allow_nan=False, allow_infinity=False)
 
 
 @pytest.mark.parametrize(
-    ("text", "radians"),
+    ("parse", "text", "number"),
     [
-        ("0.5", 0.5),
-        ("-1.5", -1.5),
-        ("+2", 2.0),
-        (".5", 0.5),
-        ("5.", 5.0),
-        ("1e-3", 1e-3),
-        ("0.5rad", 0.5),
-        ("0.5 rad", 0.5),
-        ("30deg", math.pi / 6),
-        ("-90 deg", -math.pi / 2),
-        ("180deg", math.pi),
-        ("pi", math.pi),
-        ("+pi", math.pi),
-        ("-pi", -math.pi),
-        ("pi/6", math.pi / 6),
-        ("-pi/2", -math.pi / 2),
-        ("pi / 4", math.pi / 4),
-        ("2pi", 2 * math.pi),
-        ("2*pi/3", 2 * math.pi / 3),
-        ("-0.75 pi", -0.75 * math.pi),
-        ("3 * pi / 4 rad", 3 * math.pi / 4),
-        ("  pi/6  ", math.pi / 6),
+        (parse_angle, "-1.5", -1.5),
+        (parse_angle, "  0.5 rad ", 0.5),
+        (parse_angle, "30deg", math.pi / 6),
+        (parse_angle, "-90 deg", -math.pi / 2),
+        (parse_angle, "30 degrees", math.pi / 6),
+        (parse_angle, "30°", math.pi / 6),
+        (parse_angle, "+pi", math.pi),
+        (parse_angle, "pi / 4", math.pi / 4),
+        (parse_angle, "2*pi/3", 2 * math.pi / 3),
+        (parse_angle, "-0.75 pi", -0.75 * math.pi),
+        (partial(parse_rate, order=1), "60 deg/s", math.pi / 3),
+        (partial(parse_rate, order=2), "180deg/s^2", math.pi),
+        (partial(parse_rate, order=3), "3 rad/s^3", 3.0),
+        (parse_length, "2 cm", 0.02),
+        (parse_length, "3µm", 3e-6),
+        (parse_time, "800ms", 0.8),
+        (parse_torque, "200mNm", 0.2),
+        (parse_whole, " 1_000 ", 1000),
+        (parse_whole, "1e3", 1000),
     ],
 )
-def test_angles_as_people_write_them(text, radians):
-    assert parse_angle(text) == pytest.approx(radians, rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("text", "order", "rate"),
-    [
-        ("2", 1, 2.0),
-        ("60deg", 1, math.pi / 3),
-        ("60 deg/s", 1, math.pi / 3),
-        ("2rad/s", 1, 2.0),
-        ("pi/2", 1, math.pi / 2),
-        ("60deg", 2, math.pi / 3),
-        ("180deg/s^2", 2, math.pi),
-        ("3 rad/s^3", 3, 3.0),
-    ],
-)
-def test_rates_as_people_write_them(text, order, rate):
-    assert parse_rate(text, order) == pytest.approx(rate, rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("text", "metres"),
-    [("0.001", 1e-3), ("1mm", 1e-3), ("2 cm", 0.02), ("0.5m", 0.5), ("3um", 3e-6), ("3µm", 3e-6)],
-)
-def test_lengths_as_people_write_them(text, metres):
-    assert parse_length(text) == pytest.approx(metres, rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("text", "seconds"), [("0.8", 0.8), ("0.8s", 0.8), ("800ms", 0.8), ("1.5e3 ms", 1.5)]
-)
-def test_times_as_people_write_them(text, seconds):
-    assert parse_time(text) == pytest.approx(seconds, rel=1e-15)
+def test_quantities_as_people_write_them(parse, text, number):
+    assert parse(text) == pytest.approx(number, rel=1e-15)
 
 
 @given(FINITE)
 @pytest.mark.parametrize("parse", [parse_angle, parse_length, parse_time])
 def test_a_plain_number_comes_back_as_it_was(parse, number):
     assert parse(repr(number)) == number
-
-
-@given(st.floats(-1e6, 1e6))
-def test_degrees_round_trip(angle):
-    assert parse_angle(f"{math.degrees(angle)!r}deg") == pytest.approx(angle, rel=1e-14)
 
 
 @given(st.sampled_from(["", "+", "-"]), st.integers(1, 1000), st.integers(1, 1000))
@@ -110,16 +70,10 @@ def test_milliseconds_are_the_same_number_as_seconds(count):
     assert parse_time(f"{count}ms") == parse_time(repr(count / 1000))
 
 
-@given(WHOLE)
-def test_millimetres_are_the_same_number_as_metres(count):
-    assert parse_length(f"{count}mm") == parse_length(repr(count / 1000))
-
-
 @pytest.mark.parametrize(
     "text",
-    ["", " ", "deg", "30degs", "1mm", "pi/0", "pi/", "pi/x", "--pi", "2pi3",
-     "1e", "0x10", "pi deg", "1 2", "pi*2", "pi/-2", "five"],
-)  # fmt: skip
+    ["", "30degs", "1mm", "pi/", "five"],
+)
 def test_what_is_no_angle_is_refused_with_examples(text):
     with pytest.raises(ValueError, match="give radians") as refused:
         parse_angle(text)
@@ -127,37 +81,14 @@ def test_what_is_no_angle_is_refused_with_examples(text):
     assert "30deg" in str(refused.value)
 
 
-def test_degrees_may_be_written_out_and_a_decimal_comma_is_told():
-    assert parse_angle("30°") == parse_angle("30 degrees") == parse_angle("30deg")
-    assert parse_torque("200mNm") == 0.2
+def test_a_decimal_comma_is_told():
     with pytest.raises(ValueError, match=r"'1,5' is not an angle; give 1\.5, with a point"):
         parse_angle("1,5")
-
-
-@given(st.text())
-@pytest.mark.parametrize("parse", [parse_angle, parse_length, parse_time])
-def test_any_text_is_a_number_or_a_value_error(parse, text):
-    try:
-        value = parse(text)
-    except ValueError as error:
-        assert repr(text) in str(error)  # noqa: PT017  # both ends are allowed
-    else:
-        assert isinstance(value, float)
-
-
-@pytest.mark.parametrize("text", ["nan", "inf", "-inf", "1e400"])
-def test_numbers_that_are_not_finite_are_left_to_the_task(text):
-    # The task refuses them in its own words, whichever way they come in.
-    assert not math.isfinite(parse_time(text))
 
 
 @given(st.lists(FINITE, min_size=1, max_size=20))
 def test_coefficients_round_trip(values):
     assert parse_coefficients(",".join(map(repr, values))) == values
-
-
-def test_coefficients_may_have_spaces():
-    assert parse_coefficients("-0.0019, -0.14 ,1e-2") == [-0.0019, -0.14, 0.01]
 
 
 def test_weights_are_a_pair():
@@ -166,15 +97,6 @@ def test_weights_are_a_pair():
     for text in ("", "1", "1:2:3", "1:", "a:b", "1/3"):
         with pytest.raises(ValueError, match="is no pair of weights; give those of residual"):
             parse_weights(text)
-
-
-@pytest.mark.parametrize(
-    ("text", "number"), [("2", 2), ("-3", -3), ("1e3", 1000), ("2.0", 2), (" 1_000 ", 1000)]
-)
-def test_whole_numbers_as_people_write_them(text, number):
-    for read in (parse_whole, literal):
-        found = read(text)
-        assert (found, type(found)) == (number, int)
 
 
 ENERGIES = {
@@ -197,12 +119,8 @@ def test_an_energy_is_typed_as_it_is_called(text):
     ("text", "message"),
     [
         ("cooper:1", r"unknown energy 'cooper'; did you mean 'copper'\? \(known: absolute"),
-        ("mix", "unknown energy 'mix'"),
-        ("absolute+", "unknown energy ''"),
         ("copper", "'copper' has 0 numbers of 1; give copper:motor_constant"),
-        ("positive:2", "'positive:2' has 1 numbers of 0; give positive"),
         ("copper:x", "motor_constant is 'x'; give a number"),
-        ("copper:0", "motor constant is 0 .*; give a positive number"),
         ("-1*absolute", "weight is -1; give a positive number"),
     ],
 )

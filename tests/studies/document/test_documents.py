@@ -1,6 +1,5 @@
 """A document says the same on a terminal, in Markdown and on a page that stands alone."""
 
-import base64
 import io
 import xml.etree.ElementTree as ElementTree
 
@@ -18,7 +17,7 @@ from quietarm.studies.document.blocks import (
     Text,
     Verdict,
 )
-from quietarm.studies.document.files import document_files, markdown, page
+from quietarm.studies.document.files import markdown, page
 from quietarm.studies.document.table import Column, Table
 from quietarm.studies.document.terminal import show
 from rich.console import Console
@@ -82,39 +81,3 @@ def test_every_form_holds_every_word_and_number(form):
         "page": lambda: "".join(of_the_page().itertext()),
     }[form]()
     assert [word for word in (*WORDS, NASTY) if word not in text] == []
-
-
-def test_a_page_is_well_formed_and_says_how_wide_it_is():
-    root = of_the_page()
-    assert root.get("lang") == "en"
-    assert root.find("head/title").text == NASTY
-    metas = {meta.get("name"): meta.get("content") for meta in root.findall("head/meta")}
-    assert metas["viewport"] == "width=device-width, initial-scale=1"
-    link = root.find("body/nav/ul/li/a").get("href")
-    assert link == f"#{root.find('body/section').get('id')}"
-
-
-def test_a_table_scrolls_within_itself_and_names_rows_and_columns():
-    scroll = of_the_page().find(".//div[@class='scroll']")
-    assert (scroll.get("tabindex"), scroll.get("aria-label")) == ("0", "Energies")
-    heads = [cell.text for cell in scroll.findall("table/thead/tr/th")]
-    assert heads == ["method", "NSGA-II", "VEPSO"]
-    first, second = scroll.findall("table/tbody/tr")
-    assert [cell.text for cell in first] == ["energy [J]", "0.12", "-"]
-    assert (second[0].text, second[0].get("class")) == ("quartiles", "part")
-
-
-def test_a_picture_is_inside_the_page_with_words_for_those_who_do_not_see_it():
-    image = of_the_page().find(".//img")
-    assert image.get("alt") == "A line."
-    head, data = image.get("src").split(",")
-    assert head == "data:image/svg+xml;base64"
-    assert ElementTree.fromstring(base64.b64decode(data)).tag == "{http://www.w3.org/2000/svg}svg"
-
-
-def test_a_folder_holds_the_report_its_data_and_its_pictures(tmp_path):
-    for path, write in document_files(tmp_path / "new", DOCUMENT):
-        write(path)
-    names = sorted(path.name for path in (tmp_path / "new").iterdir())
-    assert names == ["energies.csv", "line.png", "other.svg", "report.md"]
-    assert "![A line.](line.png)" in (tmp_path / "new" / "report.md").read_text()

@@ -36,22 +36,6 @@ def test_markdown_stands_upright_with_the_moves_beside_each_other():
     )
 
 
-def test_screen_fits_a_narrow_terminal_without_cutting_a_figure():
-    text = on_screen(TABLE, width=50)
-    assert max(map(len, text.splitlines())) <= 50
-    assert "…" not in text
-    assert "0.06297" in text
-
-
-def test_csv_has_a_row_a_line_and_every_digit():
-    rows = list(csv.reader(io.StringIO(TABLE.csv())))
-    assert rows == [
-        ["move", "terms N", "F2 [J]", "time [s]"],
-        ["0 to pi/6, 0.8 s", "2", "0.062973456789", "0.5"],
-        ["a|b", "6", "", "1.0"],
-    ]
-
-
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=5))
 def test_csv_numbers_come_back_exactly(numbers):
     table = Table("t", [Column("x")] * len(numbers), [numbers])

@@ -13,7 +13,7 @@ CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
 )
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here")
-GUARD = 30
+GUARD = 240
 """Seconds after which what does not come has hung, on any machine."""
 api.expect.set_options(1e3 * GUARD)
 # Where a point of the front is on the page.
@@ -71,23 +71,12 @@ def figures(page):
     return page.locator(".figures .bk-clearfix")
 
 
-def said(page):
-    return page.locator(".said .bk-clearfix")
-
-
 def energy(page):
     return float(re.search(r"energy \(F2\) ([\d.]+) J", figures(page).inner_text())[1])
 
 
 def button(page, name):
     return page.get_by_role("button", name=name, exact=True)
-
-
-def give(page, label, value):
-    field = page.get_by_label(label)
-    field.fill(value)
-    field.press("Enter")
-    return field
 
 
 def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
@@ -109,21 +98,10 @@ def test_slider_gradient_and_menu_change_the_figures_and_all_fits_a_phone(page):
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
-def test_a_field_shows_what_is_held_and_a_line_says_what_cannot_be(page):
-    api.expect(give(page, "target [deg]", "999")).to_have_value("360")
-    give(page, "target [deg]", "0")
-    api.expect(said(page)).to_have_text(re.compile("there is no move; change one of them"))
-    api.expect(page.get_by_label("target [deg]")).to_have_value("360")
-    give(page, "target [deg]", "30")
-    api.expect(said(page)).to_have_text("")
-    give(page, "torque [N m]", "0.01")
-    button(page, "Plan").click()
-    api.expect(said(page)).to_have_text(re.compile("feasible with the rest kept: torque limit"))
-
-
 def test_a_click_on_the_front_shows_its_motion_and_it_is_downloaded(page):
     button(page, "Front").click()
-    api.expect(said(page)).to_have_text("click a point of the front to see its motion")
+    said = page.locator(".said .bk-clearfix")
+    api.expect(said).to_have_text("click a point of the front to see its motion")
     page.mouse.click(*page.evaluate(PLACE, 10))
     api.expect(figures(page)).to_contain_text(re.compile(r"residual \(F1\) 1\d\.\d mm"))
     api.expect(figures(page)).to_contain_text("enter what the drive can do under Limits")

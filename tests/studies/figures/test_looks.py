@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from quietarm.studies.figures import COLOURS, look
+from quietarm.studies.figures import COLOURS
 
 # Machado, Oliveira and Fernandes, IEEE TVCG 15 (2009), table of severity 1.0; linear sRGB.
 SIGHT = {
@@ -34,12 +34,3 @@ def test_colours_are_told_apart(sight):
     # a difference of 2.3 is just noticeable (Mahy, van Eycken and Oosterlinck 1994)
     for one, other in combinations(COLOURS, 2):
         assert np.linalg.norm(lab(one, SIGHT[sight]) - lab(other, SIGHT[sight])) > 6 * 2.3
-
-
-def test_no_colour_is_too_pale_for_paper():
-    assert max(lab(colour, SIGHT["usual"])[0] for colour in COLOURS) < 75  # white is 100
-
-
-def test_no_two_of_many_lines_look_alike():
-    assert len({look(i) for i in range(360)}) == 360
-    assert len({look(i).dash for i in range(5)}) == 5  # in print without colours

@@ -70,10 +70,6 @@ def test_energies_against_the_radial_basis_functions_of_ref_24():
     ]
 
 
-def test_no_other_table_has_energies():
-    assert {row.table for row in ROWS} == {2, 3, 5, 6}
-
-
 def test_coefficients_are_those_of_tables_1_and_4():
     typed = {
         (*move, terms): tuple(map(float, values))

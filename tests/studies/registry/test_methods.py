@@ -3,21 +3,13 @@
 import math
 
 import pytest
-from quietarm.metaheuristics import PRESETS
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, polish_front
 from quietarm.studies.registry.methods import (
-    EPSILON,
-    WEIGHTED,
     Kind,
     method_of,
     methods_of,
 )
-
-
-def test_every_search_with_the_papers_settings_is_in_the_registry():
-    assert {method.name for method in methods_of(Kind.METAHEURISTIC)} == set(PRESETS)
-    assert methods_of(Kind.GRADIENT) == (EPSILON, WEIGHTED)
 
 
 @pytest.mark.parametrize("method", methods_of(Kind.GRADIENT), ids=lambda method: method.name)

@@ -3,26 +3,18 @@
 from pathlib import Path
 
 import pytest
-from quietarm.ocp import evaluate_coefficients
 from quietarm.studies.document.files import table_in_markdown
 from quietarm.studies.paper import (
     ARM_HALF,
     ARM_THREE_QUARTERS,
     ARM_WHOLE,
-    COEFFICIENTS,
     CONDITIONS,
     DUAL_LINK_HALF,
-    ROWS,
     SINGLE_LINK_HALF_1_0,
     SINGLE_LINK_HALF_1_1,
     SINGLE_LINK_SIXTH,
-    residual_level,
 )
-from quietarm.studies.registry.methods import NSGA2, VEPSO
-from quietarm.studies.reproduction.pictures import systems_figure
-from quietarm.studies.reproduction.searches import Searched
-from quietarm.studies.reproduction.systems import searched
-from quietarm.studies.reproduction.tables import remarks, systems_table
+from quietarm.studies.reproduction.tables import systems_table
 
 SYSTEMS = [
     "plain cycloid", "ZV", "ZVD", "EI", "paper", "network", "Gaussians", "spline", "VEPSO",
@@ -105,17 +97,6 @@ def test_the_third_plants_move_is_the_documents(reproduction):
     assert found["gradient"].wrong_residual * 1e3 == pytest.approx(36.5, abs=0.06)
 
 
-def test_nothing_at_rest_on_arrival_is_below_the_floor(reproduction):
-    for case in reproduction.systems:
-        found = on(reproduction, case)
-        at_rest = [
-            one for one in found.values() if one.motion is not None and one.motion.residual < 1e-8
-        ]
-        solved = {"arm-on-flexible-link": "Gaussians"}.get(case.task.plant.name, "network")
-        assert {solved, "spline", "floor"} <= {one.name for one in at_rest}
-        assert min(one.energy for one in at_rest) == found["floor"].energy
-
-
 def test_a_robust_plan_leaves_little_whatever_the_frequency(reproduction):
     found = on(reproduction, SINGLE_LINK_SIXTH)
     robust, cycloid = found["robust plan"], found["plain cycloid"]
@@ -128,77 +109,7 @@ def test_a_robust_plan_leaves_little_whatever_the_frequency(reproduction):
     assert nothing.why == "left out in these tests"
 
 
-def test_the_paper_is_evaluated_where_it_prints_coefficients(reproduction):
-    energies = {row.condition: row.energy for row in ROWS if row.terms == 6}
-    for case in CONDITIONS:
-        found = on(reproduction, case)["paper"]
-        assert found.energy == pytest.approx(energies[case], rel=5e-3)
-        assert (found.motion is not None) == ((case, 6) in COEFFICIENTS) == (found.why == "")
-    nothing = on(reproduction, DUAL_LINK_HALF)["paper"]
-    assert nothing.energy is nothing.motion is nothing.parameters is None
-    assert nothing.why == "the paper has no such move"
-
-
-def test_of_several_seeds_the_middle_one_counts(front_of):
-    level = residual_level(SINGLE_LINK_SIXTH, 6) * 1e3
-    fronts = [
-        front_of([(level / 2, energy)], seed=seed, terms=6, seconds=float(seed))
-        for seed, energy in enumerate((0.5, 0.1, 0.3, 0.2))
-    ]
-    far = front_of([(2 * level, 0.01)], seed=4, terms=6)  # counts as infinite
-    found = searched(VEPSO, Searched.of(SINGLE_LINK_SIXTH, 6, (*fronts, far)))
-    assert (found.name, found.seconds) == ("VEPSO", 2.0)
-    assert found.motion == evaluate_coefficients(SINGLE_LINK_SIXTH.task, [0.1] * 6).motion
-    assert (found.energies.count, found.energies.seeds) == (4, 5)
-    assert remarks([found])[:1] == [
-        "VEPSO: the middle one of 5 seeds, 4 of which come near enough; "
-        "median 0.3000 J, quartiles 0.2000 J and 0.5000 J"
-    ]
-    nothing = searched(NSGA2, Searched.of(SINGLE_LINK_SIXTH, 6, (far,)))
-    assert (nothing.motion, nothing.energy) == (None, None)
-    assert nothing.why == f"no point of its front is within {level:.3g} mm"
-
-
-def test_a_joint_that_turns_back_is_named(reproduction):
-    # the network's plan of least energy swings back on its way: docs/systems.md
-    every = reproduction.systems[SINGLE_LINK_SIXTH]
-    line = remarks(every)[-1]
-    assert line.startswith("On its way the joint turns back: ")
-    assert "network by " in line
-    assert "gradient" not in line
-    plain = on(reproduction, SINGLE_LINK_SIXTH)["plain cycloid"]
-    assert plain.turns_back == 0
-
-
 # The picture
-
-
-@pytest.fixture(scope="module")
-def figure(reproduction):
-    return systems_figure(reproduction.systems)
-
-
-def dots(ax):
-    return [line for line in ax.get_lines() if line.get_marker() not in ("None", "|", "")]
-
-
-def test_every_figure_that_is_known_is_a_dot(reproduction, figure):
-    every = [one for systems in reproduction.systems.values() for one in systems]
-    known = sum(one.motion is not None for one in every)
-    energies = sum(one.energy is not None for one in every)
-    timed = sum(one.seconds is not None for one in every)
-    assert [len(dots(ax)) for ax in figure.axes] == [energies, known, known, known, timed]
-
-
-def test_energies_are_multiples_of_the_floor_and_residuals_shares_of_the_cycloids(
-    reproduction, figure
-):
-    energy, residual, wrong, acceleration, _ = figure.axes
-    cycloid, *_, floor = reproduction.systems[SINGLE_LINK_SIXTH]
-    first = [dots(ax)[0].get_xdata()[0] for ax in (energy, residual, wrong, acceleration)]
-    share = 100 * cycloid.wrong_residual / cycloid.motion.residual
-    assert first == pytest.approx([cycloid.energy / floor.energy, 100, share, 1])
-    assert min(dot.get_xdata()[0] for dot in dots(energy)) > 0.99
 
 
 # The tables

@@ -2,8 +2,6 @@
 
 import pytest
 import quietarm.studies.study.work as study_pieces
-from matplotlib.figure import Figure
-from quietarm.studies.study import page
 from quietarm.studies.study.work import run_study
 from small_study import CASES, FLOOR, QUICK
 
@@ -11,13 +9,6 @@ from small_study import CASES, FLOOR, QUICK
 @pytest.fixture(autouse=True)
 def _floor_at_once(monkeypatch):
     monkeypatch.setattr(study_pieces, "energy_floor", lambda task: FLOOR)
-
-
-@pytest.fixture
-def no_pictures(monkeypatch):
-    """Those of the page that `test_page.py` reads are enough: they take long to draw."""
-    monkeypatch.setattr(page, "panel_figure", lambda *given: Figure())
-    monkeypatch.setattr(page, "gap_figure", lambda *given: Figure())
 
 
 @pytest.fixture(scope="session")

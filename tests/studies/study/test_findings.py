@@ -1,11 +1,9 @@
 """What the headline study says in words."""
 
 import re
-from dataclasses import replace
 
 import pytest
-from quietarm.studies.comparison.measures import compare_fronts
-from quietarm.studies.study.findings import case_findings, findings
+from quietarm.studies.study.findings import case_findings
 from small_study import FLOOR
 
 # What it says
@@ -27,32 +25,3 @@ def test_findings_are_those_of_the_fronts(small):
     assert float(claim) == pytest.approx(100 * (0.06297 / at_paper - 1), abs=0.6)
     ratio = fronts["epsilon"].stillest().energy / FLOOR.energy
     assert f"{ratio:.3g} times the floor" in words
-
-
-def test_the_summary_speaks_of_every_method(small):
-    words = " ".join(findings(small))
-    for part in ("The front that dominates most: epsilon constraint in ",
-                 "NSGA-II comes within 1 mm in fewer than half of its seeds.", "VEPSO",
-                 "Polished by the gradient",
-                 "times the floor", "Median time of a front: epsilon constraint"):  # fmt: skip
-        assert part in words
-
-
-def test_the_findings_name_the_holes_of_the_weighted_sum(small):
-    found = small.cases[0]
-    fronts = [run.front for run in found.comparison.runs]
-    fronts[1] = replace(fronts[1], gaps=((0.0, 2e-3), (3e-3, 4e-3)))
-    words = " ".join(case_findings(replace(found, comparison=compare_fronts(fronts))))
-    assert "reaches the front between rest and 2 mm and between 3 mm and 4 mm." in words
-
-
-def test_where_no_motion_is_still_the_findings_say_how_still_the_stillest_is(small):
-    found = small.cases[0]
-    fronts = [replace(run.front, points=run.front.points[-1:]) for run in found.comparison.runs]
-    (last,) = fronts[0].points
-    assert last.residual > 5e-3  # the largest of the residuals that energies are compared at
-    words = " ".join(case_findings(replace(found, comparison=compare_fronts(fronts[:4]))))
-    assert "No method arrives within 1 mm: the stillest motion leaves " in words
-    assert re.search(r"The stillest motion of NSGA-II leaves \d\S* mm\.", words)
-    assert "not reached" not in words
-    assert "No motion of 2 coefficients was found that arrives at rest" in words

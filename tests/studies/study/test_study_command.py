@@ -3,9 +3,7 @@
 import pytest
 import quietarm.studies.study.work as study_module
 from quietarm.ocp import Front
-from quietarm.studies.paper import CONDITIONS
-from quietarm.studies.study.findings import case_findings, findings
-from quietarm.studies.study.page import _file_name, front_files
+from quietarm.studies.study.findings import case_findings
 from quietarm.studies.study.work import Study
 from small_study import QUICK
 
@@ -46,53 +44,3 @@ def test_study_writes_the_page_and_the_fronts(call, folder, small, monkeypatch):
     saved = [Front.load(path) for path in (folder / "fronts").iterdir()]
     assert len(saved) == len(runs) == 8
     assert all(run.front in saved for run in runs)
-
-
-def test_fronts_of_a_move_and_of_its_mirror_image_have_names_of_their_own(small, tmp_path):
-    names = [path.name for path, _ in front_files(small, tmp_path)]
-    assert len(names) == len(set(names)) == 16
-    assert "arm-on-flexible-link-0-to-90-deg-in-0.8-s-nsga2-polished-seed0.json" in names
-    assert _file_name("-90 to 45 deg") == "minus-90-to-45-deg"
-
-
-@pytest.mark.usefixtures("no_pictures")
-def test_without_a_plant_it_is_the_papers_conditions(call, folder, small, monkeypatch):
-    asked = {}
-
-    def at_once(cases, settings, begin):
-        asked.update(cases=cases)
-        return small
-
-    monkeypatch.setattr(study_module, "run_study", at_once)
-    code, out, _ = call("study --quiet --output all.html")
-    assert code == 0
-    assert asked["cases"] == CONDITIONS
-    assert f"- {findings(small)[0]}" in out
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("study --target 1", "--target is for a task of your own: give its plant as well"),
-        ("study --bound 0.2", "--bound is for a task of your own"),
-        ("study single-link --target 1", "give --duration with the plant"),
-        (f"{MOVE} --bound 0", "bound on the coefficients is 0"),
-        (f"{MOVE} --points 1", "points is 1; give a whole number from 2 up"),
-        (f"{MOVE} --runs 0", "runs is 0"),
-        (
-            f"{MOVE} --method spea2 --population 2001",
-            "population is 2001; give at most 2000: spea2",
-        ),
-        (f"{MOVE} --terms 0", "terms is 0"),
-        (f"{MOVE} --generations 0", "generations is 0"),
-        (f"{MOVE} --workers 0", "workers is 0"),
-        (f"{MOVE} --output nowhere/a.html", "folder nowhere does not exist"),
-        ("study singel-link --target 1 --duration 1", "did you mean 'single-link'?"),
-    ],
-)
-def test_bad_input_is_refused_in_a_line_before_any_work(call, folder, monkeypatch, line, words):
-    monkeypatch.setattr(study_module, "run_study", lambda *given: pytest.fail("work was begun"))
-    code, out, err = call(line)
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert words in err
-    assert list(folder.iterdir()) == []

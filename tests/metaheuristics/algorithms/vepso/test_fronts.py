@@ -1,7 +1,6 @@
 """VEPSO on ZDT1 to ZDT3 and a sphere, against the true fronts."""
 
 import moocore
-import numpy as np
 import pytest
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
@@ -30,48 +29,18 @@ def quality(F, true):
     return moocore.igd(F, ref=true), hypervolumes[0] / hypervolumes[1]
 
 
-@pytest.mark.parametrize(
-    ("name", "iterations"),
-    [
-        ("zdt2", 60),  # measured: 9e-4, 0.999
-        ("zdt3", 120),  # measured: 10e-4, 1.000
-    ],
-)
-def test_default_finds_the_whole_front_of_five_variables(name, iterations):
-    igd, hv = quality(*fronts(name, 5, VEPSO(), iterations))
+def test_default_finds_the_whole_front_of_five_variables():
+    igd, hv = quality(*fronts("zdt2", 5, VEPSO(), 60))
     assert igd < 2e-3
     assert hv > 0.995
 
 
 @pytest.mark.parametrize(
-    ("name", "iterations", "largest_igd", "smallest_hv"),
-    [
-        ("zdt1", 200, 0.01, 0.98),  # measured: 0.0027, 0.995
-        ("zdt3", 100, 0.3, 0.6),  # measured: 0.14, 0.768
-    ],
-)
-def test_default_finds_the_front_of_thirty_variables(name, iterations, largest_igd, smallest_hv):
-    igd, hv = quality(*fronts(name, 30, VEPSO(), iterations))
-    assert igd < largest_igd
-    assert hv > smallest_hv
-
-
-def test_default_finds_the_corner_of_zdt2_with_thirty_variables():
-    # Known weakness: for 17 seeds of 20 both swarms end at the corner (0, 1), from where the
-    # concave front is uphill for the second objective; the IGD is then 0.61. What is found is on
-    # the front: its mean distance to it was at most 0.036.
-    F, true = fronts("zdt2", 30, VEPSO(), 100)
-    assert moocore.igd(true, ref=F) < 0.1
-    assert np.abs(F - [0.0, 1.0]).max(axis=1).min() < 1e-3
-
-
-@pytest.mark.parametrize(
     ("name", "iterations", "rule", "boundary", "largest_igd", "smallest_hv"),
     [
-        ("zdt3", 60, PAPER_GROUP, "clip", 2e-3, 0.995),  # measured: 0.0015, 0.999
-        ("zdt2", 100, CONSTRICTION, "reflect", 0.05, 0.85),  # measured: 0.036, 0.871
-        ("zdt1", 40, INERTIA_2002, "clip", 0.01, 0.98),  # measured: 0.0013, 0.998
-        ("zdt2", 80, INERTIA_2002, "reflect", 0.25, 0.4),  # measured: 0.14, 0.60
+        ("zdt3", 60, PAPER_GROUP, "clip", 2e-3, 0.995),
+        ("zdt2", 100, CONSTRICTION, "reflect", 0.05, 0.85),
+        ("zdt1", 40, INERTIA_2002, "clip", 0.01, 0.98),
     ],
 )
 def test_variants_find_the_front_of_three_variables(
@@ -80,19 +49,3 @@ def test_variants_find_the_front_of_three_variables(
     igd, hv = quality(*fronts(name, 3, VEPSO(100, rule, boundary), iterations))
     assert igd < largest_igd
     assert hv > smallest_hv
-
-
-def test_bounded_archive_covers_the_front():
-    F, true = fronts("zdt1", 5, VEPSO(archive_size=50), 40)
-    igd, hv = quality(F, true)
-    assert len(F) == 50
-    assert igd < 0.015  # measured: 0.0079
-    assert hv > 0.98  # measured: 0.989
-
-
-def test_three_objectives_cover_the_sphere():
-    F = minimize(get_problem("dtlz2", n_var=8), VEPSO(50), ("n_gen", 100), seed=1).F
-    assert len(F) > 500  # measured: 872
-    assert np.abs(np.linalg.norm(F, axis=1) - 1).mean() < 0.015  # measured: 0.0088
-    assert moocore.hypervolume(F, ref=[1.1] * 3) > 0.73  # measured: 0.769; three corners: 0.331
-    assert (F.min(axis=0) < 0.01).all()  # measured: 4e-33

@@ -12,30 +12,8 @@ from lines import EVERY_FILE, MOVE
 from quietarm.ocp import Plan
 from quietarm.studies.reproduction.recompute import pieces_of_paper
 
-INTERRUPTED = "quietarm: interrupted; what was written until then is kept"
 GUARD = 120
 """Seconds after which a process that does not end has hung, on any machine."""
-
-
-# The command, which says when it begins to solve, so that the signal comes then and not before.
-# The solver waits for the signal: no start is solved for 200 iterations of a twentieth of a second.
-ANNOUNCED = """
-import time
-import quietarm.studies.cli
-import quietarm.studies.cli.commands.plan
-import quietarm.studies.display.progress
-from quietarm.ocp.program import sqp
-
-sqp._Run.iterate = lambda run: time.sleep(0.05)
-solve = quietarm.studies.cli.commands.plan.plan_move
-
-def announced(*arguments, **settings):
-    print("begun", flush=True)
-    return solve(*arguments, **settings)
-
-quietarm.studies.cli.commands.plan.plan_move = announced
-quietarm.studies.cli.main()
-"""
 
 
 def interrupt(process, delay):
@@ -89,16 +67,6 @@ def solving():
         return process
 
     return begin
-
-
-# casadi is building the program.
-@pytest.mark.parametrize("delay", [0.002, 0.03])
-def test_ctrl_c_before_a_start_is_solved_writes_nothing(folder, solving, delay):
-    process = solving(ANNOUNCED)
-    out, err = interrupt(process, delay)
-    assert (process.returncode, out) == (1, "")
-    assert err.lstrip("\n") == f"{INTERRUPTED}\n"  # click first ends the terminal's line of ^C
-    assert list(folder.iterdir()) == []
 
 
 # All starts are on their way, side by side.

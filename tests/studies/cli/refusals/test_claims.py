@@ -26,11 +26,6 @@ def folder(folder, monkeypatch, found):
 READS = ["polish f.json --output out.json", "compare f.json f.json --no-floor --output out"]
 
 
-def doubled(document):
-    for point in document["points"]:
-        point["energy"] *= 2
-
-
 def one_doubled(document):
     document["points"][1]["energy"] /= 1.01
 
@@ -49,18 +44,11 @@ def beyond_a_limit(document):
     document["task"]["torque_limit"] = 0.05
 
 
-def of_energies_beyond_reason(document):
-    for point in document["points"]:
-        point["energy"] *= 1e307
-
-
 CLAIMS = {
-    doubled: "point 1 of 4 states energy 0.",
     one_doubled: "point 2 of 4 states energy 0.",
     enormous: "its coefficients give no finite figure",
     beyond_the_bound: "beyond the stated bound of 0.01",
     beyond_a_limit: "breaks the torque limit of 0.05 N m",
-    of_energies_beyond_reason: "e+305 J, but its coefficients give 0.",
 }
 
 

@@ -66,20 +66,6 @@ def test_an_interrupted_search_goes_on_to_the_same_front(call, interrupted_at, m
     assert Front.load("resumed.json") == Front.load("whole.json")
 
 
-@pytest.mark.parametrize(
-    ("other", "difference"),
-    [
-        (SMALL.replace("30deg", "31deg"), "target"),
-        (SMALL.replace("vepso", "nsga2"), "vepso"),
-        (f"{SMALL} --seed 1", "seed"),
-        (f"{SMALL} --bound 0.3", "bound"),
-    ],
-)
-def test_a_checkpoint_of_another_search_is_refused(call, refused, other, difference):
-    assert call(f"{SMALL} --quiet --checkpoint state")[0] == 0
-    assert difference in refused(f"{other} --resume state --output f.json")
-
-
 # Several seeds
 
 
@@ -98,32 +84,3 @@ def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
         assert f"\nvepso, seed {seed}: " in f"\n{out}"
         assert f"seed {seed} is done: hypervolume " in err
     assert not Path("f.json").exists()
-
-
-def test_ctrl_c_keeps_the_seeds_that_are_done(call, interrupted_at):
-    interrupted_at(2, of=1)
-    code, out, err = call(f"{SMALL} --runs 3 --quiet --output f.json")
-    assert code == 1
-    assert err.lstrip("\n") == (
-        "quietarm: interrupted: 1 of 3 seeds are done, 1 in part; these are kept\n"
-    )
-    assert Front.load("f-seed0.json") == directly(0)
-    assert not Front.load("f-seed1.json").complete
-    assert out.splitlines()[-2:] == ["wrote f-seed0.json", "wrote f-seed1.json"]
-    assert "median" not in out  # of one seed
-
-
-TABLED = "single-link --target 30deg --duration 0.8 --terms 2 --bound 0.2"
-
-
-@pytest.mark.parametrize("method", ["epsilon", "nsga2"])
-def test_the_points_are_written_as_a_table(call, tmp_path, method):
-    more = "--points 3 --starts 1" if method == "epsilon" else "--population 20 --generations 2"
-    code, out, _ = call(
-        f"front {TABLED} --method {method} {more} --output {tmp_path / 'f.json'} "
-        f"--csv {tmp_path / 'f.csv'}"
-    )
-    assert code == 0
-    assert out.splitlines()[-1] == f"wrote {tmp_path / 'f.csv'}"
-    Front.load(tmp_path / "f.json").save_csv(tmp_path / "again.csv")
-    assert (tmp_path / "f.csv").read_bytes() == (tmp_path / "again.csv").read_bytes()

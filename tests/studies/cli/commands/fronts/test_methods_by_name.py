@@ -2,12 +2,10 @@
 
 import math
 
-import quietarm.studies.cli.commands.plan
-import quietarm.studies.study.work
 from lines import MOVE
 from quietarm.metaheuristics import search
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint
+from quietarm.ocp import CycloidPolynomial, Front, PointToPoint
 
 TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
 FRONT = f"front {MOVE} --bound 0.2 --terms 2"
@@ -26,29 +24,3 @@ def test_a_front_by_any_method_with_settings(call):
     assert out.startswith("rvea, seed 0: ")
     wanted = directly("rvea", settings={"alpha": 3, "crossover": 0.5})
     assert Front.load("f.json") == wanted != directly("rvea")
-
-
-def test_several_seeds_of_any_method(call):
-    line = f"{FRONT} --method gde3 --setting repair=midway --runs 2 {SMALL_WORDS} --output f.json"
-    code, _, err = call(line)
-    assert (code, err) == (0, "")
-    for seed in (0, 1):
-        wanted = directly("gde3", settings={"repair": "midway"}, seed=seed)
-        assert Front.load(f"f-seed{seed}.json") == wanted
-
-
-def test_a_plan_by_any_method_with_settings(call, monkeypatch):
-    asked = {}
-
-    def small(task, method, **given):
-        asked.update(given, method=method)
-        return directly(method, settings=given["settings"])
-
-    monkeypatch.setattr(quietarm.studies.cli.commands.plan, "search", small)
-    line = f"plan {MOVE} --bound 0.2 --terms 2 --method spea2 --setting normalise=false"
-    code, _, err = call(f"{line} --residual-limit 50mm --quiet --output p.json")
-    assert (code, err) == (0, "")
-    assert (asked["method"], asked["settings"]) == ("spea2", {"normalise": False})
-    plan = Plan.load("p.json")
-    assert plan.provenance.method == "spea2"
-    assert plan.provenance.search["population"] == 8

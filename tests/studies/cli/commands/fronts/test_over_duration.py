@@ -22,22 +22,3 @@ def test_a_longer_move_costs_less_and_too_short_a_one_has_no_plan(call, folder):
     assert float(long["plan_J"]) < float(short["plan_J"]) < float(short["cycloid_J"])
     assert 0.7 < float(short["floor_J"]) / float(short["plan_J"]) < 1
     assert float(short["plan_mm"]) < 1e-3 < float(short["cycloid_mm"])
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        (f"{LINE} --duration 1", "--over duration takes a range; give it as --duration"),
-        (f"{LINE} --duration 2:1", "--duration 2:1 is no range; give the shorter one first"),
-        (f"{LINE} --duration 1:2 --output x.json", "--output is not for --over duration"),
-        (f"{LINE} --duration 1:2 --method epsilon", "--method is not for --over duration"),
-        (f"{LINE} --duration 1:2 --points 1", "points is 1; give"),
-        (
-            "front single-link --target 1 --duration 1:2 --method epsilon",
-            "--duration is a range, which is for --over duration",
-        ),
-        ("front single-link --target 1 --duration 1", "missing option --method"),
-    ],
-)
-def test_what_has_no_meaning_is_refused(refused, line, said):
-    assert said in refused(line)

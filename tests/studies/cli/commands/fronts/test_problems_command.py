@@ -1,23 +1,10 @@
 """`quietarm problems`: the list, and the exact fronts in files."""
 
-from quietarm.metaheuristics import PROBLEMS, problem_of
+from quietarm.metaheuristics import problem_of
 from quietarm.ocp import Front
 
 SMALL = "single-link-30deg-0.8s-2-terms"
 THIRD = "single-link-30deg-0.8s-torque"
-
-
-def test_problems_are_listed(call):
-    code, out, err = call("problems")
-    assert (code, err) == (0, "")
-    assert [line.partition(":")[0] for line in out.splitlines()] == list(PROBLEMS)
-    assert f"{SMALL}: 2 coefficients from -0.2 to 0.2\n" in out
-    assert "-limits: 6 coefficients from -0.5 to 0.5, limits torque 0.3, acceleration 75\n" in out
-    assert f"{THIRD}: 6 coefficients from -0.2 to 0.2, third objective peak torque\n" in out
-    assert (
-        "-robust: 6 coefficients from -0.5 to 0.5, the largest residual with frequency +-10 %\n"
-        in out
-    )
 
 
 def test_exact_fronts_are_written_to_a_folder(call, folder):

@@ -27,30 +27,6 @@ def test_plans_of_different_plants_and_durations_share_a_picture(call, folder):
     assert out == f"8 frames, 2.5 s, {kilobytes:.0f} kB\nwrote move.gif\n"
 
 
-def test_a_plan_alone_stands_beside_the_plain_cycloid(call):
-    line = "animate plan.json --speed 200% --deflection-scale 3 --width 240 --frames-per-second 4"
-    code, _, err = call(f"{line} --output move.gif")
-    assert (code, err.splitlines()[-1]) == (0, "4 of 4 frames")
-    assert call(f"{line} cycloid.json --output two.gif")[0] == 0
-    with Image.open("move.gif") as alone, Image.open("two.gif") as two:
-        assert alone.size == two.size
-
-
-def test_a_plant_of_ones_own_is_drawn_from_its_file(call, crane_file):
-    line = "--plant-file crane.py --target 1 --duration 2 --coefficients=0 --output crane.json"
-    assert call(f"evaluate {line}")[0] == 0
-    line = f"animate crane.json --plant-file crane.py --output crane.gif {SMALL}"
-    code, out, err = call(line)
-    assert (code, err) == (0, "")
-    assert out.endswith("wrote crane.gif\n")
-
-
-def test_an_mp4_without_ffmpeg_is_refused(refused, monkeypatch):
-    monkeypatch.setenv("PATH", "")
-    said = refused("animate plan.json --output m.mp4")
-    assert "needs the program ffmpeg, which is not found here; install it, or make a GIF" in said
-
-
 def test_ctrl_c_leaves_nothing_behind(at_a_terminal, ctrl_c, folder):
     before = set(folder.iterdir())
     line = "animate plan.json --output m.gif --width 2000 --frames-per-second 50 --speed 20%"

@@ -67,11 +67,8 @@ def test_files_of_other_programs_tell_the_same(push, call):
         ("identify push.csv flexible-beam --quiet", "give the column of what rings"),
         (f"{PUSH.replace('tip_mm', 'tip')}", "unknown column 'tip'; did you mean 'tip_mm'?"),
         (f"{PUSH} --units tip:inch", "unknown unit of tip 'inch'"),
-        (f"{PUSH} --angle time_s --units angle:deg,time:s --free omge", "did you mean 'omega'"),
-        (f"{PUSH} --free tip_mass", "the joint does not move"),
         (f"{PUSH} --units time:ms", "column time_s is in s by its name and in ms as given"),
         ("identify ms.csv flexible-beam --tip tip", "0.00319 Hz, as no arm does"),
-        ("plan push.json --target 1 --duration 1", "push.json"),
         (
             "plan single-link --target 1 --duration 1 --robust measured",
             "--robust measured is for an identified machine",

@@ -1,17 +1,7 @@
 """`--robust` of `plan` and `evaluate`: what they find, show and write."""
 
-import io
-import math
-from dataclasses import replace
-
-import pytest
-from lines import MOVE, TWO_TERMS
-from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Front, Plan, PointToPoint, UncertainPlant, evaluate_coefficients
-from quietarm.ocp.record import SolveSettings
-from quietarm.studies.document.terminal import show
-from quietarm.studies.reports.plan import plan_document
-from rich.console import Console
+from lines import MOVE
+from quietarm.ocp import Plan, UncertainPlant
 
 
 def test_a_robust_plan_says_where_it_leaves_most(call):
@@ -31,73 +21,3 @@ def test_a_robust_plan_says_where_it_leaves_most(call):
     assert (code, err) == (0, "")
     (most,) = [line.split()[-1] for line in out.splitlines() if "largest between" in line]
     assert most == f"{1e3 * plan.worst.residual:.3g}"
-
-
-def test_given_coefficients_are_evaluated_within_the_errors(call):
-    code, out, err = call(
-        f"evaluate {MOVE} {TWO_TERMS} --robust zeta=20% --robust omega=5% --output plan.json"
-    )
-    assert (code, err) == (0, "wrote plan.json\n" if "wrote" in err else err)
-    plan = Plan.load("plan.json")
-    assert plan.task.plant == UncertainPlant(SingleLinkManipulator(), {"zeta": 0.2, "omega": 0.05})
-    assert plan.worst.residual >= plan.residual * (1 - 1e-6)
-    assert f"{1e3 * plan.worst.residual:.3g} mm with zeta" in out
-
-
-@pytest.fixture(scope="module")
-def cycloid():
-    plant = UncertainPlant(SingleLinkManipulator(), {"frequency": 0.1})
-    return evaluate_coefficients(PointToPoint(plant, math.pi / 6, 0.8), [])
-
-
-@pytest.mark.parametrize(
-    ("excess", "stopped", "says"),
-    [
-        (0.2, None, "20.0 % above the limit; not robust enough: more than 5% above; give a larger"),
-        (0.2, "some rounds", "more than 5% above; let the plan run to its end"),
-        (0.04, None, "4.0 % above the limit"),
-        (-0.1, None, "10.0 % below the limit"),
-        (-1e-9, None, ", at the limit"),
-    ],
-)
-def test_a_plan_that_is_not_robust_enough_says_so(cycloid, excess, stopped, says):
-    settings = SolveSettings(residual_limit=cycloid.worst.residual / (1 + excess))
-    provenance = replace(cycloid.provenance, settings=settings, stopped=stopped)
-    text = io.StringIO()
-    document = plan_document(replace(cycloid, provenance=provenance))
-    show(Console(file=text, width=400), document)
-    (row,) = [line.strip() for line in text.getvalue().splitlines() if "at worst" in line]
-    assert says in row
-    assert ("not robust" in row) == (excess > 0.05)
-
-
-@pytest.mark.parametrize("shaper", ["zv"])
-def test_a_shaper_is_that_of_the_assumed_plant(call, shaper):
-    code, out, err = call(
-        f"plan {MOVE} --profile {shaper} --robust frequency=10% --output plan.json --quiet"
-    )
-    assert (code, err) == (0, "")
-    assert "2 impulses" in out
-    assert Plan.load("plan.json").excess is None  # no limit was asked for
-
-
-@pytest.mark.parametrize(
-    "method", ["nsga2 --population 8 --generations 2", "epsilon --points 2 --starts 1"]
-)
-def test_a_front_says_what_its_points_leave_between_the_samples(call, method):
-    line = f"front {MOVE} --terms 4 --bound 0.5 --robust frequency=10% --quiet --output f.json"
-    code, out, err = call(f"{line} --method {method}")
-    assert (code, err) == (0, "")
-    front = Front.load("f.json")
-    held = "residuals hold for any frequency within 10 %: between the samples CVODES finds "
-    assert (held in out) == (front.excess is not None) == method.startswith("epsilon")
-    for name in ("stillest", "cheapest"):
-        point = getattr(front, name)()
-        plan = evaluate_coefficients(front.task, point.coefficients, profile=front.profile)
-        (said,) = [line for line in out.splitlines() if line.startswith(f"  {name} ")]
-        error = 100 * plan.worst.errors["frequency"]
-        assert plan.worst.residual >= point.residual * (1 - 1e-3)
-        assert said.endswith(
-            f" J at {1e3 * point.residual:.3g} mm; at worst {1e3 * plan.worst.residual:.3g} mm "
-            f"with frequency {error:+.3g} %"
-        )

@@ -15,8 +15,6 @@ from quietarm.ocp import (
     plan_move,
     shaped_cycloid,
 )
-from quietarm.studies.cli.commands import robustness as work
-from quietarm.studies.figures import draw_robustness, robustness_figure
 
 FILES = {"report.md", "robustness.csv", "sweeps.csv", "samples.csv", "robustness.png"}
 RANGES = {"frequency": 0.1, "damping": 0.5}
@@ -63,42 +61,27 @@ def test_it_shows_and_writes_the_figures_of_every_plan(call, plans, folder):
     assert code == 0
     assert err.endswith("1404 of 1404 evaluations\n")  # of each plan 2 x 201, and 300
     assert {path.name for path in (folder / "out").iterdir()} == FILES
-    table, sweeps, samples = (
-        rows(folder / "out" / f"{name}.csv") for name in ("robustness", "sweeps", "samples")
-    )
+    table, samples = (rows(folder / "out" / f"{name}.csv") for name in ("robustness", "samples"))
     assert [row["plan"] for row in table] == ["ours", "zv"]
     for row in table:
         plan = plans[row["plan"]]
         found = evaluate_robustness(
             plan.task, plan.profile, plan.coefficients, RANGES, samples=300, seed=5
         )
-        low, high = found.sweeps[0].insensitivity
         expected = {
-            "cycloid_residual_mm": 1e3 * found.cycloid,
             "residual_mm": 1e3 * found.assumed.residual[0],
             "residual_mm_p95": 1e3 * np.percentile(found.samples.residual, 95),
             "residual_frequency_lower_mm": 1e3 * found.sweeps[0].figures.residual[0],
             "residual_damping_higher_mm": 1e3 * found.sweeps[1].figures.residual[-1],
-            "residual_frequency_largest_mm": 1e3 * found.sweeps[0].figures.residual.max(),
-            "frequency_tolerated_from_percent": 100 * low,
-            "frequency_tolerated_to_percent": 100 * high,
-            "energy_J": found.assumed.energy[0],
+            "frequency_tolerated_to_percent": 100 * found.sweeps[0].insensitivity[1],
             "energy_J_p100": found.samples.energy.max(),
             "peak_torque_Nm_p50": np.median(found.samples.peak_torque),
         }
         assert {name: float(row[name]) for name in expected} == pytest.approx(expected)
         assert f"{1e3 * found.cycloid:.3g}" in out
-        mine = [entry for entry in samples if entry["plan"] == row["plan"]]
-        assert [float(entry["frequency_error"]) for entry in mine] == found.errors[:, 0].tolist()
-        assert [float(entry["energy_J"]) for entry in mine] == found.samples.energy.tolist()
-        mine = [
-            float(entry["residual_m"])
-            for entry in sweeps
-            if (entry["plan"], entry["of"]) == (row["plan"], "damping")
-        ]
-        assert mine == found.sweeps[1].figures.residual.tolist()
+        mine = [float(each["energy_J"]) for each in samples if each["plan"] == row["plan"]]
+        assert mine == found.samples.energy.tolist()
     assert "seed 5" in out
-    assert "![Residual over errors](robustness.png)" in (folder / "out/report.md").read_text()
 
 
 def test_errors_of_parameters_stand_between_plans_and_options(call):
@@ -108,62 +91,9 @@ def test_errors_of_parameters_stand_between_plans_and_options(call):
     assert "frequency" not in out.split("- The joint")[0]
 
 
-def test_dashes_stand_for_underscores(call, folder):
-    (folder / "crane.py").write_text(CRANE)
-    from quietarm.models import load_plant_file
-
-    [kind] = load_plant_file(folder / "crane.py").values()
-    evaluate_coefficients(PointToPoint(kind(), 1.0, 1.0), []).save("crane.json")
-    code, out, _ = call("crane.json --plant-file crane.py --tip-mass 10% --samples 10 --quiet")
-    assert code == 0
-    assert "+-10 % of tip_mass" in out
-
-
-CRANE = """
-from dataclasses import dataclass
-from typing import ClassVar
-
-from quietarm.models import Plant
-
-
-@dataclass(frozen=True)
-class Crane(Plant):
-    name: ClassVar[str] = "crane-of-masses"
-    modes: ClassVar[int] = 1
-    tip_mass: float = 2.0
-
-    def modal_accelerations(self, joint, W, dW):
-        return [-(30 * W[0]) / self.tip_mass - joint.acceleration]
-
-    def torque(self, joint, W, dW, ddW):
-        return 3 * joint.acceleration + self.tip_mass * ddW[0]
-
-    def tip_displacements(self, W):
-        return [W[0]]
-"""
-
-
-def test_without_errors_frequency_and_damping_are_wrong(call):
-    code, out, _ = call("arm.json --samples 10 --quiet")
-    assert code == 0
-    assert "+-20 % of frequency, +-50 % of damping" in out
-
-
-def test_plans_of_different_plants_share_what_both_have(call):
-    code, out, _ = call("ours.json arm.json --omega 10% --samples 10 --quiet")
-    assert code == 0
-    assert "single-link" in out
-    assert "arm-on-flexible-link" in out
-
-
 @pytest.mark.parametrize(
     ("figure", "told"),
-    [
-        ("residual", "states residual"),
-        ("energy", "states energy"),
-        ("peak_torque", "states peak torque"),
-        ("peak_jerk", "states peak jerk"),
-    ],
+    [("residual", "states residual"), ("peak_torque", "states peak torque")],
 )
 def test_a_plan_is_a_claim(call, folder, figure, told):
     document = json.loads((folder / "arm.json").read_text())
@@ -179,7 +109,6 @@ def test_a_plan_is_a_claim(call, folder, figure, told):
     ("entry", "value", "told"),
     [
         ("residual", 1e-3, "robust.json states residual 0.001 m at worst, but its coefficients "),
-        ("errors", {"frequency": 0.01}, "but its coefficients leave there "),
         ("errors", {"damping": 0.01}, "robust.json states a worst with errors of damping, which"),
     ],
 )
@@ -193,51 +122,3 @@ def test_the_worst_of_a_plan_is_a_claim(call, plans, folder, entry, value, told)
     code, out, err = call("robust.json --samples 1 --quiet")
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert told in err
-
-
-def test_ctrl_c_keeps_the_plans_that_are_finished(call, folder, monkeypatch):
-    known = work.evaluate_robustness
-
-    def interrupted(task, *given, **others):
-        if task.plant.name == "arm-on-flexible-link":
-            raise KeyboardInterrupt
-        return known(task, *given, **others)
-
-    monkeypatch.setattr(work, "evaluate_robustness", interrupted)
-    code, out, err = call("zv.json arm.json ours.json --samples 10 --quiet --output out")
-    assert code == 1
-    assert "interrupted after 1 of 3 plans; what was found until then is kept" in err
-    assert "wrote out/report.md" in out.replace("\\", "/")
-    assert {path.name for path in (folder / "out").iterdir()} == FILES
-    assert [row["plan"] for row in rows(folder / "out/robustness.csv")] == ["zv"]
-    code, out, err = call("arm.json zv.json --samples 10 --quiet --output none")
-    assert (code, out, err.strip()) == (
-        1,
-        "",
-        "quietarm: interrupted; what was written until then is kept",
-    )
-    assert not (folder / "none").exists()
-
-
-def test_the_picture_has_a_panel_a_parameter_and_a_curve_a_plan(plans):
-    found = {
-        name: evaluate_robustness(
-            plans[name].task, plans[name].profile, plans[name].coefficients, RANGES, samples=1
-        )
-        for name in ("ours", "zv")
-    }
-    figure = robustness_figure(found)
-    assert [ax.get_xlabel() for ax in figure.axes] == [
-        "error of frequency [%]",
-        "error of damping [%]",
-    ]
-    ax = draw_robustness(found, "frequency")
-    drawn = {line.get_label(): line for line in ax.lines}
-    for name, one in found.items():
-        assert drawn[name].get_xdata() == pytest.approx(np.linspace(-10, 10, 201))
-        share = 100 * one.sweeps[0].figures.residual / one.cycloid
-        assert drawn[name].get_ydata() == pytest.approx(share)
-    assert drawn["5 %"].get_ydata() == [5, 5]
-    marked = [line.get_xdata() for line in ax.lines if line.get_label().startswith("_")]
-    ends = [[100 * end for end in one.sweeps[0].insensitivity] for one in found.values()]
-    assert [list(entry) for entry in marked] == ends

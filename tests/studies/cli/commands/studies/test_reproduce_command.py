@@ -1,8 +1,5 @@
 """`quietarm reproduce`, with the one reproduction of these tests in place of another."""
 
-import re
-from pathlib import Path
-
 import pytest
 import quietarm.studies.cli.commands.evaluate
 import quietarm.studies.cli.commands.floor
@@ -10,7 +7,6 @@ import quietarm.studies.cli.commands.plan
 import quietarm.studies.reading.saved
 import quietarm.studies.reproduction.recompute
 import quietarm.studies.study.work
-from quietarm.studies.document.files import document_files
 from quietarm.studies.paper import ROWS
 from quietarm.studies.reproduction.recompute import pieces_of_paper
 
@@ -38,30 +34,3 @@ def test_reproduce_prints_every_printed_and_recomputed_energy(call, reproduced, 
         assert f" {result.free.energy:.4g} " in out
     for claim in ("Two terms suffice", "More terms", "above six", "beats refs [23] and [24]"):
         assert claim in out
-
-
-def test_reproduce_writes_nothing_unless_asked_to(call, reproduced, folder):
-    code, out, _ = call("reproduce --quiet")
-    assert (code, list(folder.iterdir())) == (0, [])
-    assert "wrote" not in out
-
-
-def test_reproduce_fills_a_folder_and_leaves_the_rest_of_it_alone(
-    call, reproduced, folder, monkeypatch
-):
-    # what is in the files: tests/studies/reproduction
-    every = document_files
-    monkeypatch.setattr(
-        "quietarm.studies.document.files.document_files",
-        lambda *given: [(path, Path.touch) for path, _ in every(*given)],
-    )
-    (folder / "results").mkdir()
-    (folder / "results" / "notes.txt").write_text("mine")
-    code, out, _ = call("reproduce --output results")
-    assert code == 0
-    written = re.findall(r"^wrote (.*)$", out, re.MULTILINE)
-    assert {Path(name).suffix for name in written} == {".md", ".csv", ".png"}
-    assert {Path(name) for name in written} | {Path("results/notes.txt")} == {
-        path.relative_to(folder) for path in (folder / "results").iterdir()
-    }
-    assert (folder / "results" / "notes.txt").read_text() == "mine"
