@@ -70,7 +70,8 @@ def test_every_sign_change_of_a_long_ringing_move_is_found():
     plant = qa.SingleLinkManipulator(
         omega=omega, zeta=0.0, beta2=0.0, alpha1=0.03, alpha2=0.1, beta1=0.25, c=0.0
     )
-    task = qa.PointToPoint(plant, span, T)
+    with pytest.warns(UserWarning, match="700 rad, more than a turn; were degrees meant"):
+        task = qa.PointToPoint(plant, span, T)
     joint = PiecewiseMotion.of_profile(task, _InPowers((0.0, 0.0, 1.0)), [])
     motion = resimulated(task, joint, (("alpha1", -1.0),))  # no plant has alpha1 = 0
     zeros = np.arange(pi / 2, omega * T, pi) / omega

@@ -32,14 +32,11 @@ def address():
     line = [sys.executable, "-W", "error", "-m", "quietarm", "explore", "--no-browser"]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
-        said = process.stdout.readline()
+        said, how_to_end = process.stdout.readline(), process.stdout.readline()
+        assert how_to_end == "Ctrl-C ends it\n"
         yield said.strip()
         process.send_signal(signal.SIGINT)
-        assert (*process.communicate(timeout=GUARD), process.returncode) == (
-            "Ctrl-C ends it\n",
-            "",
-            0,
-        )
+        assert (*process.communicate(timeout=GUARD), process.returncode) == ("", "", 0)
     finally:
         process.kill()
         process.communicate()
