@@ -41,7 +41,7 @@ from quietarm.studies.contest.tables import (
     visits_table,
 )
 from quietarm.studies.display.saving import File, drawing, inside
-from quietarm.studies.display.words import counted, title_of
+from quietarm.studies.display.words import counted, millimetres, title_of
 from quietarm.studies.document.blocks import (
     Block,
     Bullets,
@@ -89,7 +89,7 @@ def results_document(arenas: Sequence[Arena], command: str) -> Document:
     """Methods on problems after parts of the evaluations, for a page that stays."""
     over = _over(arenas)
     blocks: list[Block] = [
-        Text(f"`{command}` makes this page anew. {methods_paragraph(arenas)}"),
+        Text(f"`{command}` makes this page anew. Every run is in [runs.csv](runs.csv)."),
         Section(
             "Over all problems", [over_table(arenas).turned(), *([_ranks(over)] if over else [])]
         ),
@@ -97,7 +97,7 @@ def results_document(arenas: Sequence[Arena], command: str) -> Document:
             Section(arena.problem, [budgets_table(arena).turned(), *_why(arena)])
             for arena in arenas
         ),
-        Section("Settings", [Bullets(settings_lines(arenas))]),
+        Section("Methods", [Text(methods_paragraph(arenas)), Bullets(settings_lines(arenas))]),
     ]
     title = f"{counted(len(methods_in(arenas)), 'method')} on {counted(len(arenas), 'problem')}"
     return Document(title, blocks, _tables(arenas))
@@ -155,6 +155,9 @@ def section(arena: Arena, methods: Sequence[str]) -> Section:
 
 def _why(arena: Arena) -> list[Block]:
     """What makes the problem hard, where that was looked for."""
+    if not arena.yardstick.within_level:
+        stillest = arena.yardstick.front.stillest()
+        return [Bullets([f"No motion is stiller than {millimetres(stillest.residual)}."])]
     return [Bullets(explanation(arena.landscape))] if arena.landscape else []
 
 

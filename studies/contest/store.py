@@ -16,7 +16,7 @@ from quietarm.ocp import CycloidPolynomial, FileFormatError, Front
 from quietarm.ocp.checks import CountFromOne, Positive
 from quietarm.ocp.saved import Saved
 from quietarm.studies.comparison.staircase import filled
-from quietarm.studies.contest.landscape import Landscape
+from quietarm.studies.contest.landscape import LEVEL, Landscape
 from quietarm.studies.contest.names import folder_of
 from quietarm.studies.paper import CONDITIONS
 
@@ -83,6 +83,11 @@ class Yardstick(Saved):
     def place(self) -> str:
         """Its file in the folder of a contest."""
         return _EXACT.format(self.problem)
+
+    @property
+    def within_level(self) -> bool:
+        """Whether any motion leaves no more than `LEVEL`, at which local minima are looked for."""
+        return self.front.stillest().residual <= LEVEL
 
     @cached_property
     def filled(self) -> NDArray[np.float64]:

@@ -158,6 +158,8 @@ def pieces_of(contest: Contest, store: Store) -> list[Piece]:
             work = partial(_yardstick, problem)
             pieces.append(Piece(exact_of(problem), f"{problem.name}: exact front", work))
     for problem in contest.problems if contest.explain else ():
+        if problem.name in known and not known[problem.name].within_level:
+            continue  # its page says so
         place, work = f"landscape/{problem.name}.json", partial(_landscape, problem, contest.seed)
         if place not in store.kept:
             pieces.append(Piece(place, f"{problem.name}: local minima", work))
