@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 
 import numpy as np
@@ -85,28 +86,11 @@ def test_a_condition_that_cannot_be_is_left_out_and_it_is_said(call, folder, no_
     assert {run.problem for run in Store(Path("some")).of(Run)} == {"single-link-30deg-1s"}
 
 
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("single-link --target 30deg", "give --duration for conditions of a plant"),
-        ("single-link --target 30deg --duration 1", "give --bound"),
-        ("dual-link single-link --target 1 --duration 1", "conditions are of one PLANT"),
-        ("single-lnk --target 1 --duration 1", "did you mean 'single-link'"),
-        ("single-link-90deg-1s --bound 0.2", "--bound is for conditions of a PLANT"),
-        ("single-link --target 10deg:90deg:0.01deg --duration 1 --bound 0.2", "8001 conditions"),
-    ],
-)
-def test_conditions_that_do_not_fit_are_refused(call, folder, line, said):
-    code, out, err = call(f"contest {line} --output some")
-    assert (code, out, err.strip().count("\n")) == (2, "", 0)
-    assert said in err
-
-
 def random_search(problem, seed, evaluations):
     recorded = problem.recorded()
     random = np.random.default_rng(seed)
     for _ in range(evaluations // 50):
-        recorded(random.uniform(recorded.lower, recorded.upper, (50, 3)))
+        recorded(random.uniform(recorded.lower, recorded.upper, (50, len(recorded.lower))))
     return recorded
 
 
@@ -131,6 +115,19 @@ def test_a_recorded_run_is_measured_as_those_that_are_run_here(whole, tmp_path):
     (own,) = [one for one in Store(whole).of(Run) if one.front.seed == 1
               and one.method == "nsga2" and one.problem == problem.name]  # fmt: skip
     assert fields["nsga2"].runs[1].front.points == own.front.points
+
+
+def test_a_recorded_run_of_another_length_is_said_not_to_compare(call, folder, no_pictures):
+    name = "single-link-30deg-0.8s-2-terms"
+    (problem,) = problems_of([name])
+    random_search(problem, 0, 200).save("long.json", "long", 0)
+    line = f"contest {name} --methods nsga2,vepso --population 20 --runs 1 --evaluations 100"
+    assert call(f"{line} --import long=long.json --output some --quiet")[0] == 0
+    page = " ".join(unescape(Path("some/contest.html").read_text()).split())
+    assert f"{name}: of the methods with 100 evaluations " in page
+    assert "It does not compare: its evaluations are 200, those of the others 100." in page
+    assert f"Run by other programs: long on {name} (1 run, evaluations 200)" in page
+    assert "NSGA-II; VEPSO: 1 problem, seeds 0 to 0, 100 evaluations a run" in page
 
 
 def test_what_was_recorded_elsewhere_is_refused(tmp_path):

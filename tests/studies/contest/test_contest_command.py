@@ -45,20 +45,3 @@ def test_a_method_and_seeds_are_added_without_the_others_again(call, copy, searc
     assert call(f"{line} --output {copy}")[0] == 0
     assert sorted(searches) == [("nsga2", 2), ("vepso", 0), ("vepso", 1), ("vepso", 2)]
     assert len(rows_of(copy, "runs")) == 6
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        (LINE.replace("2-terms", "2-term"), f"did you mean '{NAME}'?"),
-        (LINE.replace("vepso", "vespo"), "unknown method 'vespo'; did you mean 'vepso'?"),
-        (LINE.replace("vepso", "vepso+polsh"), "give vepso+polish or vepso+seeds"),
-        (LINE.replace("--runs 2", "--runs 0"), "runs is 0"),
-        (LINE.replace("130", "0"), "evaluations is 0"),
-    ],
-)
-def test_bad_input_is_refused_before_any_work(call, folder, line, words, searches):
-    code, out, err = call(f"{line} --output new")
-    assert (code, out, err.count("\n"), searches) == (2, "", 1, [])
-    assert words in err
-    assert list(folder.iterdir()) == []
