@@ -29,7 +29,9 @@ PLACE = """number => {
 @pytest.fixture(scope="module")
 def address():
     """Of the page, until Ctrl-C."""
-    line = [sys.executable, "-W", "error", "-m", "quietarm", "explore", "--no-browser"]
+    of_tornado = "ignore:There is no current event loop:DeprecationWarning"  # from Python 3.12 on
+    strict = ["-W", "error", "-W", of_tornado]
+    line = [sys.executable, *strict, "-m", "quietarm", "explore", "--no-browser"]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         said, how_to_end = process.stdout.readline(), process.stdout.readline()
