@@ -90,6 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if arguments is None:  # pictures go to files: no window, whatever the user's notebooks use
         os.environ["MPLBACKEND"] = "agg"
         warnings.filterwarnings("ignore", ".* more than a turn")  # they had a unit
+        sys.unraisablehook = _unless_ctrl_c
     if os.environ.get("COLUMNS") == "0":  # as some terminals have it that do not know their width
         del os.environ["COLUMNS"]
     status = NOT_SOLVED
@@ -99,6 +100,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if arguments is None:  # answered: nothing is left that another Ctrl-C could stop
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.exit(status)
+
+
+def _unless_ctrl_c(lost: sys.UnraisableHookArgs) -> None:
+    """Report an exception that C code lost, but for Ctrl-C, which is noted and answered."""
+    if lost.exc_type is not KeyboardInterrupt:
+        sys.__unraisablehook__(lost)
 
 
 def _run(arguments: Sequence[str] | None) -> int:
