@@ -4,8 +4,8 @@
     sphinx-build -W --keep-going -c docs . build/site
 
 It is strict: a broken link, a name that cannot be documented or a cell that fails ends the build.
-Notebooks are executed, which takes some minutes, but for those that the tests have executed since
-anything changed.
+A notebook is executed unless the tests, or an earlier build, have done so since it or the code last
+changed; all of them take a minute or two.
 """
 
 import re

@@ -87,12 +87,12 @@ def contest_document(arenas: Sequence[Arena], notes: Sequence[str] = ()) -> Docu
 
 def results_document(arenas: Sequence[Arena], command: str) -> Document:
     """Methods on problems after parts of the evaluations, for a page that stays."""
-    over = _over(arenas)
+    over, tables = _over(arenas), _tables(arenas)
+    links = ", ".join(f"[{name}.csv]({name}.csv)" for name in tables)
+    summary = [over_table(arenas).turned(), *([_ranks(over)] if over else [])]
     blocks: list[Block] = [
-        Text(f"`{command}` makes this page anew. Every run is in [runs.csv](runs.csv)."),
-        Section(
-            "Over all problems", [over_table(arenas).turned(), *([_ranks(over)] if over else [])]
-        ),
+        Text(f"`{command}` makes this page anew. Running times, tests and every run: {links}."),
+        *([Section("Over all problems", summary)] if len(arenas) > 1 else []),
         *(
             Section(arena.problem, [budgets_table(arena).turned(), *_why(arena)])
             for arena in arenas
@@ -100,7 +100,7 @@ def results_document(arenas: Sequence[Arena], command: str) -> Document:
         Section("Methods", [Text(methods_paragraph(arenas)), Bullets(settings_lines(arenas))]),
     ]
     title = f"{counted(len(methods_in(arenas)), 'method')} on {counted(len(arenas), 'problem')}"
-    return Document(title, blocks, _tables(arenas))
+    return Document(title, blocks, tables)
 
 
 def _over(arenas: Sequence[Arena]) -> Ranking | None:

@@ -173,6 +173,7 @@ def methods_paragraph(arenas: Sequence[Arena]) -> str:
         helps={helped.value for _, helped in parts},
         alpha=f"{100 * ALPHA:g}",
         tested=_tests(arenas),
+        even=any(len(field.runs) % 2 == 0 for arena in arenas for field in arena.fields),
         elsewhere=", ".join(elsewhere),
         imports=any(arena.imports for arena in arenas),
         versions=", ".join(

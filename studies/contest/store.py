@@ -17,7 +17,7 @@ from quietarm.ocp.checks import CountFromOne, Positive
 from quietarm.ocp.saved import Saved
 from quietarm.studies.comparison.staircase import filled
 from quietarm.studies.contest.landscape import LEVEL, Landscape
-from quietarm.studies.contest.names import folder_of
+from quietarm.studies.contest.names import folder_of, is_own
 from quietarm.studies.paper import CONDITIONS
 
 _FILL = 2_000
@@ -35,11 +35,14 @@ def problems_of(names: Sequence[str]) -> tuple[NamedProblem, ...]:
     `EVERY` stands for all that have two objectives.
     """
     every = [problem for problem in PROBLEMS.values() if not problem.peak]
-    if tuple(names) == (EVERY,):
+    if EVERY in names:
         return tuple(every)
     if not names:
         wanted = [(case.task, CycloidPolynomial(), case.bound) for case in CONDITIONS]
         return tuple(one for one in every if (one.task, one.profile, one.bound) in wanted)
+    for name in names:
+        if is_own(name):
+            raise ValueError(f"{name} is a method; give it as --methods {name}")
     problems = tuple(map(problem_of, dict.fromkeys(names)))
     for problem in problems:
         if problem.peak:

@@ -72,10 +72,10 @@ def over_table(arenas: Sequence[Arena]) -> Table:
     ranks = dict(zip(whole, placed.mean(axis=1).tolist(), strict=True)) if whole else {}
     columns = [Column("method"), Column("problems")]
     for budget in budgets:
-        columns += [Column(f"after {budget} [%]"), Column("  mean rank", "{:.2f}".format)]
+        columns += [Column(f"after {budget} [%]"), Column("  mean rank")]
     rows: list[list[Cell]] = []
     for method, ends in known.items():
-        places = ranks.get(method, [None] * len(budgets))
+        places = [f"{rank:.2f}" for rank in ranks.get(method, [])] or [None] * len(budgets)
         pairs = zip(map(_spread, ends.T), places, strict=True)
         rows.append([label_of(method), len(ends), *(cell for pair in pairs for cell in pair)])
     title = "Hypervolume missing in the middle run: median and quartiles over problems"

@@ -165,10 +165,8 @@ def _opened(path: Path) -> zarr.Group:
     try:
         group = zarr.open_group(path, mode="r+")
         known = group.attrs.get("format") == "quietarm-sweep"
-    except Exception as error:  # whatever zarr makes of another folder
-        raise FileFormatError(
-            f"{path} is no dataset of a sweep ({type(error).__name__}); give another name"
-        ) from None
+    except Exception:  # whatever zarr makes of another file or folder
+        known = False
     if not known:
         raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
     return group

@@ -1,6 +1,7 @@
 """Notebooks as files: what they show, their folded solutions, and how they are executed anew."""
 
 import base64
+import logging
 import re
 from contextlib import contextmanager
 from pathlib import Path
@@ -119,6 +120,7 @@ def keep(path, executed):
 
 def execute_those_that_changed():
     """Execute and keep every notebook that was not since it, or the code that it runs, changed."""
+    logging.getLogger("traitlets").setLevel(logging.ERROR)  # it names the kernel each time
     packages = ("models", "ocp", "metaheuristics", "studies", "quietarm")
     code = [file for name in packages for file in (ROOT / name).rglob("*") if file.is_file()]
     changed = max(file.stat().st_mtime for file in code if "__pycache__" not in file.parts)

@@ -128,7 +128,7 @@ def test_over_problems_those_that_are_equal_share_their_places(arenas, quick_pic
         for one in arenas
     ]
     ranks = {row[0]: row[-1] for row in over_table(tied).rows}
-    assert ranks["VEPSO"] == ranks["GDE3, then polished"] == 3.5
-    assert (ranks["NSGA-II"], ranks["GDE3"]) == (1, 2)
+    assert ranks["VEPSO"] == ranks["GDE3, then polished"] == "3.50"
+    assert (ranks["NSGA-II"], ranks["GDE3"]) == ("1.00", "2.00")
     text = unescape(page_of(contest_document(tied)))
     assert text.index("missing in the middle run") < text.index("ends nearest")

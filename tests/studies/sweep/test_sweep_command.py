@@ -15,6 +15,8 @@ from quietarm.models import FlexibleBeam, SingleLinkManipulator
 from quietarm.ocp import PointToPoint, plan_move
 from quietarm.studies.sweep.library import MoveLibrary
 
+import quietarm as qa
+
 QUIETARM = [str(Path(sys.executable).parent / "quietarm")]
 MOVES = "sweep single-link --target 10deg:40deg:10deg --duration 600ms:1.4s:10ms --terms 3 --quiet"
 FEW = "sweep single-link --target 30deg,60deg --duration 0.8,1.2 --quiet --output few.zarr"
@@ -114,3 +116,12 @@ def test_the_dataset_of_another_sweep_is_left_alone(call, folder):
     code, out, err = call(FEW.replace("30deg,60deg", "30deg,70deg"))
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert "is of another sweep: axes differ in target" in err
+
+
+def test_python_makes_the_same_dataset(call, folder):
+    assert call(FEW)[0] == 0
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), target=math.radians(60), duration=1.0)
+    axes = {"target": [math.radians(30), math.radians(60)], "duration": [0.8, 1.2]}
+    assert same(qa.sweep(task, axes, folder / "made.zarr").load(), dataset("few.zarr"))
+    with pytest.raises(ValueError, match="did you mean 'omega'"):
+        qa.sweep(task, {"omga": [9.0, 10.0]}, folder / "other.zarr")
