@@ -44,7 +44,7 @@ TESTS = {
     "models/dual_link.py": ["models"],
     "models/arm_on_flexible_link.py": ["models"],
     "ocp/simulation/collocation.py": ["ocp/simulation", "ocp/program/test_batch.py"],
-    "ocp/simulation/objective.py": ["ocp/simulation"],
+    "ocp/simulation/objective.py": ["ocp/simulation", "ocp/program/test_batch.py"],
     "ocp/profiles/joint_profile.py": ["ocp/profiles", "ocp/simulation"],
     "ocp/profiles/polynomial.py": ["ocp/profiles/test_polynomial.py"],
     "ocp/simulation/residual.py": ["ocp/simulation", "ocp/plan/test_shaping.py"],
