@@ -162,14 +162,11 @@ def _opened(path: Path) -> zarr.Group:
     zarr = _zarr()
     if not path.exists():
         raise FileFormatError(f"{path}: there is no such dataset; sweep it, or give another name")
-    try:
+    with suppress(Exception):  # whatever zarr makes of another file or folder
         group = zarr.open_group(path, mode="r+")
-        known = group.attrs.get("format") == "quietarm-sweep"
-    except Exception:  # whatever zarr makes of another file or folder
-        known = False
-    if not known:
-        raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
-    return group
+        if group.attrs.get("format") == "quietarm-sweep":
+            return group
+    raise FileFormatError(f"{path} is no dataset of a sweep; give another name")
 
 
 def _check_same(path: Path, there: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:

@@ -130,6 +130,8 @@ def execute_those_that_changed():
         for path in PATHS
         if kept.get(EXECUTED / path.name, 0) < max(changed, path.stat().st_mtime)
     ]
+    if not old:
+        return
     with kernel() as client, TemporaryDirectory() as folder:
         for path in old:
             keep(path, execute(path, folder, client))
