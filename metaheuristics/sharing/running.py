@@ -20,13 +20,12 @@ from quietarm.metaheuristics.sharing.pieces import (
     Say,
     Tell,
 )
-from quietarm.metaheuristics.sharing.processes import processes
+from quietarm.metaheuristics.sharing.processes import Processes, processes
 from quietarm.metaheuristics.sharing.workers import HERE, Workers
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.interrupts import hear_interrupts, note_interrupts
 
 if TYPE_CHECKING:
-    from quietarm.metaheuristics.sharing.processes import Processes
     from quietarm.metaheuristics.sharing.scheduler import Scheduler
 
     Crew: TypeAlias = "Processes | Scheduler | _Here"

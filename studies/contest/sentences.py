@@ -26,7 +26,9 @@ from quietarm.studies.contest.tables import evaluations_words
 from quietarm.studies.display.words import counted, versions_of
 from quietarm.studies.document.prose import told
 
-_ALWAYS = ("quietarm", "abe2016", "casadi", "ipopt", "pymoo", "moocore", "numpy", "coco")
+_ALWAYS = (
+    "quietarm", "abe2016", "casadi", "ipopt", "pymoo", "moocore", "numpy", "coco", "attainment",
+)  # fmt: skip
 _OF_PAIRS = ("scipy", "mannwhitney", "holm", "varghadelaney")
 
 
@@ -37,7 +39,7 @@ def bibtex(arenas: Sequence[Arena]) -> str:
     entries, methods, tested = _entries(), methods_in(arenas), _tests(arenas)
     searches = dict.fromkeys(parts_of(method_in(method))[0] for method in methods if is_own(method))
     elsewhere = [method for method in methods if not is_own(method)]
-    keys = [*_ALWAYS, "attainment", *(_OF_PAIRS if tested["pairs"] else ())]
+    keys = [*_ALWAYS, *(_OF_PAIRS if tested["pairs"] else ())]
     keys += ["kruskalwallis"] * tested["within"] + ["friedman", "demsar"] * tested["over"]
     unknown = [one for one in searches if one not in entries and one != MULTISTART]
     keys += [one for one in searches if one in entries]

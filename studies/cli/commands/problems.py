@@ -62,10 +62,10 @@ def problems(
         fronts = dict(chain.from_iterable(pairs))
     certified = [
         f"{one.front}: version {problem.version}, {one.points} points, SHA-256 {one.checksum}"
-        for problem in chosen
+        for problem in (chosen if names else ())
         for one in problem.certificates()
     ]
-    lines = [*map(_line, chosen), *(certified if names else ())]
+    lines = [*map(_line, chosen), *certified]
     writes = {f"{name}.json": front.save for name, front in fronts.items()}
     what = "front" if len(writes) == 1 else "fronts"
     finish(
