@@ -3,8 +3,8 @@
     pip install ".[benchmark]"
     python benchmarks/plan_against_rockit.py [--repetitions 5] [--within 1e-4]
 
-The moves of `old_and_new.py` without limits on peaks: the paper's six conditions in its boxes and
-three others without a box; six terms, at rest on arrival. Both sides
+The moves of `parts/conditions.py` without limits on peaks: the paper's six conditions in its boxes
+and three others without a box; six terms, at rest on arrival. Both sides
 
 - take the equations from the same lines: the plant's own methods and the profile's `motion`;
 - take steps of three Gauss nodes on the same graded mesh (rockit: `DirectCollocation` of degree 3,
@@ -45,7 +45,7 @@ from time import process_time
 import casadi as ca
 import numpy as np
 import rockit
-from old_and_new import conditions
+from parts.conditions import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from quietarm.ocp.program.ipopt import OPTIONS
