@@ -16,10 +16,12 @@ def certificates_document(found: Sequence[Certificate]) -> Document:
         Column("starts to beat it"), Column("beaten by at most", "{:.1e}".format),
         Column("energy by CVODES differs by", "{:.1e}".format),
         Column("residual by CVODES differs by [m]", "{:.1e}".format),
+        Column("energy by fixed steps differs by", "{:.1e}".format),
+        Column("residual by fixed steps differs by", "{:.1e}".format),
     ]  # fmt: skip
     rows: list[list[Cell]] = [
         [one.front, one.points, one.confirmed, one.tried, one.gained, one.energy_difference,
-         one.residual_difference]
+         one.residual_difference, one.energy_by_steps, one.residual_by_steps]
         for one in found
     ]  # fmt: skip
     table = Table("Exact fronts, checked anew", columns, rows)
@@ -35,6 +37,6 @@ def not_holding(found: Sequence[Certificate], kept: Mapping[str, Certificate]) -
             words.append(f"{one.front} is not what was certified; install quietarm again")
         elif not one.holds:
             words.append(
-                f"{one.front} is beaten by {one.gained:.1e} of the energy, or CVODES differs"
+                f"{one.front} is beaten by {one.gained:.1e} of the energy, or integrators differ"
             )
     return words

@@ -20,6 +20,19 @@ def test_every_front_is_the_one_that_was_certified(name):
         assert len(KEPT[front_name].prices) == len(front.points) == KEPT[front_name].confirmed
 
 
+@pytest.mark.parametrize("one", KEPT.values(), ids=list(KEPT))
+def test_the_figures_of_cvodes_are_held_against_another_integrator(one):
+    assert 0 < one.energy_by_steps < 1e-7  # not against itself; docs/problems.md has the figures
+    assert 0 < one.residual_by_steps < 1e-4
+
+
+def test_a_certificate_does_not_hold_where_integrators_differ(monkeypatch):
+    monkeypatch.setattr(certificate, "FIXED_STEPS", 8)
+    (coarse,) = certified(problem_of(NAME))
+    assert coarse.energy_difference < 1e-6
+    assert not coarse.holds
+
+
 def test_it_is_checked_anew(call, monkeypatch):
     code, out, err = call(f"problems --verify {NAME} --quiet")
     assert (code, err) == (0, "")
