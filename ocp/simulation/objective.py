@@ -64,9 +64,12 @@ def _quadratic(power: Sequence[Expression]) -> list[Expression]:
 
 
 def _breaks(c: Sequence[Expression]) -> list[Expression]:
-    """The zeros of a quadratic on a step, in order; without zeros its extreme's place, twice."""
+    """The zeros of a quadratic on a step, in order; without zeros its extreme's place, twice.
+
+    Under the root stands no 0, at which its derivative is infinite.
+    """
     discriminant = c[1] * c[1] - 4 * c[0] * c[2]
-    half = -(c[1] + ca.copysign(ca.sqrt(ca.fmax(discriminant, 0)), c[1])) / 2  # no cancellation
+    half = -(c[1] + ca.copysign(ca.sqrt(ca.fmax(discriminant, _TINY)), c[1])) / 2  # no cancellation
     first, second = (
         ca.fmin(ca.fmax(zero, 0), 1) for zero in (half / (c[2] + _TINY), c[0] / (half + _TINY))
     )
