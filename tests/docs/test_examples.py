@@ -14,7 +14,7 @@ import quietarm.studies.reports.comparison
 import quietarm.studies.study.work
 from pages import COMMAND_BLOCKS, PAGES, blocks
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Front, Plan, PointToPoint, energy_floor, evaluate_coefficients
+from quietarm.ocp import Front, Plan, PointToPoint, energy_floor, evaluate_coefficients, plan_move
 from quietarm.ocp.floor import search as floor_search
 from quietarm.studies.cli import main
 
@@ -26,6 +26,8 @@ MOVE, SEQUENCE, ENERGY = blocks("moves", "python")
 (CELL,) = blocks("sweeps", "python")
 (BEGUN,) = blocks("start", "python")
 (PROFILE,) = blocks("extend", "python")
+(PLAIN,) = blocks("casadi", "python")
+(PLAIN_PRINTS,) = blocks("casadi", "text")
 SEARCH_OF_PYMOO, FRONT = blocks("fronts", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
@@ -136,9 +138,17 @@ def test_first_lines_and_a_profile_of_your_own_plan_a_move(run_python):
     assert 0.0165 < float(energy) < 0.0912  # the floor's, and the plain cycloid's, of docs/moves.md
 
 
+def test_plain_casadi_finds_what_the_page_says(run_python):
+    assert run_python(PLAIN) == PLAIN_PRINTS
+    task = PointToPoint(SingleLinkManipulator(), math.pi / 2, 1.0, torque_limit=0.3)
+    plan = plan_move(task, bound=0.2, residual_limit=1e-3)
+    assert plan.energy == pytest.approx(float(PLAIN_PRINTS.split()[1]), rel=5e-4)
+    assert f"{plan.energy:.4f} J" in PAGES["casadi"]  # a little more, as the limits hold everywhere
+
+
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 15
+    assert sum(len(blocks(page, "python")) for page in others) == 16
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "text"}
 
