@@ -24,11 +24,6 @@ from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
-from .identification.answer import Estimate as Estimate
-from .identification.answer import Fitted as Fitted
-from .identification.answer import Identified as Identified
-from .identification.identify import identify as identify
-from .identification.recording import Recording as Recording
 from .modal_state import ModalState as ModalState
 from .plan.answer import Plan as Plan
 from .plan.answer import evaluate_coefficients as evaluate_coefficients

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields, replace
 
 from quietarm.models import Plant, known_plants
-from quietarm.ocp import Identified, UncertainPlant
+from quietarm.ocp import UncertainPlant
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import is_number, once, parse_in, parse_share
+from quietarm.studies.identify import Identified
 
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""

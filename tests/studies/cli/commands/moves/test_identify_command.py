@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from quietarm.ocp import Identified, Plan
+from quietarm.ocp import Plan
+from quietarm.studies.identify import Identified
 from scipy.io import savemat
 
 TIME = np.arange(0, 6, 0.005)
