@@ -31,9 +31,6 @@ from .plan.fastest import Fastest as Fastest
 from .plan.fastest import fastest_move as fastest_move
 from .plan.many import Moves as Moves
 from .plan.many import plan_moves as plan_moves
-from .plan.sequence import Waited as Waited
-from .plan.sequence import plan_after as plan_after
-from .plan.sequence import plan_sequence as plan_sequence
 from .plan.shaping import shaped_cycloid as shaped_cycloid
 from .plan.solver import plan_move as plan_move
 from .profiles.joint_profile import JointPath as JointPath

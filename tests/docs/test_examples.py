@@ -21,7 +21,7 @@ from quietarm.studies.cli import main
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
 (SHORT,) = blocks("README", "python")
-MOVE, SEQUENCE, ENERGY = blocks("moves", "python")
+MOVE, ENERGY = blocks("moves", "python")
 (MACHINE,) = blocks("machine", "python")
 (CELL,) = blocks("sweeps", "python")
 (BEGUN,) = blocks("start", "python")
@@ -80,15 +80,6 @@ def test_the_example_in_python_plans_saves_and_exports(run_python):
     assert plan.residual < 1e-8  # docs/accuracy.md
     assert plan.motion.peak_torque <= 0.2 * 1.001  # docs/accuracy.md
     assert len(Path("move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
-
-
-def test_the_example_of_a_sequence_prints_what_the_page_shows(run_python):
-    printed = run_python(SEQUENCE)
-    _, shown = blocks("moves", "text")
-    now, page = ([float(x) for x in re.findall(r"[\d.]+", text)] for text in (printed, shown))
-    assert now == pytest.approx(page, abs=0.01)
-    last, before = (Plan.load(f"move-{number}.json") for number in (3, 2))
-    assert [*last.task.initial.W] == pytest.approx(before.state_after(now[6]).W, abs=1e-4)
 
 
 def test_the_example_with_an_energy_of_ones_own_plans():
