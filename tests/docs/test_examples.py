@@ -129,7 +129,7 @@ def test_first_lines_and_a_profile_of_your_own_plan_a_move(run_python):
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 15
+    assert sum(len(blocks(page, "python")) for page in others) == 14
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "text"}
 
@@ -151,7 +151,7 @@ def shortened(words):
     words = [word.replace(":90deg:", ":50deg:").replace(":1.4s:", ":1s:") for word in words]
     quiet = ["--quiet"] * (words[0] not in LOUD)
     fewer = SHORTER.get(words[0], [])
-    if words[0] == "front" and "--method" in words:
+    if words[0] == "front":
         fewer = SHORTER.get(words[words.index("--method") + 1], SEARCH)
     return [*words, *quiet, *fewer, *(["--runs", "2"] if "--workers" in words else [])]
 
