@@ -60,6 +60,7 @@ _PACKAGES = {
     "ocp": "Tasks, plans and fronts",
     "metaheuristics": "Searches and problems",
     "studies.figures": "Pictures",
+    "studies.identify": "Identification",
     "studies.sweep": "Grids of moves",
     "studies.contest": "Contests",
 }

@@ -8,7 +8,7 @@ ch. 8, and Southwell and Gough, ARC R&M 766 (1921); docs/physics.md derives the 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
 from numbers import Real
@@ -221,6 +221,25 @@ class FlexibleBeam(Plant):
         return cls(
             omega=omega, length=length, mass_per_length=per_length, tip_mass=tip_mass, **others
         )
+
+    def carrying(self, tip_mass: float) -> FlexibleBeam:
+        """The same beam, of the same stiffness, with another mass at its tip.
+
+        Parameters
+        ----------
+        tip_mass : float
+            The mass [kg].
+
+        Returns
+        -------
+        FlexibleBeam
+            Its frequency is the one that the beam's equation makes of this one's.
+        """
+        before, after = (
+            float(beam_modes(1, mass / self._mass, 0.0).wave_numbers[0])
+            for mass in (self.tip_mass, tip_mass)
+        )
+        return replace(self, tip_mass=tip_mass, omega=self.omega * (after / before) ** 2)
 
     @property
     def _mass(self) -> Expression:

@@ -24,11 +24,6 @@ from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
-from .identification.answer import Estimate as Estimate
-from .identification.answer import Fitted as Fitted
-from .identification.answer import Identified as Identified
-from .identification.identify import identify as identify
-from .identification.recording import Recording as Recording
 from .modal_state import ModalState as ModalState
 from .plan.answer import Plan as Plan
 from .plan.answer import evaluate_coefficients as evaluate_coefficients
@@ -36,9 +31,6 @@ from .plan.fastest import Fastest as Fastest
 from .plan.fastest import fastest_move as fastest_move
 from .plan.many import Moves as Moves
 from .plan.many import plan_moves as plan_moves
-from .plan.sequence import Waited as Waited
-from .plan.sequence import plan_after as plan_after
-from .plan.sequence import plan_sequence as plan_sequence
 from .plan.shaping import shaped_cycloid as shaped_cycloid
 from .plan.solver import plan_move as plan_move
 from .profiles.joint_profile import JointPath as JointPath

@@ -5,9 +5,9 @@
     task = qa.PointToPoint(qa.SingleLinkManipulator(), target=0.5236, duration=0.8)
     plan = qa.plan_move(task)
 
-Every public name of `quietarm.models`, `quietarm.ocp`, `quietarm.metaheuristics`,
-`quietarm.studies.figures`, `quietarm.studies.contest` and `quietarm.studies.sweep`; each package is
-imported with the first of its names that is asked for.
+Every public name of `quietarm.models`, `quietarm.ocp` and `quietarm.metaheuristics`, and of
+`figures`, `identify`, `contest` and `sweep` in `quietarm.studies`; each package is imported with
+the first of its names that is asked for.
 """
 
 from __future__ import annotations
@@ -26,9 +26,13 @@ if TYPE_CHECKING:
     from quietarm.ocp import *  # noqa: F403
     from quietarm.studies.contest import *  # noqa: F403
     from quietarm.studies.figures import *  # noqa: F403
+    from quietarm.studies.identify import *  # noqa: F403
     from quietarm.studies.sweep import *  # noqa: F403
 
-_PACKAGES = "models", "ocp", "metaheuristics", "studies.figures", "studies.contest", "studies.sweep"
+_PACKAGES = (
+    "models", "ocp", "metaheuristics",
+    "studies.figures", "studies.identify", "studies.contest", "studies.sweep",
+)  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

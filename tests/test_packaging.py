@@ -78,7 +78,7 @@ def test_a_script_works_beside_files_of_the_packages_names(tmp_path):
 
 
 def test_every_public_name_is_one_of_quietarm():
-    packages = ["models", "ocp", "metaheuristics", "studies.figures"]
+    packages = ["models", "ocp", "metaheuristics", "studies.figures", "studies.identify"]
     for package in packages:
         module = import_module(f"quietarm.{package}")
         for name in module.__all__:

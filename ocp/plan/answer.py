@@ -9,25 +9,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.modal_state import ModalState
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile, numbers_of
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Provenance, Setting, SolveSettings, Verification
 from quietarm.ocp.robustness.sensitivity import Sensitivity, sensitivities
 from quietarm.ocp.robustness.worst import Worst, worst_of
 from quietarm.ocp.saved import MotionAnswer
-from quietarm.ocp.simulation.cvodes import Trajectory, state_after
+from quietarm.ocp.simulation.cvodes import Trajectory
 from quietarm.ocp.simulation.objective import Motion
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulate, resimulated, sample_trajectory
+from quietarm.ocp.simulation.resimulation import resimulate, sample_trajectory
 from quietarm.ocp.simulation.rollout import rollout
 from quietarm.ocp.task import PointToPoint
 
@@ -115,40 +113,6 @@ class Plan(MotionAnswer):
     def sampled(self, times: ArrayLike) -> Trajectory:
         """The motion at given times by CVODES; see `quietarm.ocp.sample_trajectory`."""
         return sample_trajectory(self.task, self.profile, self.coefficients, times)
-
-    @cached_property
-    def _arrival(self) -> NDArray[np.float64]:
-        task = self.task.nominal
-        joint = PiecewiseMotion.of_profile(task, self.profile, self.coefficients)
-        return resimulated(task, joint).arrival
-
-    def state_after(self, wait: float = 0.0) -> ModalState:
-        """What rings a while [s] after arrival, on the assumed plant, by CVODES."""
-        return state_after(self.task.nominal, self._arrival, wait)
-
-    def next_move(
-        self, target: float, duration: float, wait: float = 0.0, **options: Any
-    ) -> PointToPoint:
-        """The move from here to another target that begins with what this one left.
-
-        Parameters
-        ----------
-        target, duration : float
-            Of the next move [rad, s].
-        wait : float
-            From this arrival to the next start [s].
-        **options
-            What else `PointToPoint` takes, as ``torque_limit``.
-
-        Returns
-        -------
-        PointToPoint
-            The next move, of the same plant.
-        """
-        return PointToPoint(
-            self.task.plant, target, duration, self.task.target,
-            initial=self.state_after(wait), **options,
-        )  # fmt: skip
 
     def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
         """Write the move as a table to drive a joint with.

@@ -16,11 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import Modes
-from quietarm.ocp.checks import not_negative
 from quietarm.ocp.energy import power_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import keep_interrupts, silent_errors
-from quietarm.ocp.modal_state import ModalState
 from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import fastest_mode
 from quietarm.ocp.task import PointToPoint
@@ -151,25 +149,6 @@ def after_arrival(
     rates = rates_of(wrong, JointMotion(target, 0.0, 0.0), state)
     problem, options = {"x": state, "p": errors, "ode": rates}, options_for(times)
     return ca.integrator("rest", "cvodes", problem, 0.0, times.tolist(), options)
-
-
-@keep_interrupts()
-def state_after(task: PointToPoint, arrival: NDArray[np.float64], wait: float) -> ModalState:
-    """What rings a while [s] after arrival with W (m) and then W' (m/s)."""
-    wait, modes = not_negative("wait", wait, "s"), task.plant.modes
-    with cvodes_for(f"'s vibration until {wait:g} s after arrival; give a shorter wait"):
-        found = _waiting(task.plant)(x0=ca.DM(arrival), p=[wait, task.target])["xf"]
-    state = found.full().ravel().tolist()
-    return ModalState(tuple(state[:modes]), tuple(state[modes:]))
-
-
-@lru_cache(maxsize=32)
-def _waiting(plant: Plant) -> ca.Function:
-    """CVODES with the joint at rest, of how long [s] and at which angle [rad]."""
-    state, given = ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("p", 2)
-    rates = given[0] * rates_of(plant, JointMotion(given[1], 0.0, 0.0), state)
-    problem, options = {"x": state, "p": given, "ode": rates}, options_for([1.0])
-    return ca.integrator("wait", "cvodes", problem, 0.0, 1.0, options)
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields, replace
+from math import tau
 
-from quietarm.models import Plant, known_plants
-from quietarm.ocp import Identified, UncertainPlant
+from quietarm.models import FlexibleBeam, Plant, known_plants
+from quietarm.ocp import UncertainPlant
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import is_number, once, parse_in, parse_share
+from quietarm.studies.display.words import print_lines
+from quietarm.studies.identify import Identified
+from rich.console import Console
 
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
@@ -71,6 +75,35 @@ def uncertain(
             )
         ranges = {**kind.errors, **ranges}
     return UncertainPlant(plant, ranges) if ranges else plant
+
+
+def check_machine(
+    kind: type[Plant] | Identified | None,
+    settings: Iterable[tuple[str, str]],
+    errors: Iterable[tuple[str, float]],
+) -> None:
+    """Hold what is set of an identified machine against what was measured of it.
+
+    ValueError where --robust measured rests on it. A beam with another tip mass keeps its measured
+    frequency, and standard error says so: it may have been weighed anew, or carry another payload.
+    """
+    if not isinstance(kind, Identified):
+        return
+    given = values_of_plant(kind.plant, settings)
+    if any(name == MEASURED for name, _ in errors):
+        kind.check_unchanged(given)
+    beam = kind.plant
+    if isinstance(beam, FlexibleBeam) and "omega" not in given:
+        mass = given.get("tip_mass", beam.tip_mass)
+        if mass >= 0 and mass != beam.tip_mass:
+            loaded = beam.carrying(mass)
+            print_lines(
+                Console(stderr=True),
+                f"warning: tip_mass is {mass:.4g} kg, and was {beam.tip_mass:.4g} kg when the "
+                f"frequency was measured, {beam.omega / tau:.4g} Hz, which is kept; if the "
+                f"payload has changed, give --set omega={loaded.omega / tau:.4g}Hz, by the beam's "
+                "equation, or record it anew",
+            )
 
 
 def units_of_plant(plant: Plant | type[Plant], names: Iterable[str]) -> dict[str, str]:

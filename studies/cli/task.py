@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import click
-from quietarm.models import Plant
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, refuse_typed, typed
-from quietarm.studies.cli.plants import chosen_plant, uncertain, units_of_plant
+from quietarm.studies.cli.plants import check_machine, chosen_plant, uncertain, units_of_plant
 from quietarm.studies.cli.quantities import parse_duration, parse_in, parse_joint_angle, parse_rate
 from quietarm.studies.cli.types import (
     ANGLE,
@@ -28,7 +27,6 @@ from quietarm.studies.cli.types import (
     TORQUE,
     Parsed,
 )
-from quietarm.studies.display.words import plant_words
 from quietarm.studies.sweep.grid import OF_MOVES, Axis, Grid, axis_values
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -36,8 +34,7 @@ _OF_A_MOVE = (
     "start", "target", "duration", "residual_window", "initial", "final", "energy",
     *(quantity.limit for quantity in QUANTITIES.values()),
 )  # fmt: skip
-_EARLIER = ("after", "wait")
-_OWN = ("plant_file", "parameters", *_OF_A_MOVE, *_EARLIER)
+_OWN = ("plant_file", "parameters", *_OF_A_MOVE)
 
 
 def _limit_option(quantity: Quantity) -> Callable[[F], F]:
@@ -69,18 +66,10 @@ FASTEST = "fastest"
 """In the place of a duration: the shortest within the limits."""
 _BEGIN = 1.0
 """Duration [s] at which the shortest is begun to be looked for."""
-BEST = "best"
-"""In the place of a wait: the one of least energy."""
 
 
-def _time_or(word: str) -> Parsed:
-    return Parsed("time", lambda text: text if text == word else parse_duration(text), "0.8")
-
-
-def _range(text: str) -> float | tuple[float, float]:
-    """A time, or two with a colon between."""
-    first, colon, last = text.partition(":")
-    return (parse_duration(first), parse_duration(last)) if colon else parse_duration(text)
+def _time_or_fastest(text: str) -> float | str:
+    return text if text == FASTEST else parse_duration(text)
 
 
 def _axis_of(parse: Callable[[str], float]) -> Parsed:
@@ -95,8 +84,6 @@ def _with_task(
     angle: Parsed = ANGLE,
     time: Parsed = TIME,
     words: str = "Travelling time.",
-    wait: Parsed = TIME,
-    until: str = "",
 ) -> Callable[[F], F]:
     """The options that describe a task; the command gets what `asked` makes of them."""
     several = options(
@@ -111,11 +98,6 @@ def _with_task(
         *map(_limit_option, QUANTITIES.values()),
         click.option("--residual-window", type=TIME, default=1.0, show_default=True,
                      help="Time after arrival in which the residual is measured."),
-        click.option("--after", type=INPUT,
-                     help="Begin where an earlier plan, of this file, has ended, and with what it "
-                     "left ringing."),
-        click.option("--wait", type=wait,
-                     help=f"Time from that plan's arrival to this start{until}.  [default: 0]"),
         click.option("--initial", type=MODES,
                      help="What rings at the start, modal amplitudes W [m] and rates W' [m/s]: "
                      "5mm:-0.3, or of two modes 5mm,0:0,0.1."),
@@ -142,21 +124,10 @@ def _task(named: dict[str, Any]) -> dict[str, Any]:
 
 
 def _task_or_fastest(named: dict[str, Any]) -> dict[str, Any]:
-    fastest, best = named["duration"] == FASTEST, named["wait"] == BEST
-    after = named["after"] if best else None
+    fastest = named["duration"] == FASTEST
     if fastest:
         named["duration"] = _BEGIN
-    if best:
-        named["wait"] = 0.0
-    return {"task": _task_of(named), "fastest": fastest, "best_after": after}
-
-
-def _task_or_durations(named: dict[str, Any]) -> dict[str, Any]:
-    given = named["duration"]
-    durations = given if isinstance(given, tuple) else None
-    if durations is not None:
-        named["duration"] = durations[0]
-    return {"task": _task_of(named), "durations": durations}
+    return {"task": _task_of(named), "fastest": fastest}
 
 
 def _task_or_path(named: dict[str, Any]) -> dict[str, Any]:
@@ -165,7 +136,6 @@ def _task_or_path(named: dict[str, Any]) -> dict[str, Any]:
         _need_move(named, "Missing option '--{0}'. Give it as --{0} {1}")
         return {"task": _task_of(named), "recorded": None}
     refuse_typed(("start", "target", "duration"), "is in the file of --path; leave it out")
-    refuse_typed(("after",), "is not for a --path; give what rings as --initial")
     from quietarm.studies.reading.path import read_path
 
     recorded = read_path(path)
@@ -223,18 +193,10 @@ task_options = _with_task(_task)
 """The command gets a `task`."""
 task_or_fastest_options = _with_task(
     _task_or_fastest,
-    time=_time_or(FASTEST),
+    time=Parsed("time", _time_or_fastest, "0.8"),
     words="Travelling time, or `fastest`: the least in the limits.",
-    wait=_time_or(BEST),
-    until=", or `best`: of least energy, up to a period",
 )
-"""It gets `fastest`, too, and as `best_after` the plan after which the best wait is looked for."""
-task_or_durations_options = _with_task(
-    _task_or_durations,
-    time=Parsed("time", _range, "0.8"),
-    words="Travelling time; with --over duration two, as 600ms:1.4s.",
-)
-"""The duration may be a range: it gets the ends of that as `durations`, too, or None."""
+"""It gets `fastest`, too: whether the shortest duration is asked for."""
 task_or_path_options = options(_with_task(_task_or_path, required=False), _PATH)
 """A file may have the path: it gets that as `recorded`, too, or None."""
 own_task_options = _with_task(_task_or_none, required=False)
@@ -269,25 +231,7 @@ def _grid_of(named: dict[str, Any]) -> Grid:
 
 def _task_of(named: dict[str, Any]) -> PointToPoint:
     kind, own, parameters = (named.pop(name) for name in ("plant", "plant_file", "parameters"))
-    plant = uncertain(chosen_plant(kind, own, parameters), named.pop("robust", ()), kind)
-    after, wait = (named.pop(name) for name in _EARLIER)
-    if after is not None:
-        named |= _left_by(after, wait or 0.0, plant)
-    elif wait is not None:
-        raise ValueError("--wait is for --after: give the earlier plan, too, or leave it out")
+    errors = named.pop("robust", ())
+    check_machine(kind, parameters, errors)
+    plant = uncertain(chosen_plant(kind, own, parameters), errors, kind)
     return PointToPoint(plant, **{name: named.pop(name) for name in _OF_A_MOVE})
-
-
-def _left_by(file: Path, wait: float, plant: Plant) -> dict[str, Any]:
-    """Where an earlier plan of the same plant has ended, and what rings there a while [s] later."""
-    refuse_typed(("start", "initial"), "follows from the plan of --after; leave it out")
-    from quietarm.studies.reading.saved import load_plans
-
-    (earlier,) = load_plans([file]).values()
-    its_plant = earlier.task.plant.nominal
-    if its_plant != plant.nominal:
-        raise ValueError(
-            f"{file} moves {plant_words(its_plant)}, not {plant_words(plant.nominal)}; give its "
-            "plant and parameters"
-        )
-    return {"start": earlier.task.target, "initial": earlier.state_after(wait)}

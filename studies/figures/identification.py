@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure
-from quietarm.ocp import Identified, Recording
-from quietarm.ocp.identification.identify import fitted_parts
 from quietarm.studies.figures.looks import BLUE, GREY
+from quietarm.studies.identify import Identified, Recording
+from quietarm.studies.identify.identification import fitted_parts
 
 _MOST = 8
 _UNITS = {"tip": "m, or as recorded", "acceleration": "m/s^2, or as recorded", "torque": "N m"}

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import FileFormatError
-from quietarm.ocp.identification.recording import MOST_ANGLE
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.studies.export.tables import UNITS
+from quietarm.studies.identify.recording import MOST_ANGLE
 from quietarm.studies.reading.table import column_in, column_of, read_table
 
 Array = NDArray[np.float64]

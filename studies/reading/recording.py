@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from quietarm.ocp import FileFormatError, Recording
+from quietarm.ocp import FileFormatError
 from quietarm.studies.export.tables import UNITS as OF_MOVES
 from quietarm.studies.export.tables import columns_of
+from quietarm.studies.identify import Recording
 from quietarm.studies.reading.table import Units, column_in, column_of, read_table
 
 UNITS: Mapping[str, Units] = {

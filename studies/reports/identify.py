@@ -7,9 +7,9 @@ from dataclasses import fields
 from math import floor, log10, pi
 
 from quietarm.models import Plant
-from quietarm.ocp import Estimate, Identified
-from quietarm.ocp.identification.answer import POOR
 from quietarm.studies.document.blocks import Document, Facts, Lines
+from quietarm.studies.identify import Estimate, Identified
+from quietarm.studies.identify.answer import POOR
 
 _BY = {"fit": "by the fit", "spread": "by the spread between parts"}
 

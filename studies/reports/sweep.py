@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 import numpy as np
 from quietarm.ocp import SolveStatus
-from quietarm.studies.display.words import plant_words
+from quietarm.studies.display.words import REST, plant_words
 from quietarm.studies.document.blocks import Document, Facts
+from quietarm.studies.document.table import Cell, Column, Table
 from quietarm.studies.sweep.asked import JUMP, STATES
 from quietarm.studies.sweep.library import Between
 from quietarm.studies.sweep.store import Store
+
+_MOST_LINES = 30
+"""Cells along one axis that are listed."""
 
 
 def sweep_document(store: Store, between: Between | None = None) -> Document:
@@ -40,4 +46,21 @@ def sweep_document(store: Store, between: Between | None = None) -> Document:
         rows += [("jumps", f"after {jumps} cells, to another motion")] * bool(jumps)
     if between is not None:
         rows.append(("between", between.words.partition(": ")[2]))
-    return Document("", [Facts(rows)])
+    return Document("", [Facts(rows), *_along_one_axis(store)])
+
+
+def _along_one_axis(store: Store) -> list[Table]:
+    """The trade-off along the only axis, a line a cell; nothing where there are more or many."""
+    axes = store.sweep.grid.axes
+    if len(axes) > 1 or len(axes[0].values) > _MOST_LINES:
+        return []
+    (axis,) = axes
+    heads = f"{axis.name} [{axis.unit}]", "energy [J]", "residual [mm]", "how it ended"
+    energy, residual = (store.read(name).tolist() for name in ("energy", "residual"))
+    rows: list[list[Cell]] = []
+    for k, value in enumerate(axis.values):
+        known = isfinite(energy[k])
+        left: Cell = "rest" if residual[k] < REST else 1e3 * residual[k]
+        state = STATES[int(store.status[k])]
+        rows.append([f"{value:.6g}", *((energy[k], left) if known else (None, None)), state])
+    return [Table("cells", [Column(head) for head in heads], rows).turned()]

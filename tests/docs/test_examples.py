@@ -21,7 +21,7 @@ from quietarm.studies.cli import main
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 
 (SHORT,) = blocks("README", "python")
-MOVE, SEQUENCE, ENERGY = blocks("moves", "python")
+MOVE, ENERGY = blocks("moves", "python")
 (MACHINE,) = blocks("machine", "python")
 (CELL,) = blocks("sweeps", "python")
 (BEGUN,) = blocks("start", "python")
@@ -84,15 +84,6 @@ def test_the_example_in_python_plans_saves_and_exports(run_python):
     assert len(Path("move.csv").read_text().splitlines()) == 1 + 401  # 0.8 s at 500 Hz
 
 
-def test_the_example_of_a_sequence_prints_what_the_page_shows(run_python):
-    printed = run_python(SEQUENCE)
-    _, shown = blocks("moves", "text")
-    now, page = ([float(x) for x in re.findall(r"[\d.]+", text)] for text in (printed, shown))
-    assert now == pytest.approx(page, abs=0.01)
-    last, before = (Plan.load(f"move-{number}.json") for number in (3, 2))
-    assert [*last.task.initial.W] == pytest.approx(before.state_after(now[6]).W, abs=1e-4)
-
-
 def test_the_example_with_an_energy_of_ones_own_plans():
     label, energy = started("-W", "error", "-c", ENERGY).split()
     assert label == "recovering:0.6+copper:0.12"
@@ -148,7 +139,7 @@ def test_plain_casadi_finds_what_the_page_says(run_python):
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 16
+    assert sum(len(blocks(page, "python")) for page in others) == 15
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "text"}
 
@@ -170,7 +161,7 @@ def shortened(words):
     words = [word.replace(":90deg:", ":50deg:").replace(":1.4s:", ":1s:") for word in words]
     quiet = ["--quiet"] * (words[0] not in LOUD)
     fewer = SHORTER.get(words[0], [])
-    if words[0] == "front" and "--method" in words:
+    if words[0] == "front":
         fewer = SHORTER.get(words[words.index("--method") + 1], SEARCH)
     return [*words, *quiet, *fewer, *(["--runs", "2"] if "--workers" in words else [])]
 

@@ -66,6 +66,14 @@ def test_section_and_material_give_the_frequency():
     assert beam.mass_per_length == pytest.approx(0.314)
 
 
+@pytest.mark.parametrize("tip_mass", [0.0, 0.05, 0.5])
+def test_another_payload_swings_as_the_beam_of_the_same_stiffness(tip_mass):
+    section = {"width": 0.02, "thickness": 0.002, "density": 7850, "youngs_modulus": 2.1e11}
+    beam = FlexibleBeam.of_section(**section, length=0.3, tip_mass=0.1, zeta=0.02)
+    expected = FlexibleBeam.of_section(**section, length=0.3, tip_mass=tip_mass, zeta=0.02)
+    assert beam.carrying(tip_mass).parameters == pytest.approx(expected.parameters, rel=1e-12)
+
+
 def test_a_plan_needs_the_second_mode_and_hardly_the_third():
     def left(planned, judged):
         move = [PointToPoint(FlexibleBeam(mode_count=n), pi / 6, 0.8) for n in (planned, judged)]

@@ -24,8 +24,7 @@ from quietarm.studies.cli.options import (
     warn_of_workers,
     workers_options,
 )
-from quietarm.studies.cli.over import FEW, checked_range, found_over
-from quietarm.studies.cli.task import robust_option, task_or_durations_options
+from quietarm.studies.cli.task import robust_option, task_options
 from quietarm.studies.cli.types import (
     CSV_FILE,
     INPUT,
@@ -101,15 +100,9 @@ _search_options = options(
 
 
 @click.command()
-@task_or_durations_options
+@task_options
 @click.option(
-    "--over",
-    type=Named("axis", ["duration"]),
-    help="In the place of a --method: plan the move in --points durations of a range, and set it "
-    "beside the floor and the plain cycloid.",
-)
-@click.option(
-    "--method", type=Named("method", METHODS),
+    "--method", type=Named("method", METHODS), required=True,
     help="epsilon: the gradient, at one residual limit after another; weighted: the gradient, for "
     "one weighted sum after another; all others: a metaheuristic.",
 )  # fmt: skip
@@ -137,9 +130,7 @@ _search_options = options(
 @quiet_option
 def front(
     task: PointToPoint,
-    durations: tuple[float, float] | None,
-    over: str | None,
-    method: str | None,
+    method: str,
     profile: str,
     terms: int | None,
     output: Path | None,
@@ -149,8 +140,6 @@ def front(
     **settings: Any,
 ) -> None:
     """Find the trade-off of residual and energy by the gradient, or with a metaheuristic.
-
-    With --over duration, that of time and energy.
 
     Ctrl-C ends the work early and keeps what was found.
 
@@ -165,20 +154,7 @@ def front(
           --runs 5 --workers 2 --output front.json --figure fronts.png
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method smsemoa \\
           --population 100 --generations 200 --setting crossover=0.7
-      quietarm front single-link --target 30deg --duration 0.5:1.5 --over duration \\
-          --acceleration-limit 40 --figure times.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    if over is not None:
-        between = checked_range(durations, settings)
-        asked = {name: settings[name] for name in ("bound", "starts", "solver")}
-        points = settings["points"] if typed("points") else FEW
-        asked["profile"], files = profile_of(profile, task, terms), (csv_file, figure)
-        found_over(task, between, points, asked, files, quiet)
-        return
-    if durations is not None:
-        raise ValueError("--duration is a range, which is for --over duration; give one time")
-    if method is None:
-        raise click.UsageError("missing option --method; give one, as epsilon, or --over duration")
     refuse_idle(method, {"weights": [WEIGHTED.name], **dict.fromkeys(OF_GRADIENT, GRADIENT)})
     refuse_idle(method, dict.fromkeys(OF_SEARCHES, METAHEURISTICS), "a metaheuristic")
     several = len(seeds_of(settings["seed"], settings["runs"])) > 1

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import click
 from quietarm.models import Plant
-from quietarm.ocp import Identified
-from quietarm.ocp import identify as identified
 from quietarm.studies import figures
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.options import quiet_option
@@ -17,6 +15,8 @@ from quietarm.studies.cli.task import plant_file_option
 from quietarm.studies.cli.types import INPUT, JSON_FILE, PICTURE, SETTING, Parsed
 from quietarm.studies.display.progress import working
 from quietarm.studies.display.saving import drawing
+from quietarm.studies.identify import Identified
+from quietarm.studies.identify import identify as identified
 from quietarm.studies.reading.recording import read_recording, units_of
 from quietarm.studies.reports.identify import identified_document
 from rich.console import Console

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import click
@@ -19,7 +18,6 @@ from quietarm.ocp import (
     SolveSettings,
     evaluate_coefficients,
     fastest_move,
-    plan_after,
     plan_move,
 )
 from quietarm.ocp.plan.robust import limit_of
@@ -78,7 +76,6 @@ SEARCHES = [method.name for method in methods_of(Kind.METAHEURISTIC)]
 def plan(
     task: PointToPoint,
     fastest: bool,
-    best_after: Path | None,
     profile: str,
     terms: int | None,
     method: str,
@@ -102,7 +99,6 @@ def plan(
       quietarm plan single-link --target 30deg --duration 0.8 --profile network --terms 3
       quietarm plan dual-link --target pi/2 --duration 0.9 --profile zv
       quietarm plan single-link --target 30deg --duration fastest --torque-limit 0.15
-      quietarm plan single-link --target 0 --duration 0.8 --after earlier.json --wait best
     """  # noqa: D301  # \b is click's: do not rewrap
     refuse_idle(profile, {name: list(FAMILIES) for name in OF_FAMILIES})
     refuse_idle(method, {"starts": [GRADIENT], "solver": [GRADIENT]})
@@ -112,11 +108,6 @@ def plan(
     if fastest and (method != GRADIENT or profile not in FAMILIES):
         raise ValueError(
             "--duration fastest is for the gradient and profiles with coefficients; give a time"
-        )
-    if best_after and (method != GRADIENT or profile not in FAMILIES or fastest):
-        raise ValueError(
-            "--wait best is for the gradient, profiles with coefficients and a given duration; "
-            "give a time"
         )
     motions, notes, complete = profile_of(profile, task, terms), list[str](), True
     if method != GRADIENT:
@@ -132,10 +123,6 @@ def plan(
             shortest = fastest_move(task, motions, **asked)
         found, complete = shortest.plan, shortest.complete
         notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
-    elif best_after:
-        with working("looking for the best wait", Console(stderr=True), quiet=quiet):
-            wait, found = plan_after(Plan.load(best_after), task, None, motions, **asked)
-        notes = [f"wait: {wait:.4g} s after the arrival of {best_after}"]
     else:
         with working("solving", Console(stderr=True), quiet=quiet):
             found = plan_move(task, motions, **asked)

@@ -36,6 +36,21 @@ def same(one, other):
     return all(np.array_equal(one[name], other[name], equal_nan=True) for name in one.data_vars)
 
 
+def test_one_axis_is_shown_as_a_table_and_too_short_a_move_says_so(call, folder):
+    code, out, err = call(
+        "sweep single-link --target 30deg --duration 400ms:1.2s:400ms --acceleration-limit 40 "
+        "--quiet --output times.zarr --figure times.png"
+    )
+    assert (code, err) == (0, "")
+    assert (folder / "times.png").read_bytes().startswith(b"\x89PNG")
+    lines = [line.split() for line in out.splitlines()]
+    none, short, long = [line for line in lines if line and line[0] in ("0.4", "0.8", "1.2")]
+    assert none[1:3] == ["-", "-"]
+    assert short[2] == long[2] == "rest"
+    assert float(short[1]) == pytest.approx(0.0252178, rel=1e-3)  # the README's plan
+    assert float(long[1]) < float(short[1])
+
+
 def test_every_cell_is_the_plan_of_its_move(call, folder):
     code, out, err = call(FEW + " --figure few.png")
     assert (code, err) == (0, "")

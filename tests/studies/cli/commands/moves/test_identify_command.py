@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from quietarm.ocp import Identified, Plan
+from quietarm.ocp import Plan
+from quietarm.studies.identify import Identified
 from scipy.io import savemat
 
 TIME = np.arange(0, 6, 0.005)
@@ -32,13 +33,33 @@ def test_a_push_makes_a_machine_that_is_planned_for(push, call):
     found = Identified.load(push / "arm.json")
     assert found.plant.length == 0.6
     code, out, err = call(
-        "plan arm.json --quiet --set tip_mass=0.1 --target 30deg --duration 1 --robust measured "
+        "plan arm.json --quiet --set friction=0.02 --target 30deg --duration 1 --robust measured "
         "--output plan.json"
     )
-    assert (code, err) == (0, "")
+    assert (code, err) == (0, "")  # friction shows in the torque alone
     plant = Plan.load(push / "plan.json").task.plant
     assert plant.errors == found.errors
-    assert (plant.nominal.tip_mass, plant.nominal.omega) == (0.1, found.plant.omega)
+    assert (plant.nominal.friction, plant.nominal.omega) == (0.02, found.plant.omega)
+
+
+def test_another_tip_mass_keeps_the_measured_frequency_and_says_so(push, call, refused):
+    call(f"{PUSH} --output arm.json")
+    beam = Identified.load(push / "arm.json").plant
+    line = "plan arm.json --quiet --target 30deg --duration 1"
+    code, _, err = call(f"{line} --set tip_mass=0.1 --output plan.json")
+    assert (code, Plan.load("plan.json").task.plant.omega) == (0, beam.omega)
+    loaded = beam.carrying(0.1).omega / math.tau
+    assert "tip_mass is 0.1 kg, and was 0.036 kg" in err
+    assert f"--set omega={loaded:.4g}Hz" in err
+    for quiet in ("", "--set tip_mass=36g", "--set tip_mass=0.1 --set omega=2Hz"):
+        assert call(f"{line} {quiet}")[2] == ""
+    for name, value in {"omega": "3Hz", "tip_mass": "0.1", "length": "0.5"}.items():
+        said = refused(f"{line} --set {name}={value} --robust measured")
+        assert f"the measured intervals are of the machine with {name} " in said
+        assert "or state errors of your own, as frequency=5%" in said
+    said = refused("sweep arm.json --quiet --target 1 --duration 1 --set omega=3Hz,3.1Hz "
+                   "--robust measured --output m.zarr")  # fmt: skip
+    assert "with omega" in said
 
 
 def test_files_of_other_programs_tell_the_same(push, call):

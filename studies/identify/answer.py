@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -127,6 +128,27 @@ class Identified(Saved):
             for one in self.told
             if not in_torque_alone(self.plant, one.parameter)
         }
+
+    def check_unchanged(self, names: Iterable[str]) -> None:
+        """Refuse to change parameters on which the measured intervals rest.
+
+        Parameters
+        ----------
+        names : iterable of str
+            Those that are set anew.
+
+        Raises
+        ------
+        ValueError
+            When one shows in how the plant swings, and not in its torque alone.
+        """
+        for name in names:
+            if name in self.plant.measured and not in_torque_alone(self.plant, name):
+                value = getattr(self.plant, name)
+                raise ValueError(
+                    f"the measured intervals are of the machine with {name} {value:.6g}; identify "
+                    f"it with the other {name}, or state errors of your own, as frequency=5%"
+                )
 
 
 def in_torque_alone(plant: Plant, name: str) -> bool:

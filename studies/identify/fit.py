@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.identification.recording import Recording
-from quietarm.ocp.identification.response import Joint, Response
+from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.response import Joint, Response
 
 Array = NDArray[np.float64]
 _ROUNDS, _ITERATIONS = 6, 30

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.identification.recording import LEAST_ROWS, Recording
-from quietarm.ocp.identification.response import Joint
+from quietarm.studies.identify.recording import LEAST_ROWS, Recording
+from quietarm.studies.identify.response import Joint
 
 Array = NDArray[np.float64]
 

@@ -9,19 +9,19 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Plant
-from quietarm.ocp.identification.answer import Estimate, Fitted, Identified, in_torque_alone
-from quietarm.ocp.identification.fit import Fit, Piece, fit, left, measured, not_told
-from quietarm.ocp.identification.recording import Recording
-from quietarm.ocp.identification.response import Joint, Response
-from quietarm.ocp.identification.ring_downs import (
+from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.record import versions
+from quietarm.ocp.simulation.errors import refuse_unknown
+from quietarm.studies.identify.answer import Estimate, Fitted, Identified, in_torque_alone
+from quietarm.studies.identify.fit import Fit, Piece, fit, left, measured, not_told
+from quietarm.studies.identify.recording import Recording
+from quietarm.studies.identify.response import Joint, Response
+from quietarm.studies.identify.ring_downs import (
     LEAST_PERIODS,
     ring_downs,
     standstills,
     strongest_frequency,
 )
-from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.record import versions
-from quietarm.ocp.simulation.errors import refuse_unknown
 
 Array = NDArray[np.float64]
 _FREQUENCY, _DAMPING = "rad/s", "zeta"

@@ -1,1 +1,0 @@
-"""A plant's parameters from recordings of the machine."""

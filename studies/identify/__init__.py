@@ -1,0 +1,5 @@
+"""A plant's parameters from recordings of the machine."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
