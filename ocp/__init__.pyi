@@ -59,7 +59,6 @@ from .robustness.sensitivity import Sensitivity as Sensitivity
 from .robustness.uncertain import UncertainPlant as UncertainPlant
 from .robustness.worst import Worst as Worst
 from .simulation.cvodes import Trajectory as Trajectory
-from .simulation.errors import with_errors as with_errors
 from .simulation.objective import Motion as Motion
 from .simulation.residual import residual_matrix as residual_matrix
 from .simulation.resimulation import resimulate as resimulate
@@ -68,3 +67,4 @@ from .simulation.rollout import Rollout as Rollout
 from .simulation.rollout import rollout as rollout
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .task import PointToPoint as PointToPoint
+from .uncertainty import perturb_plant as perturb_plant

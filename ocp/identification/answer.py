@@ -8,7 +8,7 @@ from typing import ClassVar
 import casadi as ca
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
-from quietarm.ocp.simulation.errors import with_values
+from quietarm.ocp.uncertainty import with_values
 
 POOR = 0.25
 """Share of a recording that a fit may leave; with more the plant is not what was recorded."""

@@ -21,7 +21,7 @@ from quietarm.ocp.identification.ring_downs import (
 )
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
-from quietarm.ocp.simulation.errors import refuse_unknown
+from quietarm.ocp.uncertainty import refuse_unknown
 
 Array = NDArray[np.float64]
 _FREQUENCY, _DAMPING = "rad/s", "zeta"

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.identification.recording import Recording
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, modal_system, step
-from quietarm.ocp.simulation.errors import with_values
+from quietarm.ocp.uncertainty import with_values
 
 Array = NDArray[np.float64]
 _STEP = 0.6

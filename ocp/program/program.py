@@ -12,9 +12,9 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.batch import Derivatives, batch
 from quietarm.ocp.program.solution import ENERGY, RESIDUAL
-from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import perturb_plant
 
 Array = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ class Program:
         """For each plant, rows that give tip displacements from its state on arrival."""
         names = self.batch.kind.errors
         named = [dict(zip(names, errors.tolist(), strict=True)) for errors in self.errors]
-        return [residual_rows(self.task, with_errors(self.plant, one)) for one in named]
+        return [residual_rows(self.task, perturb_plant(self.plant, one)) for one in named]
 
     @cached_property
     def plain(self) -> Derivatives:

@@ -12,10 +12,10 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.robustness.population import ErrorPopulation, Figures
-from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import checked_ranges
 
 TOLERATED = 0.05
 """Share of the plain cycloid's residual up to which a motion counts as insensitive."""

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.batch import batch
-from quietarm.ocp.simulation.errors import DAMPING, FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.simulation.rollout import default_steps
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import DAMPING, FREQUENCY
 
 _STEP = 1e-4
 """Relative error to either side: of what follows 1e-8 is curvature, and 1e-6 the integrator's."""

@@ -11,8 +11,8 @@ from typing import Any
 from quietarm.models import Body, Expression, JointMotion, Plant
 from quietarm.models.contract import check_contract
 from quietarm.ocp.checks import finite
-from quietarm.ocp.simulation.errors import checked_ranges, with_errors
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import checked_ranges, perturb_plant
 
 MOST_RANGES = 4
 """Errors at once: each of them doubles the corners at which a residual is held."""
@@ -140,7 +140,7 @@ def _parts(
     assumed: Plant, names: tuple[str, ...], samples: tuple[tuple[float, ...], ...]
 ) -> tuple[Plant, ...]:
     errors = (dict(zip(names, sample, strict=True)) for sample in samples)
-    return (assumed, *(with_errors(assumed, one) for one in errors))
+    return (assumed, *(perturb_plant(assumed, one) for one in errors))
 
 
 def _sample(errors: Sequence[float], ranges: Mapping[str, float]) -> tuple[float, ...]:

@@ -36,12 +36,12 @@ from quietarm.ocp.simulation.cvodes import (
     residual_of,
     rest_of,
 )
-from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.extremes import extremes
 from quietarm.ocp.simulation.objective import Motion, WithPeaks, integrated, spent
 from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
 from quietarm.ocp.simulation.residual import fastest_mode, residual_samples
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import perturb_plant
 
 _STEPS, _SMOOTH_STEPS = 500, 250
 """Least number of steps of the quadrature, in all and where nothing breaks: its nodes are at most a
@@ -277,7 +277,7 @@ def _along(
 
 
 def _wrong(plant: Plant, names: tuple[str, ...], errors: ca.SX | ca.MX) -> Plant:
-    return with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
+    return perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
 
 
 def _over_a_piece(

@@ -35,7 +35,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.robustness.measures import tolerated_residual
-from quietarm.ocp.simulation.errors import FREQUENCY
+from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.studies.paper import (
     COEFFICIENTS,
     CONDITIONS,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 from quietarm.ocp import Plan, Robustness, evaluate_robustness
-from quietarm.ocp.simulation.errors import checked_ranges
+from quietarm.ocp.uncertainty import checked_ranges
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.quantities import once

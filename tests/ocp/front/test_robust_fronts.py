@@ -35,7 +35,7 @@ def worst(front, point):
     task = front.task.nominal
     return max(
         qa.resimulate(
-            replace(task, plant=qa.with_errors(task.plant, {"frequency": error})),
+            replace(task, plant=qa.perturb_plant(task.plant, {"frequency": error})),
             front.profile,
             point.coefficients,
         ).residual

@@ -72,7 +72,7 @@ def test_searches_see_what_cvodes_does(next_move):
 def test_errors_of_the_plant_begin_in_the_same_state(next_move):
     profile, a, errors = qa.CycloidPolynomial(3), [0.05, -0.1, 0.02], {"frequency": 0.07}
     figures = qa.evaluate_robustness(next_move, profile, a, errors, samples=1).sweeps[0].figures
-    wrong = replace(next_move, plant=qa.with_errors(next_move.plant, errors))
+    wrong = replace(next_move, plant=qa.perturb_plant(next_move.plant, errors))
     exact = qa.resimulate(wrong, profile, a)
     assert figures.residual[-1] == pytest.approx(exact.residual, rel=1e-4)
     assert figures.energy[-1] == pytest.approx(exact.energy, rel=1e-5)

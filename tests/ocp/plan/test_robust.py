@@ -30,7 +30,7 @@ def residuals(plan, errors):
     task = plan.task.nominal
     return [
         qa.resimulate(
-            replace(task, plant=qa.with_errors(task.plant, {"frequency": error})),
+            replace(task, plant=qa.perturb_plant(task.plant, {"frequency": error})),
             plan.profile,
             plan.coefficients,
         ).residual

@@ -40,7 +40,7 @@ def test_figures_are_the_worst_of_the_parts_alone(of, request):
         for part in (
             task.plant.assumed,
             *(
-                qa.with_errors(
+                qa.perturb_plant(
                     task.plant.assumed, dict(zip(task.plant.ranges, sample, strict=True))
                 )
                 for sample in task.plant.samples
@@ -61,7 +61,7 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     grid = np.meshgrid(np.linspace(-0.1, 0.1, 60), np.linspace(-0.05, 0.05, 60))
     largest = population(np.reshape(grid, (2, -1)).T).residual.max()
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
-    there = qa.with_errors(task.plant.assumed, evaluated.worst.errors)
+    there = qa.perturb_plant(task.plant.assumed, evaluated.worst.errors)
     again = qa.resimulate(replace(task, plant=there), evaluated.profile, MOVE)
     # With the errors as parameters CVODES takes other steps: within its tolerance the same.
     assert evaluated.worst.residual == pytest.approx(again.residual, rel=1e-5)

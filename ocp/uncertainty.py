@@ -15,7 +15,6 @@ from quietarm.models.contract import check_contract, outputs_of
 from quietarm.models.joint_motion import Modes
 from quietarm.ocp.checks import finite, has_no, positive
 from quietarm.ocp.interrupts import keep_interrupts
-from quietarm.ocp.simulation.collocation import modal_system
 
 FREQUENCY, DAMPING = "frequency", "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
@@ -30,7 +29,9 @@ class ScaledModes(Plant):
     With the joint at rest at an angle, a plant's modes obey W'' = -D W' - K W. Here they obey
     W'' = -s d D W' - s^2 K W: as if time ran s times as fast, so that every frequency is exactly s
     times the assumed one, with the same damping ratio; and d scales the damping, exactly where the
-    modes are damped each on its own. What the moving joint adds stays as it is.
+    modes are damped each on its own. What the moving joint adds stays as it is. The equations are
+    affine and the structure stays at rest with the joint, so -K W is W'' at rest without rates,
+    and -D W' without amplitudes.
     """
 
     plant: Plant
@@ -43,14 +44,18 @@ class ScaledModes(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """The plant's own, and what its other stiffness and damping add [m/s^2]."""
-        resting, modes = modal_system(self.plant, JointMotion(joint.angle, 0.0, 0.0)), range(len(W))
-        less_stiff = 1 - self.frequency * self.frequency
-        less_damped = 1 - self.frequency * self.damping
+        at_rest, still = JointMotion(joint.angle, 0.0, 0.0), [0.0] * len(W)
+        terms = zip(
+            self.plant.modal_accelerations(joint, W, dW),
+            self.plant.modal_accelerations(at_rest, W, still),
+            self.plant.modal_accelerations(at_rest, still, dW),
+            strict=True,
+        )
+        stiffer = self.frequency * self.frequency - 1
+        more_damped = self.frequency * self.damping - 1
         return [
-            assumed
-            + less_stiff * sum(resting.K[i][j] * W[j] for j in modes)
-            + less_damped * sum(resting.D[i][j] * dW[j] for j in modes)
-            for i, assumed in enumerate(self.plant.modal_accelerations(joint, W, dW))
+            assumed + stiffer * by_stiffness + more_damped * by_damping
+            for assumed, by_stiffness, by_damping in terms
         ]
 
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
@@ -62,7 +67,7 @@ class ScaledModes(Plant):
         return self.plant.tip_displacements(W)
 
 
-def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
+def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     """The plant as it is when the assumed one is wrong.
 
     Parameters
@@ -129,7 +134,7 @@ def _checked_range(plant: Plant, name: str, size: float) -> float:
         )
     for error in (-size, size):
         try:
-            check_contract(with_errors(plant, {name: error}))
+            check_contract(perturb_plant(plant, {name: error}))
         except ValueError as problem:
             side = "lower" if error < 0 else "higher"
             raise ValueError(f"with {name} {100 * size:g} % {side}, {problem}") from None
