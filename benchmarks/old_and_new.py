@@ -249,7 +249,7 @@ def robust() -> dict:
         CycloidPolynomial,
         PointToPoint,
         QuietarmError,
-        UncertainPlant,
+        Uncertainty,
         plan_move,
     )
     from quietarm.ocp import evaluate_coefficients as evaluate
@@ -269,9 +269,9 @@ def robust() -> dict:
         if shares is not None:
             limits["acceleration_limit"] = shares[0] * plain.peak_acceleration
             limits["torque_limit"] = shares[1] * plain.peak_torque
-        uncertain = UncertainPlant(plant, {"frequency": error})
+        uncertain = Uncertainty({"frequency": error})
         task, most = (
-            PointToPoint(uncertain, target, duration, **limits),
+            PointToPoint(plant, target, duration, **limits, uncertainty=uncertain),
             0.05 * plain.peak_deflection,
         )
         began = time.process_time()

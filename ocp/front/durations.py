@@ -93,7 +93,7 @@ def plans_over_duration(
 
 def _floor(task: PointToPoint) -> float | None:
     try:
-        found = energy_floor(task.nominal, starts=1, tolerance=_FLOOR_TOLERANCE)
+        found = energy_floor(task, starts=1, tolerance=_FLOOR_TOLERANCE)
     except SolverFailedError:
         return None
     if not found.complete:

@@ -103,7 +103,7 @@ class Identified(Saved):
 
     @property
     def errors(self) -> dict[str, float]:
-        """Relative errors of the plant by the intervals, for an `UncertainPlant`.
+        """Relative errors of the plant by the intervals, for an `Uncertainty`.
 
         Raises
         ------

@@ -118,13 +118,12 @@ class Plan(MotionAnswer):
 
     @cached_property
     def _arrival(self) -> NDArray[np.float64]:
-        task = self.task.nominal
-        joint = PiecewiseMotion.of_profile(task, self.profile, self.coefficients)
-        return resimulated(task, joint).arrival
+        joint = PiecewiseMotion.of_profile(self.task, self.profile, self.coefficients)
+        return resimulated(self.task, joint).arrival
 
     def state_after(self, wait: float = 0.0) -> ModalState:
         """What rings a while [s] after arrival, on the assumed plant, by CVODES."""
-        return state_after(self.task.nominal, self._arrival, wait)
+        return state_after(self.task, self._arrival, wait)
 
     def next_move(
         self, target: float, duration: float, wait: float = 0.0, **options: Any

@@ -69,7 +69,7 @@ def plan_after(
     SolverFailedError
         As by `plan_move`.
     """
-    if task.plant.nominal != earlier.task.plant.nominal:
+    if task.plant != earlier.task.plant:
         raise ValueError("the two moves have different plants; give the plant of the earlier one")
     if task.start != earlier.task.target:
         raise ValueError(
@@ -148,7 +148,7 @@ def _least_energy(
     best, least, guess = low, np.inf, None
     waits = np.linspace(low, high, _WAITS)
     for _ in range(1 + _ROUNDS):
-        tasks = [_after(earlier, task.nominal, one) for one in waits.tolist()]
+        tasks = [_after(earlier, task.certain, one) for one in waits.tolist()]
         moves = plan_moves(tasks, profile, **asked)
         if not moves.complete:
             raise KeyboardInterrupt

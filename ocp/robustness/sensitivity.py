@@ -50,7 +50,6 @@ def sensitivities(
     By central differences of CVODES, which follows each motion with a parameter a little larger and
     a little smaller. The one that adds most vibration comes first.
     """
-    task = task.nominal
     joint, rows = PiecewiseMotion.of_profile(task, profile, coefficients), residual_rows(task)
 
     def of(name: str) -> Sensitivity:
@@ -75,7 +74,6 @@ def sensitivities_of_moves(
 
     Of each of the two the energies [J] and residuals [m], an entry a move of one plant.
     """
-    tasks = [task.nominal for task in tasks]
     steps, energy = max(map(default_steps, tasks)), tasks[0].energy
     wrong = batch(tasks[0].plant, profile, steps, errors=OF_MODES, energy=energy)
     moves, rows = np.array([task.row for task in tasks]), [residual_rows(task) for task in tasks]

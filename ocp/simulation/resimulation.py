@@ -130,7 +130,15 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    return resimulated(task, PiecewiseMotion.of_profile(task, profile, coefficients)).motion
+    joint = PiecewiseMotion.of_profile(task, profile, coefficients)
+    return Motion.worst([one.motion for one in in_scenarios(task, joint)])
+
+
+def in_scenarios(task: PointToPoint, joint: PiecewiseMotion) -> list[Resimulation]:
+    """A joint motion in every scenario of a task."""
+    names = task.error_names
+    named = [tuple(zip(names, errors, strict=True)) for errors in task.scenarios[1:]]
+    return [resimulated(task, joint, errors) for errors in ((), *named)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +209,7 @@ class Resimulation(WithPeaks):
 @one_at_a_time
 @keep_interrupts()
 def resimulated(task: PointToPoint, joint: PiecewiseMotion, errors: Errors = ()) -> Resimulation:
-    """Simulate a joint motion with CVODES."""
+    """Simulate a joint motion with CVODES, on the nominal plant or one with errors."""
     residual_samples(task)  # refuses a window that is too long
     least = _SMOOTH_STEPS if joint.smooth else _STEPS
     blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / least)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields, replace
 
 from quietarm.models import Plant, known_plants
-from quietarm.ocp import Identified, UncertainPlant
+from quietarm.ocp import Identified, Uncertainty
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import is_number, once, parse_in, parse_share
 
@@ -58,10 +58,10 @@ def parse_error(text: str) -> tuple[str, float]:
     return name.replace("-", "_"), size
 
 
-def uncertain(
-    plant: Plant, errors: Iterable[tuple[str, float]], kind: type[Plant] | Identified | None
-) -> Plant:
-    """The plant that may be wrong by these errors; ValueError where it cannot be."""
+def uncertainty_of(
+    errors: Iterable[tuple[str, float]], kind: type[Plant] | Identified | None
+) -> Uncertainty | None:
+    """How far a plant may be wrong, by these errors; None where there are none."""
     ranges = once(errors, "--robust ")
     if ranges.pop(MEASURED, None) is not None:
         if not isinstance(kind, Identified):
@@ -70,7 +70,7 @@ def uncertain(
                 "as frequency=10%"
             )
         ranges = {**kind.errors, **ranges}
-    return UncertainPlant(plant, ranges) if ranges else plant
+    return Uncertainty(ranges) if ranges else None
 
 
 def units_of_plant(plant: Plant | type[Plant], names: Iterable[str]) -> dict[str, str]:

@@ -12,7 +12,7 @@ from quietarm.models import Plant
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, refuse_typed, typed
-from quietarm.studies.cli.plants import chosen_plant, uncertain, units_of_plant
+from quietarm.studies.cli.plants import chosen_plant, uncertainty_of, units_of_plant
 from quietarm.studies.cli.quantities import parse_duration, parse_in, parse_joint_angle, parse_rate
 from quietarm.studies.cli.types import (
     ANGLE,
@@ -269,13 +269,15 @@ def _grid_of(named: dict[str, Any]) -> Grid:
 
 def _task_of(named: dict[str, Any]) -> PointToPoint:
     kind, own, parameters = (named.pop(name) for name in ("plant", "plant_file", "parameters"))
-    plant = uncertain(chosen_plant(kind, own, parameters), named.pop("robust", ()), kind)
+    plant = chosen_plant(kind, own, parameters)
+    uncertainty = uncertainty_of(named.pop("robust", ()), kind)
     after, wait = (named.pop(name) for name in _EARLIER)
     if after is not None:
         named |= _left_by(after, wait or 0.0, plant)
     elif wait is not None:
         raise ValueError("--wait is for --after: give the earlier plan, too, or leave it out")
-    return PointToPoint(plant, **{name: named.pop(name) for name in _OF_A_MOVE})
+    move = {name: named.pop(name) for name in _OF_A_MOVE}
+    return PointToPoint(plant, **move, uncertainty=uncertainty)
 
 
 def _left_by(file: Path, wait: float, plant: Plant) -> dict[str, Any]:
@@ -284,10 +286,10 @@ def _left_by(file: Path, wait: float, plant: Plant) -> dict[str, Any]:
     from quietarm.studies.reading.saved import load_plans
 
     (earlier,) = load_plans([file]).values()
-    its_plant = earlier.task.plant.nominal
-    if its_plant != plant.nominal:
+    its_plant = earlier.task.plant
+    if its_plant != plant:
         raise ValueError(
-            f"{file} moves {plant_words(its_plant)}, not {plant_words(plant.nominal)}; give its "
+            f"{file} moves {plant_words(its_plant)}, not {plant_words(plant)}; give its "
             "plant and parameters"
         )
     return {"start": earlier.task.target, "initial": earlier.state_after(wait)}

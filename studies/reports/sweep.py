@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from quietarm.ocp import SolveStatus
-from quietarm.studies.display.words import plant_words
+from quietarm.studies.display.words import moved
 from quietarm.studies.document.blocks import Document, Facts
 from quietarm.studies.sweep.asked import JUMP, STATES
 from quietarm.studies.sweep.library import Between
@@ -14,7 +14,7 @@ from quietarm.studies.sweep.store import Store
 def sweep_document(store: Store, between: Between | None = None) -> Document:
     """Axes, then how many cells ended how."""
     grid, status, energy = store.sweep.grid, store.status, store.read("energy")
-    rows = [("plant", plant_words(grid.task.plant))]
+    rows = [("plant", moved(grid.task))]
     rows += [
         (
             axis.name,

@@ -36,9 +36,9 @@ def test_a_push_makes_a_machine_that_is_planned_for(push, call):
         "--output plan.json"
     )
     assert (code, err) == (0, "")
-    plant = Plan.load(push / "plan.json").task.plant
-    assert plant.errors == found.errors
-    assert (plant.nominal.tip_mass, plant.nominal.omega) == (0.1, found.plant.omega)
+    task = Plan.load(push / "plan.json").task
+    assert task.ranges == found.errors
+    assert (task.plant.tip_mass, task.plant.omega) == (0.1, found.plant.omega)
 
 
 def test_files_of_other_programs_tell_the_same(push, call):
