@@ -114,17 +114,14 @@ class PopulationObjective:
             )
         count, scenarios = len(population), len(self._scenarios)
         # scenario by scenario: the first rows are the candidates on the nominal plant
-        rows, move = (
-            np.tile(population, (scenarios, 1)),
-            np.tile(self.task.row, (count * scenarios, 1)),
-        )
+        rows = np.tile(population, (scenarios, 1))
+        move = np.tile(self.task.row, (len(rows), 1))
         errors = np.repeat(self._scenarios, count, axis=0)
         found = self._batch.values(rows, move, errors, self.threads)
-        missed = self.task.missed(found.arrival).reshape(scenarios, count, -1)
-        residual = np.max(
-            [np.abs(z @ r.T).max(axis=1) for z, r in zip(missed, self._tip_rows, strict=True)],
-            axis=0,
-        )
+        missed = self.task.missed(found.arrival)
+        missed = missed.reshape(scenarios, count, len(self.task.final_state))
+        each = zip(missed, self._tip_rows, strict=True)
+        residual = np.max([np.abs(z @ tips.T).max(axis=1) for z, tips in each], axis=0)
         violations = np.empty((count, len(self.task.limits)))
         for i, (name, part) in enumerate(self._batch.parts):
             peak = np.abs(found.limited[:, part]).max(axis=1).reshape(scenarios, count)
