@@ -27,7 +27,7 @@ from quietarm.ocp import (
     Plan,
     PointToPoint,
     SolverFailedError,
-    UncertainPlant,
+    Uncertainty,
     evaluate_robustness,
     plan_move,
     shaped_cycloid,
@@ -77,8 +77,7 @@ def rows_of(task: PointToPoint, starts: int) -> list[Row]:
     """Every motion of a move that there is."""
     rows = [row_of(REST, plan_move(task, starts=starts))]
     for size in RANGES:
-        plant = UncertainPlant(task.plant, {"frequency": size})
-        robust = replace(task, plant=plant)
+        robust = replace(task, uncertainty=Uncertainty({"frequency": size}))
         try:
             plan = plan_move(robust, starts=starts)
         except SolverFailedError as none:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import reprlib
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import Field, field, fields
 from importlib import import_module
 from pathlib import Path
@@ -75,21 +75,6 @@ class Plant(ABC):
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
-
-    @property
-    def nominal(self) -> Plant:
-        """The plant without errors, itself unless it is an uncertain one."""
-        return self
-
-    @property
-    def errors(self) -> Mapping[str, float]:
-        """Largest relative errors of its parameters by name; none where it is certain."""
-        return {}
-
-    @property
-    def error_samples(self) -> tuple[tuple[float, ...], ...]:
-        """The errors, in the order of `errors`, at which a residual counts beside none."""
-        return ()
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -176,11 +161,6 @@ class Plant(ABC):
     def tips(self) -> int:
         """How many tip displacements the plant has."""
         return len(self.tip_displacements([0.0] * self.modes))
-
-    @property
-    def parts(self) -> Sequence[Plant]:
-        """Plants that share the joint and nothing else; their modes are this plant's, in order."""
-        return (self,)
 
     def validate(self) -> None:
         """Check the contract that the integrator and the residual rely on.

@@ -48,10 +48,8 @@ from .robustness.measures import Sweep as Sweep
 from .robustness.measures import evaluate_robustness as evaluate_robustness
 from .robustness.population import Figures as Figures
 from .robustness.sensitivity import Sensitivity as Sensitivity
-from .robustness.uncertain import UncertainPlant as UncertainPlant
 from .robustness.worst import Worst as Worst
 from .simulation.cvodes import Trajectory as Trajectory
-from .simulation.errors import with_errors as with_errors
 from .simulation.objective import Motion as Motion
 from .simulation.residual import residual_matrix as residual_matrix
 from .simulation.resimulation import resimulate as resimulate
@@ -60,3 +58,5 @@ from .simulation.rollout import Rollout as Rollout
 from .simulation.rollout import rollout as rollout
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .task import PointToPoint as PointToPoint
+from .uncertainty import Uncertainty as Uncertainty
+from .uncertainty import perturb_plant as perturb_plant

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from quietarm.models import Plant
 from quietarm.ocp.checks import finite
 
 
@@ -39,8 +38,3 @@ class ModalState:
                 f"the state has {len(self.W)} amplitudes and {len(self.dW)} rates; give one of "
                 "each for every mode"
             )
-
-    def of_every_part(self, plant: Plant) -> tuple[float, ...]:
-        """W [m], then W' [m/s]; of an uncertain plant, the same for every sample."""
-        parts = plant.modes // plant.nominal.modes
-        return self.W * parts + self.dW * parts

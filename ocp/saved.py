@@ -20,12 +20,11 @@ from quietarm.ocp.errors import FileFormatError
 from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.profiles.joint_profile import JointProfile, known_profiles
 from quietarm.ocp.record import Provenance
-from quietarm.ocp.robustness.uncertain import UncertainPlant
 from quietarm.ocp.simulation.objective import Motion
 
 T = TypeVar("T")
-PLANT_FILE, UNCERTAIN = "plant_file", "uncertain"
-"""Entries of a plant: the file it was loaded from; how far it may be wrong."""
+PLANT_FILE = "plant_file"
+"""Entry of a plant: the file it was loaded from."""
 _SHOWN = 12
 """Digits of a digest that a message shows."""
 
@@ -33,9 +32,6 @@ _SHOWN = 12
 def plain(value: Any) -> Any:
     """A value in JSON's types, SI units and radians."""
     match value:
-        case UncertainPlant():
-            uncertain = {"ranges": plain(value.ranges), "samples": plain(value.samples)}
-            return {**plain(value.assumed), UNCERTAIN: uncertain}
         case Plant():
             file = file_of_plant(type(value))
             origin = (
@@ -129,14 +125,10 @@ def _known_here(kind: Any, entry: Any) -> Any:
 
 def _plant(entry: dict[str, Any]) -> Plant:
     """The plant of an entry, whose file is checked: nothing is run but what the user named."""
-    file, uncertain = entry.pop(PLANT_FILE, None), entry.pop(UNCERTAIN, None)
+    file = entry.pop(PLANT_FILE, None)
     if file is not None:
         _check_file(entry["name"], file["path"], file["sha256"])
-    plant = _named("plant", entry, known_plants())
-    if uncertain is None:
-        return plant
-    samples = msgspec.convert(uncertain["samples"], tuple[tuple[float, ...], ...])
-    return UncertainPlant(plant, uncertain["ranges"], samples)
+    return _named("plant", entry, known_plants())
 
 
 def _check_file(name: str, path: str, sha256: str) -> None:

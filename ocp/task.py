@@ -17,6 +17,7 @@ from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.modal_state import ModalState
+from quietarm.ocp.uncertainty import Scenario, Uncertainty, perturbed_plants
 
 _JERK = 3
 
@@ -115,12 +116,14 @@ class PointToPoint:
     jerk_limit : float, optional
         Largest absolute rate of change of the joint's acceleration on the way [rad/s^3].
     initial : ModalState, optional
-        What rings already at the start, on every plant where it is uncertain; at rest by default.
+        What rings already at the start, in every scenario; at rest by default.
     final : ModalState, optional
         What is wanted on arrival; at rest by default. The residual is the largest displacement of
         a tip from the free vibration that begins with it.
     energy : Energy, optional
         What counts as F2; the paper's absolute power by default.
+    uncertainty : Uncertainty, optional
+        How far the plant's parameters may be wrong; not at all by default.
 
     Raises
     ------
@@ -146,11 +149,14 @@ class PointToPoint:
     initial: ModalState | None = None
     final: ModalState | None = None
     energy: Energy = ABSOLUTE_POWER
+    uncertainty: Uncertainty | None = None
 
     @one_at_a_time
     def __post_init__(self) -> None:
         with keep_interrupts():  # casadi loses a Ctrl-C
             self.plant.validate()
+            if self.uncertainty is not None:
+                self.uncertainty.check(self.plant)
         for name in ("start", "target"):
             angle = finite(name, getattr(self, name), "rad")
             if abs(angle) > MOST_ANGLE:
@@ -165,15 +171,15 @@ class PointToPoint:
                 )
             self._keep(name, angle)
         with keep_interrupts():
-            for part in self.plant.parts:
-                check_along(part, self.start, self.target)
+            for plant in self.perturbed_plants:
+                check_along(plant, self.start, self.target)
         for name in ("duration", "residual_window"):
             self._keep(name, positive(name.replace("_", " "), getattr(self, name), "s"))
         for name, unit in LIMITS.items():
             if getattr(self, name) is not None:
                 self._keep(name, positive(name.replace("_", " "), getattr(self, name), unit))
         for name in ("initial", "final"):
-            state, modes = getattr(self, name), self.plant.nominal.modes
+            state, modes = getattr(self, name), self.plant.modes
             if state is not None and len(state.W) != modes:
                 raise ValueError(
                     f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
@@ -212,12 +218,11 @@ class PointToPoint:
 
     @property
     def initial_state(self) -> tuple[float, ...]:
-        """W [m], then W' [m/s] at the start, of every part of the plant."""
+        """W [m], then W' [m/s] at the start."""
         return self._modes_of(self.initial)
 
     def _modes_of(self, state: ModalState | None) -> tuple[float, ...]:
-        at_rest = (0.0,) * (2 * self.plant.modes)
-        return at_rest if state is None else state.of_every_part(self.plant)
+        return (0.0,) * (2 * self.plant.modes) if state is None else (*state.W, *state.dW)
 
     @property
     def final_state(self) -> tuple[float, ...]:
@@ -229,15 +234,36 @@ class PointToPoint:
         return np.asarray(arrival) - self.final_state
 
     @property
-    def nominal(self) -> PointToPoint:
-        """The move of the plant without errors; itself where the plant has none."""
-        plant = self.plant.nominal
-        return self if plant is self.plant else replace(self, plant=plant)
+    def ranges(self) -> Mapping[str, float]:
+        """Largest relative errors of the plant's parameters by name; none where it is certain."""
+        return {} if self.uncertainty is None else self.uncertainty.ranges
 
     @property
-    def errors(self) -> Mapping[str, float]:
-        """Largest relative errors of the plant's parameters by name; none where it is certain."""
-        return self.plant.errors
+    def error_names(self) -> tuple[str, ...]:
+        """Names of the errors that a scenario has."""
+        return tuple(self.ranges)
+
+    @property
+    def scenarios(self) -> tuple[Scenario, ...]:
+        """Errors of the plants whose residual counts; the first are none, of the nominal plant."""
+        samples = () if self.uncertainty is None else self.uncertainty.samples
+        return ((0.0,) * len(self.ranges), *samples)
+
+    @property
+    def perturbed_plants(self) -> tuple[Plant, ...]:
+        """The plant in every scenario, the nominal one first."""
+        return perturbed_plants(self.plant, self.error_names, self.scenarios)
+
+    @property
+    def certain(self) -> PointToPoint:
+        """The move of the nominal plant alone."""
+        return self if self.uncertainty is None else replace(self, uncertainty=None)
+
+    def with_samples(self, samples: Iterable[Sequence[float]]) -> PointToPoint:
+        """The move with these samples of its uncertainty."""
+        assert self.uncertainty is not None
+        one = replace(self.uncertainty, samples=tuple(map(tuple, samples)))
+        return replace(self, uncertainty=one)
 
     @property
     def limits(self) -> dict[str, float]:

@@ -137,7 +137,7 @@ def task_difference(one: PointToPoint, other: PointToPoint) -> str:
             words.append(f"{name} is {_words(value, unit)}, not {_words(wanted, unit)}")
     if one.energy != other.energy:
         words.append(f"energy is {one.energy.label}, not {other.energy.label}")
-    if not words and one.plant.error_samples != other.plant.error_samples:
+    if not words and one.scenarios != other.scenarios:
         words.append("its samples within the errors are others")
     return ", ".join(words)
 
@@ -146,7 +146,7 @@ def _quantities(task: PointToPoint) -> dict[str, tuple[float | None, str]]:
     table: dict[str, tuple[float | None, str]] = {
         f"plant parameter {name}": (value, "") for name, value in task.plant.parameters.items()
     }
-    table |= {f"error of {name}": (size, "") for name, size in task.errors.items()}
+    table |= {f"error of {name}": (size, "") for name, size in task.ranges.items()}
     for name in ("start", "target"):
         table[name] = (getattr(task, name), "rad")
     for name in ("duration", "residual_window"):

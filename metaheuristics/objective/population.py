@@ -10,7 +10,7 @@ from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.program.batch import Batch, batch
-from quietarm.ocp.simulation.residual import residual_rows
+from quietarm.ocp.simulation.residual import residual_rows, residual_samples
 from quietarm.ocp.simulation.rollout import default_steps
 
 CANDIDATE_STEPS = 24
@@ -77,13 +77,15 @@ class PopulationObjective:
         self.task, self.profile, self.threads = task, profile, whole("threads", threads, 1)
         default = default_steps(task, least=CANDIDATE_STEPS)
         self.steps = default if steps is None else whole("steps", steps, 1)
-        self._tip_of_state = residual_rows(task).T
+        self._scenarios, samples = np.array(task.scenarios), residual_samples(task)
+        self._tip_rows = [residual_rows(task, plant, samples) for plant in task.perturbed_plants]
 
     @property
     def _batch(self) -> Batch:
         """Kept by whoever asks for it, since casadi's functions can be neither copied nor sent."""
         task = self.task
-        return batch(task.plant, self.profile, self.steps, tuple(task.limits), energy=task.energy)
+        limited, names = tuple(task.limits), task.error_names
+        return batch(task.plant, self.profile, self.steps, limited, names, task.energy)
 
     @keep_interrupts()
     def __call__(self, coefficients: ArrayLike) -> PopulationValues:
@@ -110,15 +112,22 @@ class PopulationObjective:
                 f"the population has shape {population.shape}; give (candidates, "
                 f"{self.profile.size})"
             )
-        count = len(population)
-        move = np.repeat([self.task.row], count, axis=0)
-        found = self._batch.values(population, move, np.zeros((count, 0)), self.threads)
-        residual = np.abs(self.task.missed(found.arrival) @ self._tip_of_state).max(axis=1)
+        count, scenarios = len(population), len(self._scenarios)
+        # scenario by scenario: the first rows are the candidates on the nominal plant
+        rows = np.tile(population, (scenarios, 1))
+        move = np.tile(self.task.row, (len(rows), 1))
+        errors = np.repeat(self._scenarios, count, axis=0)
+        found = self._batch.values(rows, move, errors, self.threads)
+        missed = self.task.missed(found.arrival)
+        missed = missed.reshape(scenarios, count, len(self.task.final_state))
+        each = zip(missed, self._tip_rows, strict=True)
+        residual = np.max([np.abs(z @ tips.T).max(axis=1) for z, tips in each], axis=0)
         violations = np.empty((count, len(self.task.limits)))
         for i, (name, part) in enumerate(self._batch.parts):
-            peak = np.abs(found.limited[:, part]).max(axis=1)
-            violations[:, i] = peak / self.task.limits[name] - 1
-        return PopulationValues(residual, found.energy, violations)
+            peak = np.abs(found.limited[:, part]).max(axis=1).reshape(scenarios, count)
+            largest = peak.max(axis=0) if name == "deflection" else peak[0]
+            violations[:, i] = largest / self.task.limits[name] - 1
+        return PopulationValues(residual, found.energy[:count], violations)
 
 
 def replace_failures(table: NDArray[np.float64]) -> NDArray[np.bool_]:

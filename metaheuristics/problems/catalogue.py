@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.problems.finding import exact_front, swept_front
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, UncertainPlant
+from quietarm.ocp import CycloidPolynomial, Front, JointProfile, PointToPoint, Uncertainty
 from quietarm.ocp.checks import unknown
 
 if TYPE_CHECKING:
@@ -239,7 +239,7 @@ _ALL = (
     ),
     _problem(
         "single-link-30deg-0.8s-robust",
-        replace(_LINK_SIXTH, plant=UncertainPlant(_LINK, {"frequency": 0.1})),
+        replace(_LINK_SIXTH, uncertainty=Uncertainty({"frequency": 0.1})),
         _ROBUST_BOX,
     ),
 )  # fmt: skip

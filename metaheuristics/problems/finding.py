@@ -79,7 +79,7 @@ def _keeps_limits(front: Front, point: FrontPoint) -> bool:
     """Whether a point keeps the task's limits by CVODES, without the room that a plan has."""
     if not front.task.limits:
         return True
-    motion = resimulate(front.task.nominal, front.profile, point.coefficients)
+    motion = resimulate(front.task.certain, front.profile, point.coefficients)
     return not motion.passed(front.task.limits, _BETTER)
 
 

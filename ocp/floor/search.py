@@ -173,7 +173,7 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
             coefficients = profile.plain
         elif i == 1:
             with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
-                plan = plan_move(task.nominal, profile, starts=1)
+                plan = plan_move(task.certain, profile, starts=1)
                 if not plan.complete:  # it kept the best of its starts and raised nothing
                     raise KeyboardInterrupt
                 coefficients = np.array(plan.coefficients)

@@ -91,7 +91,7 @@ def _by_finer_rule(sweep: Sweep, found: Sequence[Solution]) -> dict[int, FrontPo
     also have to hold between the nodes.
     """
     task, profile = sweep.task, sweep.profile
-    if len(found) < CHECK_EVERY or task.limits or task.errors:
+    if len(found) < CHECK_EVERY or task.limits or task.uncertainty is not None:
         return {}
     table = np.array([one.coefficients for one in found])
     values = finer_values([sweep.program] * len(table), table)

@@ -55,7 +55,7 @@ def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
     The number of steps is raised until the independent integrator agrees with the still end.
     Where no motion arrives at rest, that end is the motion of least residual.
     """
-    if between and sweep.task.errors:
+    if between and sweep.task.uncertainty is not None:
         return _ends_of_uncertain(sweep)
     still = _at_rest(sweep)  # first: it settles the number of steps
     cheapest = _best(sweep, np.inf)
@@ -93,7 +93,7 @@ def _ends_of_uncertain(sweep: Sweep) -> Ends:
     and leaves no rest between the samples, the second any energy. The still end is where less
     residual costs too much energy.
     """
-    alone = Sweep(sweep.task.nominal, sweep.profile, sweep.settings)
+    alone = Sweep(sweep.task.certain, sweep.profile, sweep.settings)
     assumed = find_ends(alone)
     sweep.steps, sweep.iterations = alone.steps, sweep.iterations + alone.iterations
     guesses = [assumed.cheapest.coefficients, assumed.still.coefficients]

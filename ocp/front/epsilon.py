@@ -75,7 +75,7 @@ def epsilon_front(
     steps : int, optional
         Steps of the solver's discretisation, as for `plan_move`.
     between : bool
-        Whether the residual of an `UncertainPlant` is what a motion leaves at worst, whatever the
+        Whether the residual of an uncertain task is what a motion leaves at worst, whatever the
         error within the ranges; else at the plant's samples alone, as in a search.
     report : callable, optional
         Called with the number of points done and of all.

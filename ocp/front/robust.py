@@ -12,7 +12,6 @@ from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.front.sweep import Sweep
 from quietarm.ocp.record import REST
-from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.robustness.worst import peaks_between, worst_at
 
 _SOLVED, _STATED = 0.02, 1e-3
@@ -46,7 +45,7 @@ def held_between(sweep: Sweep, found: Sequence[Found]) -> tuple[list[Found], flo
     each from where it is. A point that was not found is tried again from its neighbours. In the end
     peaks become samples until every point's residual is what it leaves at worst.
     """
-    if not sweep.task.errors:
+    if sweep.task.uncertainty is None:
         return list(found), None, True
     kept, task = list(found), sweep.task
     try:
@@ -83,7 +82,7 @@ def _samples(sweep: Sweep, found: Sequence[Found]) -> list[list[float]]:
         for excess, peak in zip(one.excess, one.peaks, strict=True)
         if excess > _SOLVED
     ]
-    near = _APART * np.array(list(sweep.task.errors.values()))
+    near = _APART * np.array(list(sweep.task.ranges.values()))
     chosen = list[NDArray[np.float64]]()
     for _, errors in sorted(passing, key=lambda one: -one[0]):
         if len(chosen) < _ADDED and all((abs(errors - one) > near).any() for one in chosen):
@@ -166,20 +165,20 @@ def _with_sample(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> Fr
 
 def on_same_samples(fronts: Sequence[Front]) -> list[Front]:
     """Fronts of one uncertain plant with their residuals at the samples of all of them."""
-    plants = [(front.task.plant.nominal, *front.task.errors.items()) for front in fronts]
+    plants = [(front.task.plant, *front.task.ranges.items()) for front in fronts]
     samples: dict[Hashable, dict[tuple[float, ...], None]] = {}
     for plant, front in zip(plants, fronts, strict=True):
-        samples.setdefault(plant, {}).update(dict.fromkeys(front.task.plant.error_samples))
+        samples.setdefault(plant, {}).update(dict.fromkeys(front.task.scenarios[1:]))
     return [
         _at_samples(front, [*samples[plant]]) for plant, front in zip(plants, fronts, strict=True)
     ]
 
 
 def _at_samples(front: Front, samples: Sequence[tuple[float, ...]]) -> Front:
-    if not front.task.errors or not front.points:
+    if front.task.uncertainty is None or not front.points:
         return front
-    task = with_samples(front.task, samples)
-    new = [one for one in samples if one not in front.task.plant.error_samples]
+    task = front.task.with_samples(samples)
+    new = [one for one in samples if one not in front.task.scenarios]
     left = [
         max([p.residual, *(worst_at(task, front.profile, p.coefficients, e).residual for e in new)])
         for p in front.points

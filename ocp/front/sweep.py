@@ -16,7 +16,6 @@ from quietarm.ocp.program.program import Program
 from quietarm.ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
 from quietarm.ocp.program.solving import Row, Solved, solve
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.task import PointToPoint
 
 Guess = NDArray[np.float64]
@@ -66,7 +65,7 @@ class Sweep:
     def add_samples(self, more: Sequence[Sequence[float]]) -> None:
         """Let the residual of an uncertain plant count at more errors."""
         if more:
-            self.take(with_samples(self.task, [*self.task.plant.error_samples, *more]))
+            self.take(self.task.with_samples([*self.task.scenarios[1:], *more]))
 
     def take(self, task: PointToPoint) -> None:
         """Go on with another task."""

@@ -300,7 +300,7 @@ def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
     if not tasks:
         raise ValueError("no moves are given; give one task or more")
     for i, task in enumerate(tasks, start=1):
-        if task.errors:
+        if task.uncertainty is not None:
             raise ValueError(f"the plant of move {i} is uncertain; plan such moves by plan_move")
         mine, first = ((one.plant, one.energy, {*one.limits}) for one in (task, tasks[0]))
         if mine != first:

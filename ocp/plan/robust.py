@@ -15,7 +15,6 @@ from quietarm.ocp.plan.verification import OVERRUN
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.robustness.measures import quiet_residual
-from quietarm.ocp.robustness.uncertain import with_samples
 from quietarm.ocp.robustness.worst import peaks_between
 from quietarm.ocp.task import PointToPoint
 
@@ -37,7 +36,7 @@ PlanFrom = Callable[
 
 def limit_of(task: PointToPoint, residual_limit: float | None) -> float:
     """The residual limit of a plan, also where none is given."""
-    if not task.errors:
+    if task.uncertainty is None:
         return 0.0 if residual_limit is None else residual_limit
     if residual_limit is None:
         residual_limit = quiet_residual(task)
@@ -95,7 +94,7 @@ def _held(
         more = _new_samples(task, peaks[peaks[:, 0] > limit, 1:])
         if peaks[0, 0] / limit - 1 <= EXCESS or not more:
             break
-        task = with_samples(task, [*task.plant.error_samples, *more])
+        task = task.with_samples([*task.scenarios[1:], *more])
         plan, peaks, starts = solved(starts)
         yield plan
     for _ in range(_TIGHTENINGS):
@@ -113,8 +112,8 @@ def _held(
 
 def _new_samples(task: PointToPoint, errors: NDArray[np.float64]) -> list[list[float]]:
     """Those of the errors that no sample of the uncertain plant has."""
-    known = np.array(task.plant.error_samples)
-    near = _SAME * np.array(list(task.errors.values()))
+    known = np.array(task.scenarios[1:])
+    near = _SAME * np.array(list(task.ranges.values()))
     return [one.tolist() for one in errors if (np.abs(known - one) > near).any(axis=1).all()]
 
 

@@ -45,7 +45,6 @@ def shaped_cycloid(
     """
     if at not in ("target", "average"):
         raise ValueError(f"at is {at!r}; give 'target' or 'average'")
-    task = task.nominal
     angles = [task.target] if at == "target" else _along(task)
     modes = [vibrations(task.plant, angle) for angle in angles]
     if not modes[0] or len({len(each) for each in modes}) > 1:

@@ -70,7 +70,7 @@ def plan_move(
         of a profile without coefficients, such as `shaped_cycloid`, is evaluated, not optimised.
     residual_limit : float, optional
         Largest F1 [m]; 0 asks for rest on arrival, or for the task's `final` state, where there
-        are coefficients to choose. By default 0; of an `UncertainPlant`, which hardly ever arrives
+        are coefficients to choose. By default 0; of an uncertain task, which hardly ever arrives
         at rest whatever its errors, 5 % of how far the plain cycloid of the same duration bends the
         assumed plant's tip on its way.
     bound : float, optional
@@ -117,7 +117,7 @@ def plan_move(
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
     settings = replace(settings, residual_limit=limit_of(task, residual_limit))
-    if task.errors:
+    if task.uncertainty is not None:
         return robust_plan(task, profile, settings, plan_from)
     return plan_at_samples(task, profile, settings)
 

@@ -16,7 +16,7 @@ from quietarm.ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Sol
 from quietarm.ocp.program.solving import Row, Solver, solve
 from quietarm.ocp.simulation.objective import Motion, WithPeaks
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.simulation.resimulation import in_scenarios
 from quietarm.ocp.simulation.rollout import default_steps
 from quietarm.ocp.task import QUANTITIES
 
@@ -121,11 +121,8 @@ class Checked(WithPeaks):
     """What CVODES makes of a solution, on all plants whose residual counts."""
 
     def __init__(self, program: Program, found: Solution) -> None:
-        task = program.task.nominal
-        joint = PiecewiseMotion.of_profile(task, program.profile, found.coefficients)
-        names = program.batch.kind.errors
-        wrong = [tuple(zip(names, errors.tolist(), strict=True)) for errors in program.errors[1:]]
-        self._all = [resimulated(task, joint), *(resimulated(task, joint, one) for one in wrong)]
+        joint = PiecewiseMotion.of_profile(program.task, program.profile, found.coefficients)
+        self._all = in_scenarios(program.task, joint)
         self.energy = self._all[0].energy
         self.residual = max(one.residual for one in self._all)
         self.arrival = np.array([one.arrival for one in self._all])
@@ -133,9 +130,7 @@ class Checked(WithPeaks):
     @cached_property
     def motion(self) -> Motion:
         """The figures: residual and deflection of the worst plant, all else of the assumed one."""
-        deflection = max(one.motion.peak_deflection for one in self._all)
-        motion = self._all[0].motion
-        return replace(motion, residual=self.residual, peak_deflection=deflection)
+        return Motion.worst([one.motion for one in self._all])
 
     def peak(self, name: str) -> float:
         """As of `WithPeaks`."""

@@ -17,9 +17,9 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.energy import energy_parts
 from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places, elementwise
 from quietarm.ocp.simulation.collocation import NODES, Step, step
-from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.rollout import march, node_times, symbolic_rollout
 from quietarm.ocp.task import QUANTITIES, ask_for_jerk
+from quietarm.ocp.uncertainty import perturb_plant
 
 _STEPS_OF_CSE = 48
 """Common terms are looked for up to these steps: that takes a fifth off a call, but a time that
@@ -34,7 +34,7 @@ class Kind(NamedTuple):
     quantities : tuple of str
         Limited quantities.
     errors : tuple of str
-        What may differ from the plant in a row, as by `with_errors`.
+        What may differ from the plant in a row, as by `perturb_plant`.
     breaks : tuple of float
         Where the motion is not smooth; of values alone.
     """
@@ -58,7 +58,7 @@ def function_of_values(kind: Kind, rows: int) -> ca.Function:
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
     columns = node_times(steps, breaks=breaks)[1].shape[1]
     a, row, errors = (_wide(one, columns) for one in inputs)
-    moving = with_errors(plant, dict(zip(names, errors, strict=True)))
+    moving = perturb_plant(plant, dict(zip(names, errors, strict=True)))
     rollout = symbolic_rollout(
         moving, profile, a, row[:3], steps, rows, ask_for_jerk(quantities), breaks,
         initial=ca.horzsplit(inputs[1], 1)[3:], energy=energy,
@@ -105,7 +105,7 @@ class _Differentiated:
         self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
         self.times, self.length = node_times(steps, rows)
         self.h = self.move[2] * self.length
-        self._move(with_errors(plant, dict(zip(names, errors, strict=True))), errors)
+        self._move(perturb_plant(plant, dict(zip(names, errors, strict=True))), errors)
         self._go_along()
 
     def _move(self, plant: Plant, errors: list[ca.MX]) -> None:

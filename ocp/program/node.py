@@ -12,8 +12,8 @@ from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import end_to_end, is_zero
-from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.task import QUANTITIES
+from quietarm.ocp.uncertainty import perturb_plant
 
 Places = list[tuple[int, int]]
 """Rows and columns of a matrix's nonzeros."""
@@ -104,7 +104,7 @@ class NodeFunctions:
         modes = ca.SX.sym("modes", 3 * plant.modes)
         joint, point = path.motion(inner, move), ca.vertcat(inner, modes)
         W, dW, ddW = (ca.vertsplit(part) for part in ca.vertsplit(modes, plant.modes))
-        wrong = with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
+        wrong = perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
         forcing = ca.vertcat(*wrong.modal_accelerations(joint, W, dW))
         torque, tips = wrong.torque(joint, W, dW, ddW), wrong.tip_displacements(W)
         smooth = energy.smooth(torque, joint.speed)

@@ -12,7 +12,6 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.batch import Derivatives, batch
 from quietarm.ocp.program.solution import ENERGY, RESIDUAL
-from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.task import PointToPoint
 
@@ -38,20 +37,16 @@ class Program:
 
     def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
         self.task, self.profile, self.steps = task, profile, steps
-        nominal, names = task.nominal, tuple(task.errors)
-        self.plant, self.row = nominal.plant, nominal.row
-        self.wanted = np.array(nominal.final_state)
-        samples = [(0.0,) * len(names), *task.plant.error_samples]
-        self.errors = np.array(samples, dtype=float).reshape(len(samples), len(names))
+        names = task.error_names
+        self.plant, self.row, self.wanted = task.plant, task.row, np.array(task.final_state)
+        self.errors = np.array(task.scenarios, dtype=float)
         self.batch = batch(self.plant, profile, steps, tuple(task.limits), names, task.energy)
         self.parts = self.batch.parts
 
     @cached_property
     def tip_rows(self) -> list[Array]:
         """For each plant, rows that give tip displacements from its state on arrival."""
-        names = self.batch.kind.errors
-        named = [dict(zip(names, errors.tolist(), strict=True)) for errors in self.errors]
-        return [residual_rows(self.task, with_errors(self.plant, one)) for one in named]
+        return [residual_rows(self.task, plant) for plant in self.task.perturbed_plants]
 
     @cached_property
     def plain(self) -> Derivatives:

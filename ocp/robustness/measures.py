@@ -12,10 +12,10 @@ from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.robustness.population import ErrorPopulation, Figures
-from quietarm.ocp.simulation.errors import checked_ranges
 from quietarm.ocp.simulation.objective import Motion
 from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import check_ranges
 
 TOLERATED = 0.05
 """Share of the plain cycloid's residual up to which a motion counts as insensitive."""
@@ -137,7 +137,7 @@ def quiet_residual(task: PointToPoint) -> float:
 
 
 def _plain(task: PointToPoint) -> Motion:
-    return resimulate(task.nominal, CycloidPolynomial(0), [])
+    return resimulate(task.certain, CycloidPolynomial(0), [])
 
 
 @one_at_a_time
@@ -182,8 +182,8 @@ def evaluate_robustness(
         When there is no such parameter, a number is out of range, a plant within the ranges breaks
         its contract, or the coefficients or the duration do not fit the profile.
     """
-    task = task.nominal
-    ranges = checked_ranges(task.plant, ranges)
+    task = task.certain
+    ranges = check_ranges(task.plant, ranges)
     samples = whole("samples", samples, 1, MOST_SAMPLES, "10000 tell percentiles well")
     seed = whole("seed", seed, 0)
     population = ErrorPopulation(task, profile, coefficients, ranges)

@@ -15,10 +15,10 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.batch import batch
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES, step
-from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import residual_samples
 from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import perturb_plant
 
 _BLOCK = 100
 """Plants a call."""
@@ -140,7 +140,7 @@ def _at_rest(plant: Plant, names: tuple[str, ...]) -> ca.Function:
     A row a plant; each matrix is laid out row by row.
     """
     errors, target, between = ca.MX.sym("e", _BLOCK, len(names)), ca.MX.sym("a"), ca.MX.sym("dt")
-    resting = with_errors(plant, dict(zip(names, ca.horzsplit(errors, 1), strict=True)))
+    resting = perturb_plant(plant, dict(zip(names, ca.horzsplit(errors, 1), strict=True)))
     modes = range(plant.modes)
     by_column = step(resting, [JointMotion(target, 0.0, 0.0)] * NODES, between).transition()[1]
     transition = [column[row] for row in range(2 * plant.modes) for column in by_column]

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.program.batch import batch
-from quietarm.ocp.simulation.errors import DAMPING, FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.simulation.rollout import default_steps
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import DAMPING, FREQUENCY
 
 _STEP = 1e-4
 """Relative error to either side: of what follows 1e-8 is curvature, and 1e-6 the integrator's."""
@@ -50,7 +50,6 @@ def sensitivities(
     By central differences of CVODES, which follows each motion with a parameter a little larger and
     a little smaller. The one that adds most vibration comes first.
     """
-    task = task.nominal
     joint, rows = PiecewiseMotion.of_profile(task, profile, coefficients), residual_rows(task)
 
     def of(name: str) -> Sensitivity:
@@ -75,7 +74,6 @@ def sensitivities_of_moves(
 
     Of each of the two the energies [J] and residuals [m], an entry a move of one plant.
     """
-    tasks = [task.nominal for task in tasks]
     steps, energy = max(map(default_steps, tasks)), tasks[0].energy
     wrong = batch(tasks[0].plant, profile, steps, errors=OF_MODES, energy=energy)
     moves, rows = np.array([task.row for task in tasks]), [residual_rows(task) for task in tasks]

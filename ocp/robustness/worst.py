@@ -47,8 +47,8 @@ def peaks_between(
     And of every peak, the largest first, the residual [m] and errors: looked for by fixed steps,
     valued by CVODES.
     """
-    assumed, largest = task.nominal, np.array(list(task.errors.values()))
-    population = ErrorPopulation(assumed, profile, coefficients, dict(task.errors))
+    largest = np.array(list(task.ranges.values()))
+    population = ErrorPopulation(task.certain, profile, coefficients, dict(task.ranges))
     along = _ALONG[len(largest)]
     shares = _grid(np.linspace(-1, 1, along), len(largest))
     residuals = population(shares * largest).residual
@@ -64,15 +64,14 @@ def worst_at(
     task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, errors: Sequence[float]
 ) -> Worst:
     """What a motion leaves with errors in the order of the ranges; else as `peaks_between`."""
-    named = tuple(zip(task.errors, map(float, errors), strict=True))
-    assumed = task.nominal
-    joint = PiecewiseMotion.of_profile(assumed, profile, coefficients)
-    return Worst(dict(named), resimulated(assumed, joint, named).residual)
+    named = tuple(zip(task.error_names, map(float, errors), strict=True))
+    joint = PiecewiseMotion.of_profile(task, profile, coefficients)
+    return Worst(dict(named), resimulated(task, joint, named).residual)
 
 
 def worst_of(task: PointToPoint, profile: JointProfile, coefficients: ArrayLike) -> Worst | None:
     """The largest of `peaks_between`; None where the plant is not uncertain."""
-    if not task.errors:
+    if task.uncertainty is None:
         return None
     return peaks_between(task, profile, coefficients)[0]
 

@@ -87,26 +87,6 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
     The equations are affine in the modes (`Plant.validate`), so that their values at zero and at
     each unit vector give the coefficients without a derivative, element by element.
     """
-    parts = [_system_of(part, joint) for part in plant.parts]
-    if len(parts) == 1:
-        return parts[0]
-    return ModalSystem(
-        [force for part in parts for force in part.g],
-        K=_on_diagonal([part.K for part in parts]),
-        D=_on_diagonal([part.D for part in parts]),
-    )
-
-
-def _on_diagonal(blocks: Sequence[list[list[Expression]]]) -> list[list[Expression]]:
-    size, rows, before = sum(map(len, blocks)), list[list[Expression]](), 0
-    for block in blocks:
-        after = size - before - len(block)
-        rows += [[*[0.0] * before, *row, *[0.0] * after] for row in block]
-        before += len(block)
-    return rows
-
-
-def _system_of(plant: Plant, joint: JointMotion) -> ModalSystem:
     modes, zero = range(plant.modes), [0.0] * plant.modes
     acts = _acting(plant)
     g = list(plant.modal_accelerations(joint, zero, zero))

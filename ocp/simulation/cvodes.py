@@ -19,9 +19,9 @@ from quietarm.models.joint_motion import Modes
 from quietarm.ocp.energy import power_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import keep_interrupts, silent_errors
-from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.residual import fastest_mode
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import perturb_plant
 
 CVODES = {
     "linear_multistep_method": "adams",  # order up to 12: a fifth of the steps of BDF's 5
@@ -30,7 +30,7 @@ CVODES = {
 }
 """Options of every run, but for its steps: see `options_for`."""
 Errors = tuple[tuple[str, float], ...]
-"""Relative errors of a plant by name, as `with_errors` takes them."""
+"""Relative errors of a plant by name, as `perturb_plant` takes them."""
 _MOST_STEPS, _LEAST_A_SAMPLE = 3_000_000, 1_000
 """Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of 1000,
 five hundred times those of any plan, take 700 from one of 3500 samples to the next."""
@@ -145,7 +145,7 @@ def after_arrival(
     Its `xf` has a column for each of the times since arrival [s], which increase from beyond 0.
     """
     state, errors = ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("e", len(names))
-    wrong = with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
+    wrong = perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
     rates = rates_of(wrong, JointMotion(target, 0.0, 0.0), state)
     problem, options = {"x": state, "p": errors, "ode": rates}, options_for(times)
     return ca.integrator("rest", "cvodes", problem, 0.0, times.tolist(), options)
@@ -186,7 +186,7 @@ def _from_unit_states(
     matrices = np.concatenate([np.eye(size)[None], later.transpose(2, 0, 1)])
     into = matrices[: short + 1]
     W = [ca.DM(into[:, mode].reshape(1, -1)) for mode in range(plant.modes)]
-    wrong = with_errors(plant, dict(errors))
+    wrong = perturb_plant(plant, dict(errors))
     tips = ca.horzcat(*wrong.tip_displacements(W)).full().reshape(-1, size)
     return _Rest(into, matrices[[0, *range(short, short + long - 1)]], tips)
 

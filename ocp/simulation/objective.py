@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi as ca
@@ -190,6 +190,15 @@ class Motion(WithPeaks):
         """As of `WithPeaks`."""
         value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
         return math.inf if value is None else float(value)
+
+    @classmethod
+    def worst(cls, scenarios: Sequence[Motion]) -> Motion:
+        """The first, with the largest residual and deflection of all."""
+        largest = {
+            name: max(getattr(motion, name) for motion in scenarios)
+            for name in ("residual", "peak_deflection")
+        }
+        return replace(scenarios[0], **largest)
 
     @classmethod
     def from_samples(

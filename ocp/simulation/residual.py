@@ -22,8 +22,13 @@ RADIANS_A_SAMPLE = 0.02
 
 
 def fastest_mode(task: PointToPoint) -> float:
-    """Largest angular frequency of the plant at rest, over start and target [rad/s]."""
-    return max(_fastest(task.plant, task.start), _fastest(task.plant, task.target))
+    """Largest angular frequency of the nominal plant at rest, over start and target [rad/s]."""
+    return fastest_of(task.plant, task.start, task.target)
+
+
+def fastest_of(plant: Plant, start: float, target: float) -> float:
+    """The same of any plant and two angles."""
+    return max(_fastest(plant, start), _fastest(plant, target))
 
 
 def vibrations(plant: Plant, angle: float) -> list[tuple[float, float]]:
@@ -38,7 +43,7 @@ def vibrations(plant: Plant, angle: float) -> list[tuple[float, float]]:
 
 def slowest_swing(plant: Plant, angle: float) -> float:
     """Period of the slowest mode at rest [s]; 1 where none swings."""
-    swings = vibrations(plant.nominal, angle)
+    swings = vibrations(plant, angle)
     return 2 * math.pi / swings[0][0] if swings else 1.0
 
 
@@ -90,8 +95,9 @@ def residuals_at_rest(
 
 
 def residual_samples(task: PointToPoint) -> int:
-    """Times in the residual window that resolve the plant's fastest mode at the target."""
-    return _samples(task.plant, task.target, task.residual_window)
+    """Times in the residual window that resolve the fastest mode of all scenarios at the target."""
+    plants, window = task.perturbed_plants, task.residual_window
+    return max(_samples(plant, task.target, window) for plant in plants)
 
 
 def _samples(plant: Plant, target: float, window: float) -> int:
@@ -157,13 +163,15 @@ def _residual_matrix(
     return matrix
 
 
-def residual_rows(task: PointToPoint, plant: Plant | None = None) -> NDArray[np.float64]:
+def residual_rows(
+    task: PointToPoint, plant: Plant | None = None, samples: int | None = None
+) -> NDArray[np.float64]:
     """The rows of `residual_matrix` that hold the largest displacement of some state; read-only.
 
-    Of the task's plant, or of another in its place.
+    Of the task's nominal plant, or of another in its place.
     """
     plant = task.plant if plant is None else plant
-    samples = _samples(plant, task.target, task.residual_window)
+    samples = samples or _samples(plant, task.target, task.residual_window)
     return _residual_rows(plant, task.target, task.residual_window, samples)
 
 

@@ -36,12 +36,12 @@ from quietarm.ocp.simulation.cvodes import (
     residual_of,
     rest_of,
 )
-from quietarm.ocp.simulation.errors import with_errors
 from quietarm.ocp.simulation.extremes import extremes
 from quietarm.ocp.simulation.objective import Motion, WithPeaks, integrated, spent
 from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
 from quietarm.ocp.simulation.residual import fastest_mode, residual_samples
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import perturb_plant
 
 _STEPS, _SMOOTH_STEPS = 500, 250
 """Least number of steps of the quadrature, in all and where nothing breaks: its nodes are at most a
@@ -130,7 +130,15 @@ def resimulate(task: PointToPoint, profile: JointProfile, coefficients: ArrayLik
     SolverFailedError
         When CVODES cannot follow the motion.
     """
-    return resimulated(task, PiecewiseMotion.of_profile(task, profile, coefficients)).motion
+    joint = PiecewiseMotion.of_profile(task, profile, coefficients)
+    return Motion.worst([one.motion for one in in_scenarios(task, joint)])
+
+
+def in_scenarios(task: PointToPoint, joint: PiecewiseMotion) -> list[Resimulation]:
+    """A joint motion in every scenario of a task."""
+    names = task.error_names
+    named = [tuple(zip(names, errors, strict=True)) for errors in task.scenarios[1:]]
+    return [resimulated(task, joint, errors) for errors in ((), *named)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +209,7 @@ class Resimulation(WithPeaks):
 @one_at_a_time
 @keep_interrupts()
 def resimulated(task: PointToPoint, joint: PiecewiseMotion, errors: Errors = ()) -> Resimulation:
-    """Simulate a joint motion with CVODES."""
+    """Simulate a joint motion with CVODES, on the nominal plant or one with errors."""
     residual_samples(task)  # refuses a window that is too long
     least = _SMOOTH_STEPS if joint.smooth else _STEPS
     blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / least)
@@ -277,7 +285,7 @@ def _along(
 
 
 def _wrong(plant: Plant, names: tuple[str, ...], errors: ca.SX | ca.MX) -> Plant:
-    return with_errors(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
+    return perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
 
 
 def _over_a_piece(

@@ -25,8 +25,9 @@ from quietarm.ocp.simulation.collocation import (
     step,
 )
 from quietarm.ocp.simulation.objective import Motion, integrated, spent
-from quietarm.ocp.simulation.residual import fastest_mode, residual_matrix
+from quietarm.ocp.simulation.residual import fastest_of, residual_rows, residual_samples
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.uncertainty import perturb_plant
 
 MOST_STEPS = 20_000
 """Of any simulation by fixed steps: finer ones differ by rounding alone."""
@@ -200,7 +201,9 @@ def _by_step(entry: Expression, steps: int) -> list[Expression]:
 
 def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
     """Steps that resolve the profile (`least`) and the plant's fastest mode (2 a radian)."""
-    radians = fastest_mode(task) * task.duration
+    plants = task.perturbed_plants
+    fastest = max(fastest_of(plant, task.start, task.target) for plant in plants)
+    radians = fastest * task.duration
     if 2 * radians > MOST_STEPS:
         raise ValueError(
             f"duration {task.duration:g} s is {radians:.3g} radians of the plant's fastest mode; "
@@ -211,9 +214,16 @@ def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
 
 @lru_cache(maxsize=32)
 def _compiled(
-    plant: Plant, profile: JointProfile, steps: int, breaks: tuple[float, ...], energy: Energy
+    plant: Plant,
+    profile: JointProfile,
+    steps: int,
+    breaks: tuple[float, ...],
+    energy: Energy,
+    names: tuple[str, ...],
 ) -> ca.Function:
-    """(coefficients, row) -> samples at the nodes in order of time, arrival, energy, net work."""
+    """(coefficients, row, errors) -> samples at the nodes in time, arrival, energy, net work."""
+    errors = ca.MX.sym("e", len(names))
+    plant = perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
     a, row = ca.MX.sym("a", profile.size), ca.MX.sym("row", 3 + 2 * plant.modes)
     *move, initial = ca.vertsplit(row, [0, 1, 2, 3, row.numel()])
     found = symbolic_rollout(
@@ -234,7 +244,7 @@ def _compiled(
         found.energy,
         integrated(found.power, found.h),
     ]
-    return ca.Function("rollout", [a, row], outputs)
+    return ca.Function("rollout", [a, row, errors], outputs)
 
 
 @dataclass(frozen=True)
@@ -286,16 +296,28 @@ def rollout(
     """
     steps = default_steps(task) if steps is None else whole("steps", steps, 1)
     breaks = profile.breaks(task.duration)
-    function = _compiled(task.plant, profile, steps, breaks, task.energy)
-    values = function(ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.row))
+    names = task.error_names
+    function = _compiled(task.plant, profile, steps, breaks, task.energy, names)
+    given = ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.row)
+    each = [_of_scenario(task, function(*given, ca.DM(errors)), k)
+            for k, errors in enumerate(task.scenarios)]  # fmt: skip
+    motion = Motion.worst([motion for motion, _ in each])
+    return Rollout(motion, each[0][1], steps)
+
+
+def _of_scenario(
+    task: PointToPoint, values: Sequence[ca.DM], scenario: int
+) -> tuple[Motion, tuple[float, ...]]:
+    """Figures and the state at arrival, of one scenario."""
     joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
+    rows = residual_rows(task, task.perturbed_plants[scenario], residual_samples(task))
     motion = Motion.from_samples(
         task,
         JointMotion(*joint.T),
         tips,
         torque.ravel(),
-        residual=float(np.abs(residual_matrix(task) @ task.missed(arrival.ravel())).max()),
+        residual=float(np.abs(rows @ task.missed(arrival.ravel())).max()),
         energy=energy.item(),
         net_work=net_work.item(),
     )
-    return Rollout(motion, tuple(arrival.ravel().tolist()), steps)
+    return motion, tuple(arrival.ravel().tolist())

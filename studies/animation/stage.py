@@ -15,7 +15,7 @@ from quietarm.ocp import Trajectory
 from quietarm.studies.animation.cast import Actor, Array
 from quietarm.studies.animation.formats import Picture
 from quietarm.studies.display.pictures import as_written
-from quietarm.studies.display.words import REST, millimetres, move_of, plant_words, title_of
+from quietarm.studies.display.words import REST, millimetres, move_of, moved, title_of
 from quietarm.studies.figures.axes import TITLE, axes_or_new, new_figure
 
 _COLUMNS = {1: 1, 2: 2, 4: 2}
@@ -97,7 +97,7 @@ def _structure(ax: Axes, actor: Actor, corners: Array, same: bool) -> Moving:
     residual = millimetres(left) if left >= REST else f"below {millimetres(REST)}"
     lines = [
         line.label,
-        *([] if same else [f"{plant_words(task.plant)}, {move_of(task)}"]),
+        *([] if same else [f"{moved(task)}, {move_of(task)}"]),
         f"residual {residual}, energy {line.plan.energy:.3g} J",
     ]
     ax.set_title("\n".join(_short(words, _LABEL) for words in lines), **TITLE)

@@ -7,7 +7,7 @@ from dataclasses import MISSING, fields, replace
 from math import tau
 
 from quietarm.models import FlexibleBeam, Plant, known_plants
-from quietarm.ocp import UncertainPlant
+from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import has_no, unknown
 from quietarm.studies.cli.quantities import is_number, once, parse_in, parse_share
 from quietarm.studies.display.words import print_lines
@@ -62,10 +62,10 @@ def parse_error(text: str) -> tuple[str, float]:
     return name.replace("-", "_"), size
 
 
-def uncertain(
-    plant: Plant, errors: Iterable[tuple[str, float]], kind: type[Plant] | Identified | None
-) -> Plant:
-    """The plant that may be wrong by these errors; ValueError where it cannot be."""
+def uncertainty_of(
+    errors: Iterable[tuple[str, float]], kind: type[Plant] | Identified | None
+) -> Uncertainty | None:
+    """How far a plant may be wrong, by these errors; None where there are none."""
     ranges = once(errors, "--robust ")
     if ranges.pop(MEASURED, None) is not None:
         if not isinstance(kind, Identified):
@@ -74,7 +74,7 @@ def uncertain(
                 "as frequency=10%"
             )
         ranges = {**kind.errors, **ranges}
-    return UncertainPlant(plant, ranges) if ranges else plant
+    return Uncertainty(ranges) if ranges else None
 
 
 def check_machine(

@@ -11,7 +11,12 @@ import click
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.task import QUANTITIES, Quantity
 from quietarm.studies.cli.options import options, refuse_typed, typed
-from quietarm.studies.cli.plants import check_machine, chosen_plant, uncertain, units_of_plant
+from quietarm.studies.cli.plants import (
+    check_machine,
+    chosen_plant,
+    uncertainty_of,
+    units_of_plant,
+)
 from quietarm.studies.cli.quantities import parse_duration, parse_in, parse_joint_angle, parse_rate
 from quietarm.studies.cli.types import (
     ANGLE,
@@ -233,5 +238,6 @@ def _task_of(named: dict[str, Any]) -> PointToPoint:
     kind, own, parameters = (named.pop(name) for name in ("plant", "plant_file", "parameters"))
     errors = named.pop("robust", ())
     check_machine(kind, parameters, errors)
-    plant = uncertain(chosen_plant(kind, own, parameters), errors, kind)
-    return PointToPoint(plant, **{name: named.pop(name) for name in _OF_A_MOVE})
+    plant, uncertainty = chosen_plant(kind, own, parameters), uncertainty_of(errors, kind)
+    move = {name: named.pop(name) for name in _OF_A_MOVE}
+    return PointToPoint(plant, **move, uncertainty=uncertainty)

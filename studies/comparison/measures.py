@@ -129,7 +129,7 @@ class Comparison:
     @property
     def of_floor(self) -> str:
         """What the floor's motions do; all that is asked of an uncertain plant is not known."""
-        certain = not self.task.errors
+        certain = not self.task.ranges
         return "at rest" if certain else "at rest on the assumed plant"
 
 

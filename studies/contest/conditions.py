@@ -40,7 +40,7 @@ def conditions(grid: Grid, profile: JointProfile, bound: float | None) -> tuple[
     parameters = [axis.name for axis in grid.axes if axis.name not in ("target", "duration")]
     found = list[NamedProblem]()
     for task in tasks:
-        own = task.plant.nominal.parameters
+        own = task.plant.parameters
         values = [f"{name}-{own.get(name, degrees(task.start)):.6g}" for name in parameters]
         move = f"{degrees(task.target):.6g}deg", f"{task.duration:.6g}s"
         name = "-".join([task.plant.name, *values, *move])

@@ -44,9 +44,7 @@ def residual_words(residual: float) -> str:
 
 
 def plant_words(plant: Plant) -> str:
-    """A plant's name, with the parameters that differ from those of its class, and its errors."""
-    if plant.errors:
-        return f"{plant_words(plant.nominal)}, {error_words(plant)}"
+    """A plant's name, with the parameters that differ from those of its class, of its own."""
     changed: list[str] = []
     for entry in fields(plant):
         value, unit = plant.parameters[entry.name], entry.metadata.get("unit", "-")
@@ -55,9 +53,14 @@ def plant_words(plant: Plant) -> str:
     return f"{plant.name} with {', '.join(changed)}" if changed else plant.name
 
 
-def error_words(plant: Plant) -> str:
-    """How far an uncertain plant may be wrong: "frequency +-10 %"; nothing for others."""
-    return ", ".join(f"{name} +-{100 * size:g} %" for name, size in plant.errors.items())
+def error_words(task: PointToPoint) -> str:
+    """How far the plant of a task may be wrong: "frequency +-10 %"; nothing where it is certain."""
+    return ", ".join(f"{name} +-{100 * size:g} %" for name, size in task.ranges.items())
+
+
+def moved(task: PointToPoint) -> str:
+    """The plant of a task, and how far it may be wrong."""
+    return ", ".join(filter(None, [plant_words(task.plant), error_words(task)]))
 
 
 def move_of(task: PointToPoint) -> str:
@@ -84,7 +87,7 @@ def title_of(task: PointToPoint) -> str:
     limits = [
         f"{name} within {value:g} {QUANTITIES[name].unit}" for name, value in task.limits.items()
     ]
-    return ", ".join([plant_words(task.plant), move_of(task), *limits])
+    return ", ".join([moved(task), move_of(task), *limits])
 
 
 def versions_of(fronts: Iterable[Front]) -> list[str]:

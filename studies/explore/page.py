@@ -17,7 +17,7 @@ from bokeh.models import Button, ColumnDataSource, CustomJS, Div, Select, Slider
 from jinja2 import Environment, PackageLoader
 from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
-from quietarm.studies.display.words import plant_words
+from quietarm.studies.display.words import moved
 from quietarm.studies.document.blocks import Facts
 from quietarm.studies.explore.drawn import GREY, TITLES
 from quietarm.studies.explore.plots import Plots
@@ -202,7 +202,7 @@ class Page:
                     field.update(start=dials[name].least, end=dials[name].most)
                 if field.value != shown[name]:
                     field.update(value=shown[name])
-        self._plant.value = plant_words(self._explored.task.plant)
+        self._plant.value = moved(self._explored.task)
         self._filling = False
 
 

@@ -123,7 +123,7 @@ class Explored:
     def _values(self) -> dict[str, Any]:
         """Values of the dials in SI, None where one is empty."""
         mine = {"residual_limit": self.residual_limit, "bound": self.bound, **self.coefficients}
-        known = {**self.task.plant.nominal.parameters, **vars(self.task), **mine}
+        known = {**self.task.plant.parameters, **vars(self.task), **mine}
         return {name: known[name] for name in self.dials}
 
     @property

@@ -9,7 +9,7 @@ import casadi as ca
 from quietarm.ocp import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.studies.display.templates import templates
-from quietarm.studies.display.words import move_of, plant_words
+from quietarm.studies.display.words import move_of, moved
 
 _OPERATIONS = {
     ca.OP_ADD: "{0} + {1}", ca.OP_SUB: "{0} - {1}", ca.OP_MUL: "{0} * {1}", ca.OP_DIV: "{0} / {1}",
@@ -33,7 +33,7 @@ def c_files(plan: Plan, name: str) -> tuple[str, str]:
     given = [*plan.coefficients, *plan.task.move]
     return rendered(
         "move", name, *statements(plan.profile, ["t", *map(number, given)]),
-        move=f"{plant_words(plan.task.plant)}, {move_of(plan.task)}".replace("*/", ""),
+        move=f"{moved(plan.task)}, {move_of(plan.task)}".replace("*/", ""),
         version=plan.provenance.versions.get("quietarm", ""),
         figures=f"energy {plan.energy:.4g} J, residual {1e3 * plan.residual:.3g} mm",
         values=plan.task.move,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from quietarm.studies.display.words import plant_words
+from quietarm.studies.display.words import moved
 from quietarm.studies.export.c_source import name_in_c, rendered, statements
 from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.interpolation import ORDERS
@@ -20,7 +20,7 @@ def c_table_files(library: MoveLibrary, name: str) -> tuple[str, str]:
     inputs = ["t", *(f"coefficients[{i}]" for i in range(size)), *OF_MOVES]
     return rendered(
         "moves", name, *statements(library.profile, inputs),
-        plant=plant_words(grid.task.plant).replace("*/", ""),
+        plant=moved(grid.task).replace("*/", ""),
         version=library.store.versions.get("quietarm", ""),
         figures=library.between().words,
         size=size,

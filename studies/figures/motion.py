@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.display.words import error_words, raised, title_of
+from quietarm.studies.display.words import raised, title_of
 from quietarm.studies.figures.axes import (
     TITLE,
     axes_or_new,
@@ -201,11 +201,7 @@ def _of_one_duration(motions: Motions) -> list[Line]:
 
 def _looks(line: Line, tip: int) -> dict[str, Any]:
     """Label and style of a tip: the line's own for its first one, thin for those of samples."""
-    plant, others = line.plan.task.plant, [s for s in (":", "-.", "--") if s != line.style]
-    own = plant.nominal.tips
-    if tip >= own:
-        label = f"{line.label}, {error_words(plant)}" if tip == own else "_"
-        return {"label": label, "linestyle": line.style, "linewidth": 0.6, "alpha": 0.6}
+    others = [s for s in (":", "-.", "--") if s != line.style]
     if tip == 0:
         return {"label": line.label, "linestyle": line.style, "linewidth": 1.6}
     style = others[(tip - 1) % len(others)]

@@ -9,7 +9,7 @@ from typing import ClassVar
 import casadi as ca
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.saved import Saved
-from quietarm.ocp.simulation.errors import with_values
+from quietarm.ocp.uncertainty import with_values
 
 POOR = 0.25
 """Share of a recording that a fit may leave; with more the plant is not what was recorded."""
@@ -104,7 +104,7 @@ class Identified(Saved):
 
     @property
     def errors(self) -> dict[str, float]:
-        """Relative errors of the plant by the intervals, for an `UncertainPlant`.
+        """Relative errors of the plant by the intervals, for an `Uncertainty`.
 
         Raises
         ------

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.record import versions
-from quietarm.ocp.simulation.errors import refuse_unknown
+from quietarm.ocp.uncertainty import refuse_unknown
 from quietarm.studies.identify.answer import Estimate, Fitted, Identified, in_torque_alone
 from quietarm.studies.identify.fit import Fit, Piece, fit, left, measured, not_told
 from quietarm.studies.identify.recording import Recording

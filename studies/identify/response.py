@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, modal_system, step
-from quietarm.ocp.simulation.errors import with_values
+from quietarm.ocp.uncertainty import with_values
 from quietarm.studies.identify.recording import Recording
 
 Array = NDArray[np.float64]

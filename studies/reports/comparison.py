@@ -25,7 +25,7 @@ def with_floor(comparison: Comparison, console: Console) -> Comparison:
     The console says so if it is not found.
     """
     try:
-        floor = energy_floor(comparison.task.nominal)
+        floor = energy_floor(comparison.task)
     except QuietarmError as error:
         console.print(f"no floor: {error}", highlight=False, soft_wrap=True)
         return comparison

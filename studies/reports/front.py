@@ -112,11 +112,11 @@ def _point_in_words(front: Front, point: FrontPoint) -> str:
 
 def _excess_lines(front: Front) -> list[str]:
     """Of an uncertain plant, how well the residuals hold between its samples."""
-    if not front.task.errors:
+    if not front.task.ranges:
         return []
     if front.excess is None:
         return ["residuals hold at the samples of the plant alone; between them more may be left"]
-    ranges = front.task.errors
+    ranges = front.task.ranges
     errors = ", ".join(f"{name} within {100 * most:g} %" for name, most in ranges.items())
     more = f"at most {100 * front.excess:.2g} % more" if front.excess > 0 else "no more"
     return [

@@ -15,8 +15,8 @@ from quietarm.studies.reports.plan import figure_rows, move_rows
 def evaluated_path(task: PointToPoint, path: RecordedPath) -> Document:
     """Figures by CVODES; of an uncertain plant also at the corners of its errors."""
     free = path.motion
-    joint = PiecewiseMotion.of_free_motion(task.nominal, free)
-    motion = resimulated(task.nominal, joint).motion
+    joint = PiecewiseMotion.of_free_motion(task, free)
+    motion = resimulated(task, joint).motion
     ends = (f"{1e3 * gap:.3g}" for gap in (free.lengths.min(), free.lengths.max()))
     gaps = " to ".join(dict.fromkeys(ends))
     jump = np.abs(np.diff(free.acceleration)).max(initial=0.0)
@@ -25,13 +25,13 @@ def evaluated_path(task: PointToPoint, path: RecordedPath) -> Document:
         ("path", f"{free.steps + 1} points, {gaps} ms apart"),
         ("smoothness", f"acceleration changes by up to {jump:.3g} rad/s^2 from point to point"),
         ("energy (F2)", f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"),
-        *figure_rows(task.nominal, motion),
+        *figure_rows(task, motion),
     ]
-    names = tuple(task.errors)
-    for sample in task.plant.error_samples:
+    names = task.error_names
+    for sample in task.scenarios[1:]:
         errors = tuple(zip(names, sample, strict=True))
         words = ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors)
-        left = resimulated(task.nominal, joint, errors).residual
+        left = resimulated(task, joint, errors).residual
         rows.append(("residual", f"{millimetres(left)} with {words}"))
     rows.append(("verified", "by CVODES alone, along the spline"))
     return Document("", [Facts(rows)])

@@ -9,7 +9,7 @@ from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCy
 from quietarm.ocp.plan.robust import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.task import QUANTITIES
-from quietarm.studies.display.words import REST, millimetres, move_of, plant_words, state_words
+from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words
 from quietarm.studies.document.blocks import Document, Facts, Lines
 from quietarm.studies.document.table import Column, Table
 
@@ -111,7 +111,7 @@ def move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -
     limits = [f"residual {millimetres(residual_limit)}"] * (residual_limit > 0)
     limits += [_limit(name, most, motion.peak(name)) for name, most in task.limits.items()]
     return [
-        ("move", f"{plant_words(task.plant)}, {move_of(task)}"),
+        ("move", f"{moved(task)}, {move_of(task)}"),
         *([("at the start", state_words(task.initial))] if task.initial else []),
         *([("wanted", f"{state_words(task.final)} on arrival")] if task.final else []),
         *([("limits", ", ".join(limits))] if limits else []),
@@ -176,11 +176,9 @@ def _choice(plan: Plan) -> tuple[str, str]:
 
 
 def _tip(task: PointToPoint) -> str:
-    tips = task.plant.nominal.tips
-    words = "tip" if tips == 1 else f"worst of {tips} tips"
-    return (
-        words if tips == task.plant.tips else f"{words}, worst of {task.plant.tips // tips} samples"
-    )
+    tips = task.plant.tips
+    words, scenarios = "tip" if tips == 1 else f"worst of {tips} tips", len(task.scenarios)
+    return words if scenarios == 1 else f"{words}, worst of {scenarios} samples"
 
 
 def _limit(name: str, limit: float, peak: float) -> str:

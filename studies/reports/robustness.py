@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from quietarm.ocp import Plan, Robustness, Sweep
 from quietarm.ocp.robustness.measures import TOLERATED
 from quietarm.studies import figures
-from quietarm.studies.display.words import REST, move_of, plant_words
+from quietarm.studies.display.words import REST, move_of, moved
 from quietarm.studies.document.blocks import Bullets, Document, Picture, Section
 from quietarm.studies.document.table import Cell, Column, Table
 
@@ -25,7 +25,7 @@ def _table(plans: Figured) -> Table:
     rows: list[list[Cell]] = []
     for label, (plan, found) in plans.items():
         task, cells = plan.task, (cell for _, cell in _figures(found))
-        rows.append([label, plant_words(task.plant), move_of(task), plan.profile.label, *cells])
+        rows.append([label, moved(task), move_of(task), plan.profile.label, *cells])
     return Table("", columns, rows)
 
 

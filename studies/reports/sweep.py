@@ -6,7 +6,7 @@ from math import isfinite
 
 import numpy as np
 from quietarm.ocp import SolveStatus
-from quietarm.studies.display.words import REST, plant_words
+from quietarm.studies.display.words import REST, moved
 from quietarm.studies.document.blocks import Document, Facts
 from quietarm.studies.document.table import Cell, Column, Table
 from quietarm.studies.sweep.asked import JUMP, STATES
@@ -20,7 +20,7 @@ _MOST_LINES = 30
 def sweep_document(store: Store, between: Between | None = None) -> Document:
     """Axes, then how many cells ended how."""
     grid, status, energy = store.sweep.grid, store.status, store.read("energy")
-    rows = [("plant", plant_words(grid.task.plant))]
+    rows = [("plant", moved(grid.task))]
     rows += [
         (
             axis.name,

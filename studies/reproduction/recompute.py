@@ -26,7 +26,7 @@ from quietarm.ocp import (
     JointProfile,
     Plan,
     SolverFailedError,
-    UncertainPlant,
+    Uncertainty,
     cross_check,
     energy_floor,
     epsilon_front,
@@ -35,7 +35,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.interrupts import note_interrupts
 from quietarm.ocp.robustness.measures import tolerated_residual
-from quietarm.ocp.simulation.errors import FREQUENCY
+from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.studies.paper import (
     COEFFICIENTS,
     CONDITIONS,
@@ -127,11 +127,11 @@ def _solved(
 
 def _solved_robustly(case: Case, earlier: Done, say: Say) -> Plan | str:
     """Within 5 % of the plain cycloid's residual whatever the frequency; or why that cannot be."""
-    plant = UncertainPlant(case.task.plant, {FREQUENCY: FREQUENCY_ERROR})
+    uncertainty = Uncertainty({FREQUENCY: FREQUENCY_ERROR})
     profile = CycloidPolynomial(COMPARED_TERMS)
     try:
         limit = tolerated_residual(case.task)
-        task = replace(case.task, plant=plant)
+        task = replace(case.task, uncertainty=uncertainty)
         return to_the_end(plan_move(task, profile, residual_limit=limit))
     except SolverFailedError as none:
         return str(none)

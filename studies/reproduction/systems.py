@@ -15,12 +15,12 @@ from quietarm.ocp import (
     Motion,
     Plan,
     evaluate_coefficients,
+    perturb_plant,
     shaped_cycloid,
-    with_errors,
 )
-from quietarm.ocp.simulation.errors import FREQUENCY
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import resimulated
+from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.studies.display.words import millimetres
 from quietarm.studies.paper import ROWS, Case, paper_plan
 from quietarm.studies.registry.methods import Method
@@ -99,7 +99,8 @@ def _of(name: str, answer: Plan | Floor) -> System:
     else:
         size, joint = None, PiecewiseMotion.of_free_motion(task, answer.free)
     plants = (
-        with_errors(task.plant, {FREQUENCY: error}) for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
+        perturb_plant(task.plant, {FREQUENCY: error})
+        for error in (-FREQUENCY_ERROR, FREQUENCY_ERROR)
     )
     wrong = max(resimulated(replace(task, plant=plant), joint).residual for plant in plants)
     back = answer.turns_back if isinstance(answer, Plan) else None

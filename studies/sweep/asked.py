@@ -54,7 +54,7 @@ class Sweep:
     refine: float | None = None
 
     def __post_init__(self) -> None:
-        dear = (_OF_ROBUST if self.grid.task.errors else 1) * (_OF_FRONT if self.front else 1)
+        dear = (_OF_ROBUST if self.grid.task.ranges else 1) * (_OF_FRONT if self.front else 1)
         at_once = max(1, _SECONDS_OF_WORK // dear)
         object.__setattr__(self, "grid", replace(self.grid, at_once=at_once))
 

@@ -111,7 +111,4 @@ class Grid:
         given = {axis.name: value for axis, value in zip(self.axes, values, strict=True)}
         move = {name: given.pop(name) for name in OF_MOVES if name in given}
         plant: Any = self.task.plant
-        if given:
-            changed = replace(plant.nominal, **given)
-            plant = replace(plant, assumed=changed) if plant.errors else changed
-        return replace(self.task, plant=plant, **move)
+        return replace(self.task, plant=replace(plant, **given), **move)

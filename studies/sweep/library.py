@@ -157,7 +157,7 @@ class MoveLibrary:
             found = evaluate_coefficients(task, coefficients, profile=self.profile, method="lookup")
             if not (solve and found.motion.passed(task.limits, OVERRUN)):
                 return found
-        limit = settings.residual_limit or (None if task.errors else 0.0)
+        limit = settings.residual_limit or (None if task.ranges else 0.0)
         return plan_move(task, self.profile, residual_limit=limit, bound=settings.bound)
 
     def between(self, samples: int = _SAMPLES) -> Between:
@@ -192,7 +192,7 @@ class MoveLibrary:
         """Energies of the plans of moves, NaN where one has none; those of one plant at once."""
         settings, least = self.store.sweep.settings, np.full(len(tasks), np.nan)
         limit, bound = settings.residual_limit, settings.bound
-        if tasks[0].errors:
+        if tasks[0].ranges:
             for k, task in enumerate(tasks):
                 with suppress(QuietarmError):
                     plan = plan_move(task, self.profile, residual_limit=limit or None, bound=bound)

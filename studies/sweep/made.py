@@ -73,7 +73,7 @@ def sweep(
     except ImportError:
         raise ValueError(NEEDS) from None
 
-    units = {entry.name: entry.metadata.get("unit", "-") for entry in fields(task.plant.nominal)}
+    units = {entry.name: entry.metadata.get("unit", "-") for entry in fields(task.plant)}
     units |= OF_MOVES
     for name in axes:
         if name not in units:

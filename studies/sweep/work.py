@@ -114,7 +114,7 @@ def _not_above_cold(
     sweep: Sweep, tasks: list[PointToPoint], seed: int
 ) -> tuple[list[_Cell], Array]:
     """Cells, started from their neighbours, and of a tenth the excess over cold plans."""
-    plans = _robust_plans if tasks[0].errors else _plans
+    plans = _robust_plans if tasks[0].ranges else _plans
     cells, excess = plans(sweep, tasks, sweep.settings.starts), np.full(len(tasks), np.nan)
     solved = [k for k, cell in enumerate(cells) if cell.coefficients is not None]
     count, random = -(-len(solved) // _CHECKED), np.random.default_rng(seed)

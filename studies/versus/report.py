@@ -55,7 +55,7 @@ def _table(task: PointToPoint, found: Sequence[Rival], shown: bool) -> Table:
     columns = [
         Column("motion"),
         Column("leaves [mm]", "{:.3g}".format, "residual_mm"),
-        *([Column("worst [mm]", "{:.3g}".format, "worst_mm")] if task.errors else []),
+        *([Column("worst [mm]", "{:.3g}".format, "worst_mm")] if task.ranges else []),
         Column("energy [J]", "{:.4f}".format, "energy_J"),
         Column("torque [N m]", "{:.3g}".format, "peak_torque_Nm"),
         Column("accel. [1/s^2]", "{:.3g}".format, "peak_acceleration_rad_s2"),
@@ -97,7 +97,7 @@ def _picture(task: PointToPoint, found: Sequence[Rival]) -> Figure:
         ax.annotate(f" {rival.name}", (worst, energy), va="center", fontsize=8)
     logarithmic(ax, 1 / REST)
     ax.margins(x=0.18)
-    ends = "open: as planned, filled: at worst" if task.errors else "as planned"
+    ends = "open: as planned, filled: at worst" if task.ranges else "as planned"
     ax.set(xlabel=f"residual F1 [mm] ({ends})", ylabel="energy F2 [J]")
     figure.suptitle(f"{task.plant.name}, {move_of(task)}", fontsize=11)
     return figure

@@ -63,7 +63,7 @@ def _ways(
     task: PointToPoint, profile: JointProfile, residual_limit: float | None
 ) -> Iterator[tuple[str, Callable[[], PiecewiseMotion]]]:
     """What moves the joint, by its name."""
-    certain = task.nominal
+    certain = task.certain
 
     def along(plan: Plan) -> PiecewiseMotion:
         return PiecewiseMotion.of_profile(certain, plan.profile, plan.coefficients)
@@ -73,7 +73,7 @@ def _ways(
         return along(evaluate_coefficients(certain, [], profile=own))
 
     yield "plan", lambda: along(plan_move(certain, profile))
-    if task.errors:
+    if task.ranges:
         limit = residual_limit
         yield "robust plan", lambda: along(plan_move(task, profile, residual_limit=limit))
     yield "plain cycloid", lambda: along(evaluate_coefficients(certain, []))
@@ -93,7 +93,7 @@ def _by_ruckig(task: PointToPoint, impulses: Impulses) -> PiecewiseMotion:
 
 
 def _impulses(task: PointToPoint, shaper: str) -> Impulses:
-    modes = vibrations(task.plant.nominal, task.target)
+    modes = vibrations(task.plant, task.target)
     return convolved([SHAPERS[shaper](*mode) for mode in modes])
 
 
@@ -145,8 +145,8 @@ def shaped(free: FreeMotion, impulses: Impulses) -> FreeMotion:
 
 
 def _judged(name: str, task: PointToPoint, joint: PiecewiseMotion) -> Rival:
-    found = resimulated(task.nominal, joint)
-    left = [resimulated(task.nominal, joint, one).residual for one in _errors(task.errors)]
+    found = resimulated(task.certain, joint)
+    left = [resimulated(task.certain, joint, one).residual for one in _errors(task.ranges)]
     return Rival(name, found.motion, max(left, default=None))
 
 

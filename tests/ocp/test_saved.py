@@ -32,8 +32,7 @@ def refusal(path):
 
 def test_an_answer_comes_back_equal(plan, saved, tasks, tmp_path):
     assert qa.Plan.load(saved) == plan
-    uncertain = qa.UncertainPlant(tasks["arm"].plant, {"beta1": 0.02})
-    task = replace(tasks["arm"], plant=uncertain)
+    task = replace(tasks["arm"], uncertainty=qa.Uncertainty({"beta1": 0.02}))
     robust = qa.evaluate_coefficients(task, [0.01, -0.1])
     robust.save(tmp_path / "robust.json")
     assert qa.Plan.load(tmp_path / "robust.json") == robust

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 from quietarm.ocp import Plan, Robustness, evaluate_robustness
-from quietarm.ocp.simulation.errors import checked_ranges
+from quietarm.ocp.uncertainty import check_ranges
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option
 from quietarm.studies.cli.quantities import once
@@ -69,7 +69,7 @@ def robustness(
     plans = load_plans(paths)
     for path, plan in zip(paths, plans.values(), strict=True):
         try:
-            checked_ranges(plan.task.plant.nominal, ranges)
+            check_ranges(plan.task.plant, ranges)
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
     figured, trouble = _evaluated(plans, ranges, samples, seed, quiet), None

@@ -11,7 +11,7 @@ from quietarm.metaheuristics.problems import finding
 from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.plan.solver import plan_at_samples
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.uncertainty import perturb_plant
 
 NAMES = pytest.mark.parametrize("name", PROBLEMS)
 TWO_TERMS = ["single-link-30deg-0.8s-2-terms", "arm-on-flexible-link-90deg-0.8s-2-terms"]
@@ -124,9 +124,9 @@ def test_the_third_objective_is_the_peak_torque():
 def test_the_robust_residual_is_the_largest_of_three_plants():
     problem = problem_of(ROBUST)
     (front,) = problem.fronts()
-    wrong = [with_errors(problem.task.plant.assumed, {"frequency": e}) for e in (-0.1, 0.0, 0.1)]
+    wrong = [perturb_plant(problem.task.plant, {"frequency": e}) for e in (-0.1, 0.0, 0.1)]
     for point in front.points[::12]:
-        tasks = [replace(problem.task, plant=plant) for plant in wrong]
+        tasks = [replace(problem.task.certain, plant=plant) for plant in wrong]
         residuals = [evaluate_coefficients(one, point.coefficients).residual for one in tasks]
         assert point.residual == pytest.approx(max(residuals), rel=1e-6)
     # what the paper's front has at rest leaves far more where the frequency is 10 % wrong

@@ -79,9 +79,9 @@ def test_a_rigid_joint_with_limited_acceleration_has_its_closed_form(rigid):
     assert floor.motion.peak_acceleration <= limit * (1 + 1e-9)
 
 
-def test_the_floor_of_an_uncertain_plant_begins_from_the_plan_of_the_assumed_one(rigid):
+def test_the_floor_of_an_uncertain_task_is_that_of_the_nominal_plant(rigid):
     # a robust plan has no residual limit to go by: nothing bends this plant
-    uncertain = qa.PointToPoint(qa.UncertainPlant(rigid(), {"inertia": 0.1}), 1.0, 1.0)
+    uncertain = qa.PointToPoint(rigid(), 1.0, 1.0, uncertainty=qa.Uncertainty({"inertia": 0.1}))
     floors = [
         qa.energy_floor(task, starts=1, tolerance=0.5)
         for task in (qa.PointToPoint(rigid(), 1.0, 1.0), uncertain)

@@ -16,8 +16,8 @@ PROFILE = qa.CycloidPolynomial(4)
 
 @pytest.fixture(scope="module")
 def task():
-    plant = qa.UncertainPlant(qa.SingleLinkManipulator(), {"frequency": RANGE})
-    return qa.PointToPoint(plant, target=pi / 6, duration=0.8)
+    uncertainty = qa.Uncertainty({"frequency": RANGE})
+    return qa.PointToPoint(qa.SingleLinkManipulator(), pi / 6, 0.8, uncertainty=uncertainty)
 
 
 @pytest.fixture(scope="module")
@@ -32,10 +32,10 @@ def front(task):
 
 def worst(front, point):
     """By CVODES on errors beside the grid that the front's own search looks at."""
-    task = front.task.nominal
+    task = front.task.certain
     return max(
         qa.resimulate(
-            replace(task, plant=qa.with_errors(task.plant, {"frequency": error})),
+            replace(task, plant=qa.perturb_plant(task.plant, {"frequency": error})),
             front.profile,
             point.coefficients,
         ).residual

@@ -61,7 +61,7 @@ def test_searches_see_what_cvodes_does(ringing):
 def test_errors_of_the_plant_begin_in_the_same_state(ringing):
     profile, a, errors = qa.CycloidPolynomial(3), [0.05, -0.1, 0.02], {"frequency": 0.07}
     figures = qa.evaluate_robustness(ringing, profile, a, errors, samples=1).sweeps[0].figures
-    wrong = replace(ringing, plant=qa.with_errors(ringing.plant, errors))
+    wrong = replace(ringing, plant=qa.perturb_plant(ringing.plant, errors))
     exact = qa.resimulate(wrong, profile, a)
     assert figures.residual[-1] == pytest.approx(exact.residual, rel=1e-4)
     assert figures.energy[-1] == pytest.approx(exact.energy, rel=1e-5)

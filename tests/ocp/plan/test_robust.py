@@ -16,8 +16,8 @@ RANGE = 0.1
 
 @pytest.fixture(scope="module")
 def task():
-    plant = qa.UncertainPlant(qa.SingleLinkManipulator(), {"frequency": RANGE})
-    return qa.PointToPoint(plant, target=pi / 6, duration=0.8)
+    uncertainty = qa.Uncertainty({"frequency": RANGE})
+    return qa.PointToPoint(qa.SingleLinkManipulator(), pi / 6, 0.8, uncertainty=uncertainty)
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +27,10 @@ def plan(task):
 
 def residuals(plan, errors):
     """By CVODES, of the motion on plants with these errors."""
-    task = plan.task.nominal
+    task = plan.task.certain
     return [
         qa.resimulate(
-            replace(task, plant=qa.with_errors(task.plant, {"frequency": error})),
+            replace(task, plant=qa.perturb_plant(task.plant, {"frequency": error})),
             plan.profile,
             plan.coefficients,
         ).residual
@@ -47,9 +47,9 @@ def test_the_limit_holds_between_the_samples(plan):
 
 
 def test_residual_and_energy_are_those_of_samples_and_assumed_plant(plan):
-    samples = [0.0, *(error for (error,) in plan.task.plant.samples)]
+    samples = [error for (error,) in plan.task.scenarios]
     assert plan.residual == pytest.approx(max(residuals(plan, samples)), rel=1e-6)
-    alone = qa.evaluate_coefficients(plan.task.nominal, plan.coefficients)
+    alone = qa.evaluate_coefficients(plan.task.certain, plan.coefficients)
     assert plan.energy == pytest.approx(alone.energy, rel=1e-8)
 
 

@@ -56,7 +56,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
     made = batch(task.plant, profile, steps, QUANTITIES, tuple(errors))
     a = _candidates(1, made.kind)[0]
     inputs = a, np.array([task.row]), np.array([list(errors.values())])
-    wrong = replace(task, plant=qa.with_errors(task.plant, errors))
+    wrong = replace(task, plant=qa.perturb_plant(task.plant, errors))
     expected = qa.rollout(wrong, profile, a[0], steps=steps)
     for found in (made.values(*inputs), _derivatives(made, inputs)):
         assert found.arrival[0] == pytest.approx(np.array(expected.arrival), rel=1e-8, abs=1e-12)

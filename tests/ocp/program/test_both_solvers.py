@@ -58,8 +58,8 @@ def test_both_solvers_agree(link_and_arm, name, what):
 
 
 def test_both_solvers_meet_limits_on_every_plant(tasks):
-    plant = qa.UncertainPlant(tasks["arm"].plant, {"frequency": 0.05})
-    task = replace(tasks["arm"], plant=plant, deflection_limit=1.0)
+    uncertainty = qa.Uncertainty({"frequency": 0.05})
+    task = replace(tasks["arm"], uncertainty=uncertainty, deflection_limit=1.0)
     program, limits = Program(task, PROFILE, 48), {RESIDUAL: 5e-3}
     free = _solved(program, Ask(limits))
     limits["deflection"] = 0.95 * free.peaks["deflection"]

@@ -23,7 +23,7 @@ def of_plan(plan, ranges, **settings):
 
 def alone(plan, errors):
     """The figures of a plan on one plant with errors, by CVODES."""
-    task = replace(plan.task, plant=qa.with_errors(plan.task.plant, errors))
+    task = replace(plan.task, plant=qa.perturb_plant(plan.task.plant, errors))
     return qa.resimulate(task, plan.profile, plan.coefficients)
 
 

@@ -55,7 +55,7 @@ def test_an_error_of_the_frequency_is_one_of_the_parameter_of_that_meaning(plant
         for name in plant.parameters
         if "omega" in name or "zeta" in name
     }
-    one, other = qa.with_errors(plant, errors), qa.with_errors(plant, by_name)
+    one, other = qa.perturb_plant(plant, errors), qa.perturb_plant(plant, by_name)
     for numbers in np.random.default_rng(1).uniform(-2, 2, (5, 9)):
         assert outputs(one, numbers) == pytest.approx(outputs(other, numbers), rel=1e-12)
 
@@ -64,7 +64,7 @@ def test_an_error_of_the_frequency_is_one_of_the_parameter_of_that_meaning(plant
 @pytest.mark.parametrize("plant", [qa.ArmOnFlexibleLink(), Mobile()], ids=lambda plant: plant.name)
 def test_every_frequency_of_any_plant_is_scaled_and_its_damping_stays(plant, angle):
     # W'' = -s D W' - s^2 K W has s times the eigenvalues of W'' = -D W' - K W.
-    changed = qa.with_errors(plant, {"frequency": -0.3})
+    changed = qa.perturb_plant(plant, {"frequency": -0.3})
     for (omega, zeta), now in zip(
         vibrations(plant, angle), vibrations(changed, angle), strict=True
     ):
@@ -74,7 +74,7 @@ def test_every_frequency_of_any_plant_is_scaled_and_its_damping_stays(plant, ang
 def test_the_damping_of_coupled_modes_is_scaled_to_first_order():
     assumed = vibrations(Mobile(), 0.0)
     for (omega, zeta), now in zip(
-        assumed, vibrations(qa.with_errors(Mobile(), {"damping": 0.5}), 0.0), strict=True
+        assumed, vibrations(qa.perturb_plant(Mobile(), {"damping": 0.5}), 0.0), strict=True
     ):
         # Second-order terms: products of damping ratios, at most 0.05.
         assert now == pytest.approx((omega, 1.5 * zeta), rel=0.05**2 * 4)

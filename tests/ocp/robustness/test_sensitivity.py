@@ -6,7 +6,7 @@ from math import pi
 import pytest
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import PointToPoint, evaluate_coefficients, plan_move
-from quietarm.ocp.simulation.errors import with_errors
+from quietarm.ocp.uncertainty import perturb_plant
 
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8)
 
@@ -18,7 +18,7 @@ def plan():
 
 def on_another(plan, **errors):
     """The plan's motion on a plant with errors."""
-    task = replace(plan.task, plant=with_errors(plan.task.plant, errors))
+    task = replace(plan.task, plant=perturb_plant(plan.task.plant, errors))
     return evaluate_coefficients(task, plan.coefficients, profile=plan.profile)
 
 

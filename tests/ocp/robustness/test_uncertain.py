@@ -1,4 +1,4 @@
-"""A plant that stands for several: what it computes, and what is refused."""
+"""An uncertain task: what it computes, and where a motion leaves most."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ MOVE = [0.003347, -0.1697]  # the paper's, N = 2
 
 @pytest.fixture(scope="module")
 def task():
-    plant = qa.UncertainPlant(qa.SingleLinkManipulator(), {"frequency": 0.1, "phi": 0.05})
-    return qa.PointToPoint(plant, target=pi / 6, duration=0.8)
+    uncertainty = qa.Uncertainty({"frequency": 0.1, "phi": 0.05})
+    return qa.PointToPoint(qa.SingleLinkManipulator(), pi / 6, 0.8, uncertainty=uncertainty)
 
 
 @pytest.fixture(scope="module")
 def two_links_task():
-    plant = qa.UncertainPlant(qa.DualLinkManipulator(), {"frequency": 0.2}, ((0.2,),))
-    return qa.PointToPoint(plant, target=pi / 2, duration=0.9)
+    uncertainty = qa.Uncertainty({"frequency": 0.2}, ((0.2,),))
+    return qa.PointToPoint(qa.DualLinkManipulator(), pi / 2, 0.9, uncertainty=uncertainty)
 
 
 @pytest.fixture(scope="module")
@@ -36,15 +36,10 @@ def test_figures_are_the_worst_of_the_parts_alone(of, request):
     task = request.getfixturevalue(of)
     profile = qa.CycloidPolynomial(len(MOVE))
     alone = [
-        qa.resimulate(replace(task, plant=part), profile, MOVE)
-        for part in (
-            task.plant.assumed,
-            *(
-                qa.with_errors(
-                    task.plant.assumed, dict(zip(task.plant.ranges, sample, strict=True))
-                )
-                for sample in task.plant.samples
-            ),
+        qa.resimulate(replace(task.certain, plant=plant), profile, MOVE)
+        for plant in (
+            qa.perturb_plant(task.plant, dict(zip(task.error_names, errors, strict=True)))
+            for errors in task.scenarios
         )
     ]
     together, fixed = qa.resimulate(task, profile, MOVE), qa.rollout(task, profile, MOVE).motion
@@ -57,11 +52,11 @@ def test_figures_are_the_worst_of_the_parts_alone(of, request):
 
 
 def test_worst_is_what_a_dense_search_finds(task, evaluated):
-    population = ErrorPopulation(task.nominal, evaluated.profile, MOVE, task.plant.ranges)
+    population = ErrorPopulation(task.certain, evaluated.profile, MOVE, task.ranges)
     grid = np.meshgrid(np.linspace(-0.1, 0.1, 60), np.linspace(-0.05, 0.05, 60))
     largest = population(np.reshape(grid, (2, -1)).T).residual.max()
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
-    there = qa.with_errors(task.plant.assumed, evaluated.worst.errors)
-    again = qa.resimulate(replace(task, plant=there), evaluated.profile, MOVE)
+    there = qa.perturb_plant(task.plant, evaluated.worst.errors)
+    again = qa.resimulate(replace(task.certain, plant=there), evaluated.profile, MOVE)
     # With the errors as parameters CVODES takes other steps: within its tolerance the same.
     assert evaluated.worst.residual == pytest.approx(again.residual, rel=1e-5)

@@ -132,8 +132,8 @@ def test_a_machine_is_saved_and_planned_for_robustly(tmp_path):
     found = qa.identify([rung()], qa.FlexibleBeam())
     found.save(tmp_path / "arm.json")
     assert qa.Identified.load(tmp_path / "arm.json") == found
-    plant = qa.UncertainPlant(found.plant, found.errors)
-    assert plant.errors == {one.parameter: one.error for one in found.told}
+    task = qa.PointToPoint(found.plant, 0.5, 1.0, uncertainty=qa.Uncertainty(found.errors))
+    assert task.ranges == {one.parameter: one.error for one in found.told}
 
 
 T = np.linspace(0, 2, 400)

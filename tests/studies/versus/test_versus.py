@@ -7,14 +7,14 @@ from math import pi
 import numpy as np
 import pytest
 from quietarm.models import FlexibleBeam
-from quietarm.ocp import CycloidPolynomial, PointToPoint, UncertainPlant
+from quietarm.ocp import CycloidPolynomial, PointToPoint, Uncertainty
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shapers import SHAPERS
 from quietarm.studies.versus.rivals import rivals, ruckig_motion, shaped
 
 BEAM = FlexibleBeam(omega=2 * pi * 3.2, zeta=0.01)
 MOVE = PointToPoint(BEAM, pi / 3, 0.7, torque_limit=1.5, acceleration_limit=80.0)
-ROBUST = replace(MOVE, plant=UncertainPlant(BEAM, {"frequency": 0.08}))
+ROBUST = replace(MOVE, uncertainty=Uncertainty({"frequency": 0.08}))
 
 
 @pytest.fixture(scope="module")

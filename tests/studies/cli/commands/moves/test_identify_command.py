@@ -37,9 +37,9 @@ def test_a_push_makes_a_machine_that_is_planned_for(push, call):
         "--output plan.json"
     )
     assert (code, err) == (0, "")  # friction shows in the torque alone
-    plant = Plan.load(push / "plan.json").task.plant
-    assert plant.errors == found.errors
-    assert (plant.nominal.friction, plant.nominal.omega) == (0.02, found.plant.omega)
+    task = Plan.load(push / "plan.json").task
+    assert task.ranges == found.errors
+    assert (task.plant.friction, task.plant.omega) == (0.02, found.plant.omega)
 
 
 def test_another_tip_mass_keeps_the_measured_frequency_and_says_so(push, call, refused):

@@ -3,13 +3,14 @@
 import csv
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import (
     PointToPoint,
-    UncertainPlant,
+    Uncertainty,
     evaluate_coefficients,
     evaluate_robustness,
     plan_move,
@@ -30,7 +31,7 @@ def plans():
         "zv": plan_move(task, shaped_cycloid(task, "zv")),
         "arm": evaluate_coefficients(arm, []),
         "robust": evaluate_coefficients(
-            PointToPoint(UncertainPlant(task.plant, {"frequency": 0.1}), math.pi / 6, 0.8), []
+            replace(task, uncertainty=Uncertainty({"frequency": 0.1})), []
         ),
     }
 

@@ -1,4 +1,4 @@
-"""A plant with errors: of its frequencies, of its damping, of any of its parameters."""
+"""Plants with errors of their parameters, and how far a task's plant may be wrong."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import copy
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import product
 from numbers import Real
 
 import casadi as ca
@@ -15,12 +16,15 @@ from quietarm.models.contract import check_contract, outputs_of
 from quietarm.models.joint_motion import Modes
 from quietarm.ocp.checks import finite, has_no, positive
 from quietarm.ocp.interrupts import keep_interrupts
-from quietarm.ocp.simulation.collocation import modal_system
 
 FREQUENCY, DAMPING = "frequency", "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
 _SAME = 1e-9
 """Share by which what the equations give may differ between two ways to change a parameter."""
+MOST_RANGES = 4
+"""Errors at once: each of them doubles the corners at which a residual is held."""
+Scenario = tuple[float, ...]
+"""Relative errors of a plant, in the order of the ranges."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +34,9 @@ class ScaledModes(Plant):
     With the joint at rest at an angle, a plant's modes obey W'' = -D W' - K W. Here they obey
     W'' = -s d D W' - s^2 K W: as if time ran s times as fast, so that every frequency is exactly s
     times the assumed one, with the same damping ratio; and d scales the damping, exactly where the
-    modes are damped each on its own. What the moving joint adds stays as it is.
+    modes are damped each on its own. What the moving joint adds stays as it is. The equations are
+    affine and the structure stays at rest with the joint, so -K W is W'' at rest without rates,
+    and -D W' without amplitudes.
     """
 
     plant: Plant
@@ -43,14 +49,18 @@ class ScaledModes(Plant):
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
         """The plant's own, and what its other stiffness and damping add [m/s^2]."""
-        resting, modes = modal_system(self.plant, JointMotion(joint.angle, 0.0, 0.0)), range(len(W))
-        less_stiff = 1 - self.frequency * self.frequency
-        less_damped = 1 - self.frequency * self.damping
+        at_rest, still = JointMotion(joint.angle, 0.0, 0.0), [0.0] * len(W)
+        terms = zip(
+            self.plant.modal_accelerations(joint, W, dW),
+            self.plant.modal_accelerations(at_rest, W, still),
+            self.plant.modal_accelerations(at_rest, still, dW),
+            strict=True,
+        )
+        stiffer = self.frequency * self.frequency - 1
+        more_damped = self.frequency * self.damping - 1
         return [
-            assumed
-            + less_stiff * sum(resting.K[i][j] * W[j] for j in modes)
-            + less_damped * sum(resting.D[i][j] * dW[j] for j in modes)
-            for i, assumed in enumerate(self.plant.modal_accelerations(joint, W, dW))
+            assumed + stiffer * by_stiffness + more_damped * by_damping
+            for assumed, by_stiffness, by_damping in terms
         ]
 
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:
@@ -62,7 +72,7 @@ class ScaledModes(Plant):
         return self.plant.tip_displacements(W)
 
 
-def with_errors(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
+def perturb_plant(plant: Plant, errors: Mapping[str, Expression]) -> Plant:
     """The plant as it is when the assumed one is wrong.
 
     Parameters
@@ -110,26 +120,36 @@ def with_values(plant: Plant, values: Mapping[str, Expression]) -> Plant:
     return changed
 
 
-def checked_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
+def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
     """The errors that a plant may have, each from minus to plus its range."""
+    _refuse_no_errors(ranges)
+    return {name: _checked_range(plant, name, size) for name, size in ranges.items()}
+
+
+def _refuse_no_errors(ranges: Mapping[str, float]) -> None:
     if not ranges:
         raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
-    return {name: _checked_range(plant, name, size) for name, size in ranges.items()}
+
+
+def _size_of(name: str, size: float) -> float:
+    """A range as a number; ValueError where it turns a sign."""
+    size = positive(f"range of {name}", size)
+    _refuse_beyond(name, -size)
+    return size
 
 
 @lru_cache(maxsize=256, typed=True)  # a robust plan asks again for every error that it adds
 @keep_interrupts()  # casadi loses a Ctrl-C
 def _checked_range(plant: Plant, name: str, size: float) -> float:
     refuse_unknown(plant, [name])
-    size = positive(f"range of {name}", size)
-    _refuse_beyond(name, -size)
+    size = _size_of(name, size)
     if name not in _OF_MODES and getattr(plant, name) == 0:
         raise ValueError(
             f"parameter {name} of {plant.name} is 0: a share of it is no error; leave it out"
         )
     for error in (-size, size):
         try:
-            check_contract(with_errors(plant, {name: error}))
+            check_contract(perturb_plant(plant, {name: error}))
         except ValueError as problem:
             side = "lower" if error < 0 else "higher"
             raise ValueError(f"with {name} {100 * size:g} % {side}, {problem}") from None
@@ -172,3 +192,71 @@ def _check_symbols(plant: Plant, name: str, error: float) -> None:
             f"plant {plant.name!r} computes with {name} outside its equations or by Python's math; "
             f"compute in them, from self.{name}, with casadi.sqrt and its like"
         )
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """How far the parameters of a task's plant may be wrong, and at which errors that counts.
+
+    Residual and deflection are then the largest of all scenarios; torque and energy are those of
+    the nominal plant.
+
+    Parameters
+    ----------
+    ranges : mapping of str to float
+        Largest relative errors by name, as 0.1 for 10 %: of ``"frequency"`` and ``"damping"``,
+        which all modes have alike, and of any parameter of the plant.
+    samples : sequence of sequence of float, optional
+        Errors of the scenarios beside the nominal plant, in the order of the ranges; the corners of
+        the ranges by default.
+
+    Raises
+    ------
+    ValueError
+        When there are too many ranges, or a number is out of range.
+    """
+
+    ranges: Mapping[str, float]
+    samples: tuple[Scenario, ...] = ()
+
+    def __post_init__(self) -> None:
+        _refuse_no_errors(self.ranges)
+        ranges = {name: _size_of(name, size) for name, size in self.ranges.items()}
+        if len(ranges) > MOST_RANGES:
+            raise ValueError(
+                f"{len(ranges)} errors at once have {2 ** len(ranges)} corners at which the "
+                f"residual is held; give at most {MOST_RANGES}"
+            )
+        corners = product(*((-size, size) for size in ranges.values()))
+        samples = tuple(_sample(one, ranges) for one in self.samples or corners)
+        object.__setattr__(self, "ranges", ranges)
+        object.__setattr__(self, "samples", samples)
+
+    def __hash__(self) -> int:
+        return hash((tuple(self.ranges.items()), self.samples))
+
+    def check(self, plant: Plant) -> None:
+        """ValueError where a plant has no such parameter, or breaks its contract in a scenario."""
+        check_ranges(plant, self.ranges)
+        for perturbed in perturbed_plants(plant, tuple(self.ranges), self.samples):
+            check_contract(perturbed)
+
+
+@lru_cache(maxsize=64)
+def perturbed_plants(
+    plant: Plant, names: tuple[str, ...], scenarios: tuple[Scenario, ...]
+) -> tuple[Plant, ...]:
+    """The plant with the errors of every scenario; itself where there are none."""
+    named = (dict(zip(names, errors, strict=True)) for errors in scenarios)
+    return tuple(perturb_plant(plant, one) if any(one.values()) else plant for one in named)
+
+
+def _sample(errors: Sequence[float], ranges: Mapping[str, float]) -> Scenario:
+    if len(errors) != len(ranges):
+        raise ValueError(f"sample {tuple(errors)} has {len(errors)} errors; give {len(ranges)}")
+    for error, (name, most) in zip(errors, ranges.items(), strict=True):
+        if abs(finite(f"error of {name} in a sample", error)) > most * (1 + _SAME):
+            raise ValueError(
+                f"error of {name} in a sample is {error:g}; give one within +-{most:g}, its range"
+            )
+    return tuple(map(float, errors))
