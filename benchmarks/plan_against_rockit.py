@@ -48,12 +48,12 @@ import rockit
 from parts.conditions import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
-from quietarm.ocp.program.ipopt import OPTIONS
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import ENERGY, RESIDUAL, Ask, Solution
-from quietarm.ocp.program.solving import Row, solve
 from quietarm.ocp.simulation.collocation import NODES, mesh
 from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.solvers.ipopt import OPTIONS
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL, Scalarization, Solution
+from quietarm.ocp.solvers.solving import Row, solve
 from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 
@@ -92,7 +92,7 @@ class Move:
     def solve(self, steps: int) -> Solution:
         """Solve by quietarm, without the verification."""
         program = Program(self.task, PROFILE, steps)
-        asked = Ask({RESIDUAL: 0.0}, self.bound)
+        asked = Scalarization({RESIDUAL: 0.0}, self.bound)
         (solution,) = solve([Row(program, asked, PROFILE.plain)]).solutions
         return solution
 

@@ -34,9 +34,9 @@ import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import RESIDUAL, Ask, Solution
-from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import RESIDUAL, Scalarization, Solution
+from quietarm.ocp.solvers.solving import Row, solve
 from rich.progress import track
 from rich.table import Table
 
@@ -74,7 +74,9 @@ def measure(case: Case) -> Timing:
 
     def solved() -> Solution:
         program = Program(TASK, profile, case.steps)
-        (solution,) = solve([Row(program, Ask({RESIDUAL: 0.0}, case.bound), guess)]).solutions
+        (solution,) = solve(
+            [Row(program, Scalarization({RESIDUAL: 0.0}, case.bound), guess)]
+        ).solutions
         return solution
 
     first, _ = timed(solved, process_time)

@@ -50,7 +50,7 @@ from parts.population.equations import PLANT, PROFILE, TASK
 from parts.population.rows import CANDIDATES, SHARE, Method, methods
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.program.batch import batch
+from quietarm.ocp.solvers.batch import batch
 from rich.table import Table
 
 SECOND_TASK = PointToPoint(PLANT, start=-pi / 2, target=pi / 4, duration=1.0)

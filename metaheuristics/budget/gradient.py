@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.budget.problem import BudgetProblem
 from quietarm.ocp.front.sweep import Sweep
-from quietarm.ocp.program.solution import Solution
 from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.solvers.solution import Solution
 
 Array = NDArray[np.float64]
 _BETWEEN = (0.25, 0.5, 0.75)

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp import JointProfile, PointToPoint
 from quietarm.ocp.checks import whole
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
-from quietarm.ocp.program.batch import Batch, batch
 from quietarm.ocp.simulation.residual import residual_rows, residual_samples
 from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.solvers.batch import Batch, batch
 
 CANDIDATE_STEPS = 24
 """Steps that keep the energy of nine in ten random candidates of the paper's boxes within 1e-4, and

@@ -15,14 +15,14 @@ from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.plan.solver import plan_at_samples
-from quietarm.ocp.plan.starts import first_steps
-from quietarm.ocp.plan.verification import Checked
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
-from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.planning.solver import plan_at_samples
+from quietarm.ocp.planning.starts import first_steps
+from quietarm.ocp.planning.verification import Checked
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization, Solution
+from quietarm.ocp.solvers.solving import Row, solve
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.catalogue import NamedProblem
@@ -115,7 +115,7 @@ def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProble
     steps = LIMITED_STEPS if task.limits else None
     settings = SolveSettings(bound=problem.bound, steps=steps)
     program = Program(task, front.profile, first_steps(task, front.profile, settings))
-    asks = [Ask({RESIDUAL: r if r > STILL else 0.0, **task.limits}, problem.bound)
+    asks = [Scalarization({RESIDUAL: r if r > STILL else 0.0, **task.limits}, problem.bound)
             for r in front.residuals.tolist()]  # fmt: skip
     motions = [np.array(point.coefficients) for point in front.points]
     warm = solve([Row(program, *one) for one in zip(asks, motions, strict=True)], warm=True)
@@ -146,7 +146,9 @@ def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProble
     )  # fmt: skip
 
 
-def _gained(program: Program, front: Front, found: Sequence[tuple[int, Ask, Solution]]) -> float:
+def _gained(
+    program: Program, front: Front, found: Sequence[tuple[int, Scalarization, Solution]]
+) -> float:
     """The largest share by which a solution is cheaper than its point; 0 where none is.
 
     By CVODES, with what its prices ask for what it passes its limits by, between the steps. Where
@@ -168,7 +170,7 @@ def _gained(program: Program, front: Front, found: Sequence[tuple[int, Ask, Solu
     return gained
 
 
-def _priced(program: Program, ask: Ask, found: Solution, energy: float) -> float:
+def _priced(program: Program, ask: Scalarization, found: Solution, energy: float) -> float:
     """The share by which a solution is cheaper at the price of what it passes its limits by."""
     checked = Checked(program, found)
     over = {name: max(0.0, checked.peak(name) - limit) for name, limit in ask.limits.items()}

@@ -16,9 +16,9 @@ from quietarm.ocp import (
     resimulate,
 )
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.plan.solver import plan_at_samples
-from quietarm.ocp.program.solving import Solver
+from quietarm.ocp.planning.solver import plan_at_samples
 from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.solvers.solving import Solver
 
 POINTS = 300
 """Points of an exact front, beside those at `LEVELS`: with motions between them, the hypervolume is

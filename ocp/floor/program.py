@@ -22,8 +22,6 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.program.ipopt import run_ipopt
-from quietarm.ocp.program.solution import ENERGY
 from quietarm.ocp.simulation.collocation import (
     GAUSS_NODES,
     NODES,
@@ -31,6 +29,8 @@ from quietarm.ocp.simulation.collocation import (
     step,
 )
 from quietarm.ocp.simulation.rollout import march
+from quietarm.ocp.solvers.ipopt import run_ipopt
+from quietarm.ocp.solvers.solution import ENERGY
 from quietarm.ocp.task import QUANTITIES, PointToPoint, ask_for_jerk
 
 _AT_AN_END, _SHRINK = 3, 4.0

@@ -12,9 +12,9 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
 from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
-from quietarm.ocp.plan.feasibility import keeps, least_peaks, true_peaks, unmet
-from quietarm.ocp.plan.solver import plan_move
-from quietarm.ocp.plan.verification import refuse_passed, tightened
+from quietarm.ocp.planning.feasibility import keeps, least_peaks, true_peaks, unmet
+from quietarm.ocp.planning.solver import plan_move
+from quietarm.ocp.planning.verification import refuse_passed, tightened
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Provenance, Verification

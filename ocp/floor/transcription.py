@@ -10,8 +10,8 @@ import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.profiles.free_motion import joint_after
-from quietarm.ocp.program.ipopt import OPTIONS, compiled
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, NodeState, Step
+from quietarm.ocp.solvers.ipopt import OPTIONS, compiled
 from quietarm.ocp.task import QUANTITIES
 
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}

@@ -10,7 +10,7 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.front.sweep import Sweep
 from quietarm.ocp.interrupts import note_interrupts
-from quietarm.ocp.plan.verification import (
+from quietarm.ocp.planning.verification import (
     CHECK_EVERY,
     FINER_AGREEMENT,
     OF_A_PLAN,
@@ -19,9 +19,9 @@ from quietarm.ocp.plan.verification import (
     finer_values,
     verified,
 )
-from quietarm.ocp.program.solution import RESIDUAL, STILL, Solution
 from quietarm.ocp.simulation.cvodes import residual_of
 from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Solution
 
 RESIDUAL_LIMIT = "residual_limit"
 _TIME_AFTER_CTRL_C = 0.6

@@ -9,8 +9,8 @@ from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.front.sweep import Report, Sweep, no_report, sweep_of
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.program.solution import RESIDUAL
 from quietarm.ocp.record import number_of_points
+from quietarm.ocp.solvers.solution import RESIDUAL
 
 _SAME = 1e-6
 """Energies that differ by no more than this share agree."""

@@ -14,10 +14,10 @@ from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.front.robust import held_between
 from quietarm.ocp.front.sweep import SAME, Sweep
 from quietarm.ocp.interrupts import note_interrupts
-from quietarm.ocp.plan.feasibility import least_peaks_of
-from quietarm.ocp.plan.starts import from_starts
-from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS, verified
-from quietarm.ocp.program.solution import ENERGY, RESIDUAL, STILL, Solution
+from quietarm.ocp.planning.feasibility import least_peaks_of
+from quietarm.ocp.planning.starts import from_starts
+from quietarm.ocp.planning.verification import MOST_SOLVER_STEPS, verified
+from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL, STILL, Solution
 
 _ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)
 """Weights of the energy beside the residual, one solve after the other, on the way to the still end

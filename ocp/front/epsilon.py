@@ -15,9 +15,9 @@ from quietarm.ocp.front.sweep import Guess, Report, Sweep, better, no_report
 from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.program.solution import STILL, Solution
-from quietarm.ocp.program.solving import Solver
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
+from quietarm.ocp.solvers.solution import STILL, Solution
+from quietarm.ocp.solvers.solving import Solver
 from quietarm.ocp.task import PointToPoint
 
 _SCOUTS = 5

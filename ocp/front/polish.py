@@ -14,7 +14,7 @@ from quietarm.ocp.front.curve import front_of
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.front.sweep import Report, Sweep, no_report, sweep_of
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.program.solution import Solution
+from quietarm.ocp.solvers.solution import Solution
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.front.answer import Front
-from quietarm.ocp.plan.starts import first_steps, start_coefficients
+from quietarm.ocp.planning.starts import first_steps, start_coefficients
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Ask, Solution
-from quietarm.ocp.program.solving import Row, Solved, solve
 from quietarm.ocp.record import SolveSettings
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import ENERGY, LEAST_ENERGY, RESIDUAL, Scalarization, Solution
+from quietarm.ocp.solvers.solving import Row, Solved, solve
 from quietarm.ocp.task import PointToPoint
 
 Guess = NDArray[np.float64]
@@ -80,14 +80,14 @@ class Sweep:
 
     def ask(
         self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
-    ) -> Ask:
+    ) -> Scalarization:
         """What is asked at a residual limit [m]."""
         limits = {**self.task.limits, RESIDUAL: residual_limit}
-        return Ask(limits, self.settings.bound, minimise)
+        return Scalarization(limits, self.settings.bound, minimise)
 
     def solve(
         self,
-        rows: Sequence[tuple[Guess, Ask]],
+        rows: Sequence[tuple[Guess, Scalarization]],
         *,
         warm: bool = False,
         groups: Sequence[int] | None = None,
@@ -99,7 +99,11 @@ class Sweep:
         return found
 
     def solved(
-        self, rows: Sequence[tuple[Guess, Ask]], *, warm: bool, groups: Sequence[int] | None
+        self,
+        rows: Sequence[tuple[Guess, Scalarization]],
+        *,
+        warm: bool,
+        groups: Sequence[int] | None,
     ) -> Solved:
         """The same with those of Ctrl-C; `warm` beside minima, one group for starts of one ask."""
         asked = [Row(self.program, ask, start) for start, ask in rows]
@@ -107,13 +111,13 @@ class Sweep:
         self.iterations += sum(one.iterations for one in found.solutions)
         return found
 
-    def best(self, starts: Sequence[Guess], ask: Ask, *, warm: bool = False) -> Solution:
+    def best(self, starts: Sequence[Guess], ask: Scalarization, *, warm: bool = False) -> Solution:
         """The best from several starts."""
         found = self.solve([(start, ask) for start in starts], warm=warm, groups=[0] * len(starts))
         return best_of(found, ask)
 
 
-def best_of(found: Sequence[Solution], ask: Ask) -> Solution:
+def best_of(found: Sequence[Solution], ask: Scalarization) -> Solution:
     """The solution of the least value of what is made least."""
 
     def value(one: Solution) -> tuple[bool, float]:

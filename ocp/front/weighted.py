@@ -14,9 +14,9 @@ from quietarm.ocp.front.sweep import Guess, Report, Sweep, best_of, no_report
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.program.solution import ENERGY, RESIDUAL, Solution
-from quietarm.ocp.program.solving import Solver
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
+from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL, Solution
+from quietarm.ocp.solvers.solving import Solver
 from quietarm.ocp.task import PointToPoint
 
 _FLAT = 1e-5

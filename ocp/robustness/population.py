@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.batch import batch
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES, step
 from quietarm.ocp.simulation.residual import residual_samples
 from quietarm.ocp.simulation.rollout import ROLLOUT_STEPS, default_steps
+from quietarm.ocp.solvers.batch import batch
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.batch import batch
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.residual import residual_rows
 from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.solvers.batch import batch
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import DAMPING, FREQUENCY
 

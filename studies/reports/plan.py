@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from quietarm.ocp import CycloidPolynomial, Motion, Plan, PointToPoint, ShapedCycloid, Worst
-from quietarm.ocp.plan.robust import EXCESS
+from quietarm.ocp.planning.robust import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.display.words import REST, millimetres, move_of, moved, state_words

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from quietarm.ocp.energy import known_energies
-from quietarm.ocp.program.batch import batch
 from quietarm.ocp.simulation.collocation import GAUSS_NODES
 from quietarm.ocp.simulation.objective import spent
+from quietarm.ocp.solvers.batch import batch
 from scipy.integrate import quad
 from third_opinion import ThirdOpinion
 

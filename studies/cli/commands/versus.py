@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.interrupts import hear_interrupts
-from quietarm.ocp.plan.robust import limit_of
+from quietarm.ocp.planning.robust import limit_of
 from quietarm.studies.cli.ending import finish, interruption
 from quietarm.studies.cli.options import quiet_option, terms_option
 from quietarm.studies.cli.task import robust_option, task_options

@@ -35,7 +35,7 @@ def interrupt(process, delay):
 AT_THE_FIRST = """
 import time
 import quietarm.studies.cli
-from quietarm.ocp.program import sqp
+from quietarm.ocp.solvers import sqp
 
 iterate, solved = sqp._Run.iterate, []
 

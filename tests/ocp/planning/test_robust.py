@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from quietarm.ocp.plan import robust
+from quietarm.ocp.planning import robust
 
 import quietarm as qa
 

@@ -14,10 +14,10 @@ import numpy as np
 from quietarm.models import Plant
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.energy import energy_parts
-from quietarm.ocp.program.node import NodeFunctions, PathFunctions, Places, elementwise
 from quietarm.ocp.simulation.collocation import NODES, Step, step
 from quietarm.ocp.simulation.rollout import march, node_times, symbolic_rollout
+from quietarm.ocp.solvers.energy import energy_parts
+from quietarm.ocp.solvers.node import NodeFunctions, PathFunctions, Places, elementwise
 from quietarm.ocp.task import QUANTITIES, ask_for_jerk
 from quietarm.ocp.uncertainty import perturb_plant
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.plan.starts import first_steps, start_coefficients
-from quietarm.ocp.plan.verification import (
+from quietarm.ocp.planning.starts import first_steps, start_coefficients
+from quietarm.ocp.planning.verification import (
     CHECK_EVERY,
     FINER_AGREEMENT,
     OF_A_PLAN,
@@ -21,13 +21,13 @@ from quietarm.ocp.plan.verification import (
 )
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.program.batch import Values
-from quietarm.ocp.program.program import Program, programs_of
-from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
-from quietarm.ocp.program.solving import STOPPED, Row, Solved, Solver, solve
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.residual import residuals_at_rest, state_matrices
 from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.solvers.batch import Values
+from quietarm.ocp.solvers.program import Program, programs_of
+from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization, Solution
+from quietarm.ocp.solvers.solving import STOPPED, Row, Solved, Solver, solve
 from quietarm.ocp.task import QUANTITIES, PointToPoint
 
 Array = NDArray[np.float64]
@@ -120,7 +120,9 @@ def plan_moves(
     settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
     _check(tasks, profile)
     programs = programs_of(tasks, profile, _steps(tasks, profile, settings))
-    asks = [Ask({RESIDUAL: settings.residual_limit, **task.limits}, bound) for task in tasks]
+    asks = [
+        Scalarization({RESIDUAL: settings.residual_limit, **task.limits}, bound) for task in tasks
+    ]
     first = start_coefficients(profile, settings)
     random = start_coefficients(profile, replace(settings, starts=4))[1:]
     best: list[Solution | None] = [None] * len(tasks)
@@ -145,7 +147,10 @@ def plan_moves(
 
 
 def _from_neighbours(
-    programs: Sequence[Program], asks: Sequence[Ask], start: Array, settings: SolveSettings
+    programs: Sequence[Program],
+    asks: Sequence[Scalarization],
+    start: Array,
+    settings: SolveSettings,
 ) -> Solved:
     """Solve a share of the moves from one start, then all of them from the nearest of these."""
     count, by = len(programs), settings.solver
@@ -177,7 +182,7 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile, settings: Solve
 
 def _certified(
     programs: Sequence[Program],
-    asks: Sequence[Ask],
+    asks: Sequence[Scalarization],
     found: list[Solution],
     settings: SolveSettings,
     complete: bool,
@@ -222,7 +227,7 @@ class _Found(NamedTuple):
 
     place: int
     program: Program
-    ask: Ask
+    ask: Scalarization
     solution: Solution
 
 

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.interrupts import note_interrupts
-from quietarm.ocp.program.quadratic import Model, Steps, convex, least_steps
+from quietarm.ocp.solvers.quadratic import Model, Steps, convex, least_steps
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

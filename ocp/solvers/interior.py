@@ -15,10 +15,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.interrupts import note_interrupts
-from quietarm.ocp.program.ipopt import OPTIONS, compiled, run_ipopt
-from quietarm.ocp.program.quadratic import Model
-from quietarm.ocp.program.sqp import FEASIBLE, End, Rows
-from quietarm.ocp.program.stack import Stack
+from quietarm.ocp.solvers.ipopt import OPTIONS, compiled, run_ipopt
+from quietarm.ocp.solvers.quadratic import Model
+from quietarm.ocp.solvers.sqp import FEASIBLE, End, Rows
+from quietarm.ocp.solvers.stack import Stack
 
 Array = NDArray[np.float64]
 _STAGES = (0.5, 0.15, 0.05, 0.015, 0.0)

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.program.batch import Derivatives
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.quadratic import Model
-from quietarm.ocp.program.solution import ENERGY, RESIDUAL, Ask
+from quietarm.ocp.solvers.batch import Derivatives
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.quadratic import Model
+from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL, Scalarization
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -39,7 +39,7 @@ class Stack:
         Of the scaled energy and of the scaled peak, the larger of them 1.
     """
 
-    def __init__(self, programs: Sequence[Program], asks: Sequence[Ask]) -> None:
+    def __init__(self, programs: Sequence[Program], asks: Sequence[Scalarization]) -> None:
         one, ask = programs[0], asks[0]
         self.batch, self.size = one.batch, one.profile.size
         self.least, self.at_rest, self.quantities = ask.least, ask.at_rest, one.parts
@@ -63,7 +63,7 @@ class Stack:
         self._rests = self._residual_rows(programs, asks)
         self._set_bounds(programs, asks)
 
-    def _residual_rows(self, programs: Sequence[Program], asks: Sequence[Ask]) -> Array:
+    def _residual_rows(self, programs: Sequence[Program], asks: Sequence[Scalarization]) -> Array:
         """What makes the scaled residual of the states on arrival; rows are filled up."""
         limited = any(np.isfinite(ask.limits.get(RESIDUAL, np.inf)) for ask in asks)
         if self.least != RESIDUAL and (self.at_rest or not limited):
@@ -78,7 +78,7 @@ class Stack:
             for program in programs
         ])  # fmt: skip
 
-    def _set_bounds(self, programs: Sequence[Program], asks: Sequence[Ask]) -> None:
+    def _set_bounds(self, programs: Sequence[Program], asks: Sequence[Scalarization]) -> None:
         both, parts = list(zip(programs, asks, strict=True)), self.quantities
         scales, limits = np.ones((2, len(both), self._values))
         for row, (program, ask) in enumerate(both):
@@ -218,7 +218,7 @@ def _widened(rows: Array) -> Array:
     return np.concatenate([rows, np.zeros((*rows.shape[:-1], 1))], axis=-1)
 
 
-def _weights(program: Program, ask: Ask) -> tuple[float, float]:
+def _weights(program: Program, ask: Scalarization) -> tuple[float, float]:
     """Of the scaled energy and of the scaled peak, the larger of them 1."""
     of_energy = ask.minimise.get(ENERGY, 0.0) * program.energy
     of_peak = ask.minimise[ask.least] * program.scale_of(ask.least) if ask.least else 0.0

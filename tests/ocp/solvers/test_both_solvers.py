@@ -4,16 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import RESIDUAL, Ask
-from quietarm.ocp.program.solving import SOLVERS, Row, solve
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import RESIDUAL, Scalarization
+from quietarm.ocp.solvers.solving import SOLVERS, Row, solve
 
 import quietarm as qa
 
 TERMS = 6
 PROFILE = qa.CycloidPolynomial(TERMS)
 AT_REST = {RESIDUAL: 0.0}
-LIMITED = Ask({RESIDUAL: 2e-3})
+LIMITED = Scalarization({RESIDUAL: 2e-3})
 
 
 def _solved(program, ask, solver="sqp", start=PROFILE.plain, **settings):
@@ -34,13 +34,13 @@ def link_and_arm(tasks, program):
 @pytest.mark.parametrize("what", ["rest", "residual", "box", "torque", "peak"])
 def test_both_solvers_agree(link_and_arm, name, what):
     free, limited, box = link_and_arm[name]
-    torque = _solved(limited, Ask(AT_REST)).peaks["torque"]
+    torque = _solved(limited, Scalarization(AT_REST)).peaks["torque"]
     program, ask = {
-        "rest": (free, Ask(AT_REST)),
+        "rest": (free, Scalarization(AT_REST)),
         "residual": (free, LIMITED),
-        "box": (free, Ask(AT_REST, box)),
-        "torque": (limited, Ask({**AT_REST, "torque": 0.9 * torque})),
-        "peak": (limited, Ask(AT_REST, None, {"torque": 1.0})),
+        "box": (free, Scalarization(AT_REST, box)),
+        "torque": (limited, Scalarization({**AT_REST, "torque": 0.9 * torque})),
+        "peak": (limited, Scalarization(AT_REST, None, {"torque": 1.0})),
     }[what]
     sqp, ipopt = (_solved(program, ask, solver) for solver in SOLVERS)
     assert sqp.status is ipopt.status is qa.SolveStatus.OPTIMAL
@@ -61,9 +61,9 @@ def test_both_solvers_meet_limits_on_every_plant(tasks):
     uncertainty = qa.Uncertainty({"frequency": 0.05})
     task = replace(tasks["arm"], uncertainty=uncertainty, deflection_limit=1.0)
     program, limits = Program(task, PROFILE, 48), {RESIDUAL: 5e-3}
-    free = _solved(program, Ask(limits))
+    free = _solved(program, Scalarization(limits))
     limits["deflection"] = 0.95 * free.peaks["deflection"]
-    found = [_solved(program, Ask(limits), solver) for solver in SOLVERS]
+    found = [_solved(program, Scalarization(limits), solver) for solver in SOLVERS]
     for one in found:
         assert one.status.solved
         assert one.arrival.shape == (3, 2)
@@ -77,11 +77,11 @@ def test_both_solvers_meet_limits_on_every_plant(tasks):
 @pytest.mark.parametrize("quantity", [RESIDUAL, "torque"])
 def test_the_price_of_a_limit_is_what_a_wider_one_saves(link_and_arm, name, quantity):
     limited = link_and_arm[name][1]
-    of_torque = 0.9 * _solved(limited, Ask(AT_REST)).peaks["torque"]
+    of_torque = 0.9 * _solved(limited, Scalarization(AT_REST)).peaks["torque"]
     limits = {RESIDUAL: 2e-3} if quantity == RESIDUAL else {**AT_REST, "torque": of_torque}
     step = 0.005 * limits[quantity]
-    there = _solved(limited, Ask(limits))
-    beyond = _solved(limited, Ask({**limits, quantity: limits[quantity] + step}))
+    there = _solved(limited, Scalarization(limits))
+    beyond = _solved(limited, Scalarization({**limits, quantity: limits[quantity] + step}))
     price = (there.energy - beyond.energy) / step
     assert there.prices[quantity] == pytest.approx(price, rel=0.05)
     if quantity == RESIDUAL:
@@ -91,12 +91,12 @@ def test_the_price_of_a_limit_is_what_a_wider_one_saves(link_and_arm, name, quan
 def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
     free, limited, box = link_and_arm["arm"]
     asks = [
-        (free, Ask(AT_REST)),
-        (limited, Ask({**AT_REST, "torque": 0.33})),
+        (free, Scalarization(AT_REST)),
+        (limited, Scalarization({**AT_REST, "torque": 0.33})),
         (free, LIMITED),
-        (free, Ask(AT_REST, box)),
-        (limited, Ask(AT_REST, None, {"torque": 1.0})),
-        (free, Ask({RESIDUAL: 5e-3}, box)),
+        (free, Scalarization(AT_REST, box)),
+        (limited, Scalarization(AT_REST, None, {"torque": 1.0})),
+        (free, Scalarization({RESIDUAL: 5e-3}, box)),
     ]
     together = solve([Row(*one, PROFILE.plain) for one in asks]).solutions
     for one, found in zip(asks, together, strict=True):

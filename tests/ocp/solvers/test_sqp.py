@@ -9,8 +9,8 @@ from functools import partial
 import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp.program.quadratic import Model
-from quietarm.ocp.program.sqp import SHARP, End, minimise
+from quietarm.ocp.solvers.quadratic import Model
+from quietarm.ocp.solvers.sqp import SHARP, End, minimise
 
 INF = np.inf
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import casadi as ca
 from quietarm.ocp.energy import Energy
-from quietarm.ocp.program.node import elementwise
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES
 from quietarm.ocp.simulation.objective import energy_derivatives, integrated, resolved_energy
+from quietarm.ocp.solvers.node import elementwise
 
 _LEAST_SLOPE = 1e-4
 """Smaller slopes of the power at its zeros count as this share of its root mean square."""

@@ -22,11 +22,11 @@ from quietarm.models import Plant
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.expressions import Kind, function_of_derivatives, function_of_values
-from quietarm.ocp.program.node import PathFunctions
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.rollout import node_times
+from quietarm.ocp.solvers.expressions import Kind, function_of_derivatives, function_of_values
+from quietarm.ocp.solvers.node import PathFunctions
 from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]

@@ -17,7 +17,7 @@ STILL, STILL_SHARE = 1e-8, 1e-7
 the plain cycloid's residual, whichever is larger."""
 
 
-class Ask(NamedTuple):
+class Scalarization(NamedTuple):
     """What is asked of a program.
 
     Attributes

@@ -9,12 +9,12 @@ import daqp
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.program.batch import Derivatives
-from quietarm.ocp.program.interior import interior_point
-from quietarm.ocp.program.program import Program, evaluated
-from quietarm.ocp.program.solution import RESIDUAL, Ask, Solution
-from quietarm.ocp.program.sqp import SHARP, WIDTHS, End, Rows, minimise
-from quietarm.ocp.program.stack import Stack
+from quietarm.ocp.solvers.batch import Derivatives
+from quietarm.ocp.solvers.interior import interior_point
+from quietarm.ocp.solvers.program import Program, evaluated
+from quietarm.ocp.solvers.solution import RESIDUAL, Scalarization, Solution
+from quietarm.ocp.solvers.sqp import SHARP, WIDTHS, End, Rows, minimise
+from quietarm.ocp.solvers.stack import Stack
 
 Solver = Literal["sqp", "ipopt"]
 SOLVERS: tuple[str, ...] = get_args(Solver)
@@ -41,7 +41,7 @@ class Row(NamedTuple):
     """A program, what is asked of it, and coefficients to start from."""
 
     program: Program
-    ask: Ask
+    ask: Scalarization
     start: NDArray[np.float64]
 
 
@@ -119,14 +119,18 @@ def _in_units(stack: Stack, ended: Rows, rows: Sequence[Row]) -> list[Solution]:
     return found
 
 
-def _peaks(ended: Rows, i: int, program: Program, ask: Ask, at: Derivatives) -> dict[str, float]:
+def _peaks(
+    ended: Rows, i: int, program: Program, ask: Scalarization, at: Derivatives
+) -> dict[str, float]:
     """Peaks at the nodes; at rest the residual is none, to the solver's tolerance."""
     if ask.at_rest and ended.violation[i] <= _NONE:
         return {RESIDUAL: 0.0, **{name: program.peak(at, name) for name, _ in program.parts}}
     return program.peaks(at, ask.offset)
 
 
-def _prices(stack: Stack, ended: Rows, i: int, program: Program, ask: Ask) -> dict[str, float]:
+def _prices(
+    stack: Stack, ended: Rows, i: int, program: Program, ask: Scalarization
+) -> dict[str, float]:
     """What the least energy falls by if a limit is widened [J by its unit]."""
     prices, of_energy = dict[str, float](), stack.weights[i, 0]
     if of_energy == 0:

@@ -1,8 +1,8 @@
-"""What the tests of `quietarm.ocp.program` share."""
+"""What the tests of `quietarm.ocp.solvers` share."""
 
 import pytest
 from quietarm.ocp import CycloidPolynomial
-from quietarm.ocp.program.program import Program
+from quietarm.ocp.solvers.program import Program
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])

@@ -8,11 +8,11 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
-from quietarm.ocp.plan.verification import Checked
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask, Solution
-from quietarm.ocp.program.solving import Row, solve
+from quietarm.ocp.planning.verification import Checked
 from quietarm.ocp.simulation.objective import WithPeaks
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization, Solution
+from quietarm.ocp.solvers.solving import Row, solve
 from quietarm.ocp.task import QUANTITIES
 
 UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
@@ -52,7 +52,7 @@ def least_peaks(
 
 
 def least_peaks_of(
-    program: Program, ask: Ask, starts: Sequence[NDArray[np.float64]]
+    program: Program, ask: Scalarization, starts: Sequence[NDArray[np.float64]]
 ) -> dict[str, Solution]:
     """The same of a program, from several starts."""
 
@@ -83,7 +83,7 @@ def true_peaks(
 
 
 def explain(
-    program: Program, ask: Ask, tried: Sequence[Solution], least: Mapping[str, Solution]
+    program: Program, ask: Scalarization, tried: Sequence[Solution], least: Mapping[str, Solution]
 ) -> SolverFailedError:
     """The error for a program that no start solved; other arguments as for `unmet`."""
     return unmet(

@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.plan.answer import Plan
-from quietarm.ocp.plan.starts import start_coefficients
-from quietarm.ocp.plan.verification import OVERRUN
+from quietarm.ocp.planning.answer import Plan
+from quietarm.ocp.planning.starts import start_coefficients
+from quietarm.ocp.planning.verification import OVERRUN
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.robustness.measures import quiet_residual

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp.program.batch import batch
-from quietarm.ocp.program.sqp import WIDTHS
+from quietarm.ocp.solvers.batch import batch
+from quietarm.ocp.solvers.sqp import WIDTHS
 from quietarm.ocp.task import LIMITS
 
 import quietarm as qa

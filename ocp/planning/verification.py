@@ -10,14 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.program.batch import Batch, Values, batch
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import RESIDUAL, STILL, STILL_SHARE, Ask, Solution
-from quietarm.ocp.program.solving import Row, Solver, solve
 from quietarm.ocp.simulation.objective import Motion, WithPeaks
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import in_scenarios
 from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.solvers.batch import Batch, Values, batch
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import RESIDUAL, STILL, STILL_SHARE, Scalarization, Solution
+from quietarm.ocp.solvers.solving import Row, Solver, solve
 from quietarm.ocp.task import QUANTITIES
 
 MOST_SOLVER_STEPS = 3200
@@ -58,7 +58,7 @@ class Verified(NamedTuple):
 
 def verified(
     program: Program,
-    ask: Ask,
+    ask: Scalarization,
     best: Solution,
     solver: Solver = "sqp",
     care: Care = OF_A_PLAN,
@@ -110,7 +110,7 @@ def verified(
     return cheapest
 
 
-def _from(program: Program, ask: Ask, found: Solution, solver: Solver) -> Solution:
+def _from(program: Program, ask: Scalarization, found: Solution, solver: Solver) -> Solution:
     """Solve again from a solution close by."""
     rows = [Row(program, ask, found.coefficients)]
     again = solve(rows, solver, warm=True).solutions[0]

@@ -10,17 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
-from quietarm.ocp.plan.answer import Plan, evaluate_coefficients
-from quietarm.ocp.plan.feasibility import UNITS
-from quietarm.ocp.plan.robust import limit_of, robust_plan
-from quietarm.ocp.plan.starts import first_steps, from_starts, start_coefficients
-from quietarm.ocp.plan.verification import HURRIED, OVERRUN, verified
+from quietarm.ocp.planning.answer import Plan, evaluate_coefficients
+from quietarm.ocp.planning.feasibility import UNITS
+from quietarm.ocp.planning.robust import limit_of, robust_plan
+from quietarm.ocp.planning.starts import first_steps, from_starts, start_coefficients
+from quietarm.ocp.planning.verification import HURRIED, OVERRUN, verified
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import RESIDUAL, STILL, Ask
-from quietarm.ocp.program.solving import Solver
 from quietarm.ocp.record import Provenance, SolveSettings, Verification
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization
+from quietarm.ocp.solvers.solving import Solver
 from quietarm.ocp.task import PointToPoint
 
 
@@ -136,7 +136,7 @@ def plan_from(
     """The plan from given starts, and the coefficients of all that were solved, cheapest first."""
     began = time.perf_counter()
     program = Program(task, profile, first_steps(task, profile, settings))
-    ask = Ask({RESIDUAL: settings.residual_limit, **task.limits}, settings.bound)
+    ask = Scalarization({RESIDUAL: settings.residual_limit, **task.limits}, settings.bound)
     found = from_starts(program, ask, starts, settings.solver)
     stopped = found.stopped
     try:

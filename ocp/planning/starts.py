@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.ocp.plan.feasibility import explain, least_peaks_of
-from quietarm.ocp.plan.verification import MOST_SOLVER_STEPS
+from quietarm.ocp.planning.feasibility import explain, least_peaks_of
+from quietarm.ocp.planning.verification import MOST_SOLVER_STEPS
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.program import Program
-from quietarm.ocp.program.solution import Ask, Solution
-from quietarm.ocp.program.solving import STOPPED, Row, Solver, solve
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.solution import Scalarization, Solution
+from quietarm.ocp.solvers.solving import STOPPED, Row, Solver, solve
 from quietarm.ocp.task import PointToPoint
 
 PLAN_STEPS, FINER_STEPS, STEPS_A_TERM = 48, 80, 8
@@ -56,7 +56,7 @@ class Best(NamedTuple):
 
 def from_starts(
     program: Program,
-    ask: Ask,
+    ask: Scalarization,
     starts: Sequence[NDArray[np.float64]],
     solver: Solver = "sqp",
 ) -> Best:

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.program.batch import Derivatives, batch
-from quietarm.ocp.program.solution import ENERGY, RESIDUAL
 from quietarm.ocp.simulation.residual import residual_rows
+from quietarm.ocp.solvers.batch import Derivatives, batch
+from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]

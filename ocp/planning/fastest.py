@@ -10,8 +10,8 @@ from typing import Any
 from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.plan.answer import Plan
-from quietarm.ocp.plan.solver import plan_move
+from quietarm.ocp.planning.answer import Plan
+from quietarm.ocp.planning.solver import plan_move
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.simulation.residual import slowest_swing
