@@ -50,10 +50,11 @@ from parts.measuring import console, forget_compiled, load_plugins, machine, tim
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
 from quietarm.ocp.simulation.collocation import NODES, mesh
 from quietarm.ocp.simulation.resimulation import resimulate
-from quietarm.ocp.solvers.ipopt import OPTIONS
-from quietarm.ocp.solvers.program import Program
-from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL, Scalarization, Solution
-from quietarm.ocp.solvers.solving import Row, solve
+from quietarm.ocp.solvers.nlp import OPTIONS
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
 from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 
@@ -77,8 +78,8 @@ class Move:
     def of(cls, title: str, task: PointToPoint, bound: float | None) -> Move:
         """The move with what is known of it before."""
         best = plan_move(task, PROFILE, bound=bound, steps=STEPS[-1])
-        program = Program(task, PROFILE, STEPS[-1])
-        scale = np.append(program.scale, program.scale_of(ENERGY) / task.duration)
+        steps = Transcription(task, PROFILE, STEPS[-1])
+        scale = np.append(steps.arrival_scale, steps.energy_scale / task.duration)
         return cls(title, task, bound, scale, best.energy)
 
     def above(self, coefficients: np.ndarray) -> float:
@@ -91,9 +92,9 @@ class Move:
 
     def solve(self, steps: int) -> Solution:
         """Solve by quietarm, without the verification."""
-        program = Program(self.task, PROFILE, steps)
         asked = Scalarization({RESIDUAL: 0.0}, self.bound)
-        (solution,) = solve([Row(program, asked, PROFILE.plain)]).solutions
+        problem = Problem(Transcription(self.task, PROFILE, steps), asked)
+        (solution,) = Sqp().solve([problem], [PROFILE.plain])
         return solution
 
 

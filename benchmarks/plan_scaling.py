@@ -34,9 +34,10 @@ import numpy as np
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
-from quietarm.ocp.solvers.program import Program
-from quietarm.ocp.solvers.solution import RESIDUAL, Scalarization, Solution
-from quietarm.ocp.solvers.solving import Row, solve
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
 from rich.progress import track
 from rich.table import Table
 
@@ -73,10 +74,9 @@ def measure(case: Case) -> Timing:
     forget_compiled()
 
     def solved() -> Solution:
-        program = Program(TASK, profile, case.steps)
-        (solution,) = solve(
-            [Row(program, Scalarization({RESIDUAL: 0.0}, case.bound), guess)]
-        ).solutions
+        asked = Scalarization({RESIDUAL: 0.0}, case.bound)
+        problem = Problem(Transcription(TASK, profile, case.steps), asked)
+        (solution,) = Sqp().solve([problem], [guess])
         return solution
 
     first, _ = timed(solved, process_time)

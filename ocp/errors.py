@@ -29,11 +29,13 @@ class SolveStatus(Enum):
     INFEASIBLE = "infeasible"
     ITERATION_LIMIT = "iteration limit"
     NUMERICAL_TROUBLE = "numerical trouble"
+    SUPERSEDED = "superseded"
+    NOT_CERTIFIED = "not certified"
     NOT_OPTIMISED = "not optimised"
 
     @property
     def solved(self) -> bool:
-        """Whether the coefficients are a local optimum."""
+        """Whether there is an answer: a local optimum, or one that hardly gets any better."""
         return self in (SolveStatus.OPTIMAL, SolveStatus.ACCEPTABLE)
 
     @property
@@ -67,14 +69,18 @@ class SolveStatus(Enum):
 
 _TEXTS = {
     SolveStatus.OPTIMAL: "The solver found a local optimum.",
-    SolveStatus.ACCEPTABLE: "The solver stopped at a looser, acceptable tolerance; more steps or "
-    "another seed may sharpen it.",
+    SolveStatus.ACCEPTABLE: "The solver stopped within the limits where it could hardly lower the "
+    "objective any more; more steps or another seed may sharpen it.",
     SolveStatus.INFEASIBLE: "The solver converged to a motion that breaks a limit; allow more "
     "residual, wider limits, a longer duration or more terms.",
     SolveStatus.ITERATION_LIMIT: "The solver ran out of iterations; try another seed, more starts "
     "or a bound on the coefficients.",
     SolveStatus.NUMERICAL_TROUBLE: "The solver failed numerically; try another seed, fewer terms "
     "or a bound on the coefficients.",
+    SolveStatus.SUPERSEDED: "The solver left this start, since others had led to the same motion "
+    "or a lower one.",
+    SolveStatus.NOT_CERTIFIED: "The motion breaks a limit by CVODES although limits were "
+    "tightened; bound the coefficients or use fewer terms.",
     SolveStatus.NOT_OPTIMISED: "The motion was given, not optimised.",
 }
 

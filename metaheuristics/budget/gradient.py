@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.metaheuristics.budget.problem import BudgetProblem
-from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.front.curve import Curve
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.solvers.solution import Solution
 
@@ -25,17 +25,16 @@ class Gradient:
     def __init__(self, problem: BudgetProblem, bound: float, seed: int) -> None:
         objective = problem.objective
         settings = SolveSettings(bound=bound, starts=1, seed=seed)
-        self.sweep = Sweep(objective.task, objective.profile, settings)
+        self._curve = Curve.begin(objective.task, objective.profile, settings)
         self._problem, self._random = problem, np.random.default_rng(seed)
         self._lower, self._upper = objective.profile.box(bound)
 
     def solve(self, start: Array, residual_limit: float) -> Solution:
         """The least energy within a residual limit [m], from one start."""
-        before = self.sweep.iterations
-        found = self.sweep.best([start], self.sweep.ask(residual_limit))
+        (found,) = self._curve.solver.solve([self._curve.problem(residual_limit)], [start])
         size = len(start)
         an_iteration = 1 + size + size * (size + 1) // 2
-        self._problem.spend((self.sweep.iterations - before) * an_iteration)
+        self._problem.spend(found.iterations * an_iteration)
         if found.status.solved:
             inside = np.clip(found.coefficients, self._lower, self._upper)
             self._problem.evaluate(inside[None, :])

@@ -12,7 +12,7 @@ from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.ocp import Front, JointProfile, Plan, PointToPoint
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import refuse_beyond_box
-from quietarm.ocp.planning.verification import OVERRUN
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.robustness.worst import worst_at, worst_of
 from quietarm.ocp.simulation.resimulation import resimulate

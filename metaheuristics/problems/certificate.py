@@ -15,14 +15,15 @@ from quietarm.metaheuristics.objective.population import PopulationObjective
 from quietarm.metaheuristics.problems.finding import LIMITED_STEPS
 from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.errors import SolveStatus
-from quietarm.ocp.planning.solver import plan_at_samples
-from quietarm.ocp.planning.starts import first_steps
-from quietarm.ocp.planning.verification import Checked
+from quietarm.ocp.planning.best_of_starts import first_steps
+from quietarm.ocp.planning.certify import Checked
+from quietarm.ocp.planning.plan_move import plan_at_samples
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
-from quietarm.ocp.solvers.program import Program
-from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization, Solution
-from quietarm.ocp.solvers.solving import Row, solve
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, Transcription
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.catalogue import NamedProblem
@@ -114,20 +115,22 @@ def certified(
 def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProblem) -> Certificate:
     steps = LIMITED_STEPS if task.limits else None
     settings = SolveSettings(bound=problem.bound, steps=steps)
-    program = Program(task, front.profile, first_steps(task, front.profile, settings))
-    asks = [Scalarization({RESIDUAL: r if r > STILL else 0.0, **task.limits}, problem.bound)
-            for r in front.residuals.tolist()]  # fmt: skip
+    steps = Transcription(task, front.profile, first_steps(task, front.profile, settings))
+    problems = [
+        Problem(
+            steps, Scalarization({RESIDUAL: r if r > STILL else 0.0, **task.limits}, problem.bound)
+        )
+        for r in front.residuals.tolist()
+    ]
     motions = [np.array(point.coefficients) for point in front.points]
-    warm = solve([Row(program, *one) for one in zip(asks, motions, strict=True)], warm=True)
+    warm = Sqp().solve(problems, motions, warm=True)
     places = np.unique(np.linspace(0, len(motions) - 1, _TRIED).astype(int)).tolist()
     random, box = np.random.default_rng(_SEED), front.profile.start_box(problem.bound)
-    rows = [(i, Row(program, asks[i], random.uniform(*box)))
-            for i in places for _ in range(_STARTS)]  # fmt: skip
-    cold = solve([row for _, row in rows])
-    found = [*enumerate(warm.solutions), *((i, one) for (i, _), one in zip(
-        rows, cold.solutions, strict=True))]  # fmt: skip
+    tried = np.repeat(places, _STARTS).tolist()
+    cold = Sqp().solve([problems[i] for i in tried], [random.uniform(*box) for _ in tried])
+    found = [*enumerate(warm), *zip(tried, cold, strict=True)]
     solved = [(i, one) for i, one in found if one.status.solved]
-    judged = [Checked(program, _as_given(one)) for one in motions]
+    judged = [Checked(steps, _as_given(one)) for one in motions]
     energies, residuals = (np.array([getattr(one, name) for one in judged])
                            for name in ("energy", "residual"))  # fmt: skip
     by_steps = PopulationObjective(task, front.profile, steps=FIXED_STEPS)(np.array(motions))
@@ -135,46 +138,44 @@ def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProble
         front=name,
         checksum=checksum(front),
         points=len(motions),
-        prices=tuple(-one.slope if one.status.solved else 0.0 for one in warm.solutions),
+        prices=tuple(-one.slope if one.status.solved else 0.0 for one in warm),
         energy_difference=float(np.abs(energies / front.energies - 1).max()),
         residual_difference=float(np.abs(residuals - front.residuals).max()),
         energy_by_steps=float(np.abs(by_steps.energy / energies - 1).max()),
         residual_by_steps=float(np.abs(by_steps.residual - residuals).max() / residuals.max()),
-        confirmed=sum(one.status.solved for one in warm.solutions),
-        tried=len(rows),
-        gained=_gained(program, front, [(i, asks[i], one) for i, one in solved]),
+        confirmed=sum(one.status.solved for one in warm),
+        tried=len(tried),
+        gained=_gained(front, [(i, problems[i], one) for i, one in solved]),
     )  # fmt: skip
 
 
-def _gained(
-    program: Program, front: Front, found: Sequence[tuple[int, Scalarization, Solution]]
-) -> float:
+def _gained(front: Front, found: Sequence[tuple[int, Problem, Solution]]) -> float:
     """The largest share by which a solution is cheaper than its point; 0 where none is.
 
     By CVODES, with what its prices ask for what it passes its limits by, between the steps. Where
     that is worth a second look, a solution is corrected until it passes none.
     """
-    shares = [_priced(program, ask, one, front.points[i].energy) for i, ask, one in found]
+    shares = [_priced(problem, one, front.points[i].energy) for i, problem, one in found]
     gained = 0.0
     for k in np.argsort(shares)[::-1].tolist():
         if shares[k] < max(_TELLING, gained):
             return max(gained, min(shares[k], _TELLING))
-        i, ask, one = found[k]
+        i, (steps, asked), one = found[k]
         settings = SolveSettings(
-            ask.limits[RESIDUAL], ask.bound, 1, steps=program.steps,
+            asked.limits[RESIDUAL], asked.bound, 1, steps=steps.steps,
             guess=tuple(one.coefficients.tolist()),
         )  # fmt: skip
         with suppress(QuietarmError):
-            plan = plan_at_samples(program.task, program.profile, settings)
+            plan = plan_at_samples(steps.task, steps.profile, settings)
             gained = max(gained, 1 - plan.energy / front.points[i].energy)
     return gained
 
 
-def _priced(program: Program, ask: Scalarization, found: Solution, energy: float) -> float:
+def _priced(problem: Problem, found: Solution, energy: float) -> float:
     """The share by which a solution is cheaper at the price of what it passes its limits by."""
-    checked = Checked(program, found)
-    over = {name: max(0.0, checked.peak(name) - limit) for name, limit in ask.limits.items()}
-    priced = sum(found.prices.get(name, 0.0) * most for name, most in over.items())
+    checked, limits = Checked(problem.transcription, found), problem.scalarization.limits
+    over = {name: max(0.0, checked.peak(name) - limit) for name, limit in limits.items()}
+    priced = sum(found.shadow_prices.get(name, 0.0) * most for name, most in over.items())
     return 1 - (checked.energy + priced) / energy
 
 

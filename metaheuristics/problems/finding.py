@@ -16,9 +16,9 @@ from quietarm.ocp import (
     resimulate,
 )
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.planning.solver import plan_at_samples
+from quietarm.ocp.planning.plan_move import plan_at_samples
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.solvers.solving import Solver
+from quietarm.ocp.solvers.choice import SolverName
 
 POINTS = 300
 """Points of an exact front, beside those at `LEVELS`: with motions between them, the hypervolume is
@@ -44,7 +44,7 @@ def swept_front(task: PointToPoint, profile: JointProfile, bound: float) -> Fron
     """
     front = epsilon_front(
         task, profile, bound=bound, points=POINTS, at=LEVELS, starts=STARTS,
-        steps=LIMITED_STEPS if task.limits else None, between=False,
+        steps=LIMITED_STEPS if task.limits else None,
     )  # fmt: skip
     points = [point for point in front.points if _keeps_limits(front, point)]
     return replace(front, points=non_dominated(points))
@@ -58,8 +58,6 @@ def exact_front(
 ) -> Front:
     """The least energy at one residual after another; known motions are starts as well."""
     front = swept_front(task, profile, bound)
-    if not front.complete:
-        return front
     points = list(front.points)
     inner = range(1, len(points) - 1)
     for i in inner:
@@ -87,7 +85,7 @@ def _better(
     front: Front,
     point: FrontPoint,
     bound: float,
-    solver: Solver = "sqp",
+    solver: SolverName = "sqp",
     starts: int = 1,
     guess: FrontPoint | None = None,
 ) -> FrontPoint:

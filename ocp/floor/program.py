@@ -29,8 +29,8 @@ from quietarm.ocp.simulation.collocation import (
     step,
 )
 from quietarm.ocp.simulation.rollout import march
-from quietarm.ocp.solvers.ipopt import run_ipopt
-from quietarm.ocp.solvers.solution import ENERGY
+from quietarm.ocp.solvers.nlp import run_ipopt
+from quietarm.ocp.solvers.transcription import ENERGY
 from quietarm.ocp.task import QUANTITIES, PointToPoint, ask_for_jerk
 
 _AT_AN_END, _SHRINK = 3, 4.0

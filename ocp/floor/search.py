@@ -11,10 +11,10 @@ import numpy as np
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.floor.answer import Floor, FloorSettings, Level
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
-from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
+from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.certify import refuse_exceeded, tighten
 from quietarm.ocp.planning.feasibility import keeps, least_peaks, true_peaks, unmet
-from quietarm.ocp.planning.solver import plan_move
-from quietarm.ocp.planning.verification import refuse_passed, tightened
+from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Provenance, Verification
@@ -79,8 +79,7 @@ def energy_floor(
     Returns
     -------
     Floor
-        The motion, with the figures of an independent integrator. After Ctrl-C that of the grids
-        until then, on the first two that of the best start so far; not ``complete``.
+        The motion, with the figures of an independent integrator.
 
     Raises
     ------
@@ -90,22 +89,18 @@ def energy_floor(
         When no motion meets the limits; the text says what would be feasible.
     SolverFailedError
         When no start ended at an optimum for another reason.
-    KeyboardInterrupt
-        After Ctrl-C before a start was solved.
     """
     settings = FloorSettings(smooth, starts, seed, tolerance)
     began = time.perf_counter()
     program = FloorProgram(task, settings.smooth)
-    solved, improved, stopped = _from_starts(program, settings)
+    fractions = first_grid(_first_steps(task))
+    tried = [program.solve(program.along(path, fractions), task.limits)
+             for path in _paths(task, settings)]  # fmt: skip
+    solved = _solved(program, tried)
+    improved = _refined_once(program, solved)
     grids = [min(solved, key=_ENERGY), min(improved, key=_ENERGY)]
-    try:
-        if stopped is None:
-            _refine(program, grids, settings.tolerance)
-        best, simulation = _least_verified(program, grids)
-    except KeyboardInterrupt:
-        stopped = stopped or f"{len(grids)} grids"
-        with note_interrupts():
-            best, simulation = _least_verified(program, grids)
+    _refine(program, grids, settings.tolerance)
+    best, simulation = _least_verified(program, grids)
     return Floor(
         task=task,
         free=best.free,
@@ -118,7 +113,6 @@ def energy_floor(
             f"ipopt, free {'jerk' if smooth else 'acceleration'}",
             settings,
             seconds=time.perf_counter() - began,
-            stopped=stopped,
         ),
     )
 
@@ -132,26 +126,6 @@ def _first_steps(task: PointToPoint) -> int:
             f"a floor begins with up to {MOST_FIRST_INTERVALS}: give a shorter duration"
         )
     return steps
-
-
-def _from_starts(
-    program: FloorProgram, settings: FloorSettings
-) -> tuple[list[FreeSolution], list[FreeSolution], str | None]:
-    """The starts on the first grid and on the second; after Ctrl-C those until then, how many."""
-    task, tried = program.task, list[FreeSolution]()
-    fractions = first_grid(_first_steps(task))
-    try:
-        for path in _paths(task, settings):
-            tried.append(program.solve(program.along(path, fractions), task.limits))
-        solved = _solved(program, tried)
-        return solved, _refined_once(program, solved), None
-    except KeyboardInterrupt:
-        solved = [found for found in tried if found.status.solved]
-        if not solved:
-            raise
-        with note_interrupts():  # the second grid tells what the first leaves
-            improved = _refined_once(program, [min(solved, key=_ENERGY)])
-        return solved, improved, f"{len(tried)} of {settings.starts} starts"
 
 
 def _refine(program: FloorProgram, grids: list[FreeSolution], tolerance: float) -> None:
@@ -174,8 +148,6 @@ def _paths(task: PointToPoint, settings: FloorSettings) -> Iterator[JointPath]:
         elif i == 1:
             with suppress(SolverFailedError):  # other motions than polynomials may keep the limits
                 plan = plan_move(task.certain, profile, starts=1)
-                if not plan.complete:  # it kept the best of its starts and raised nothing
-                    raise KeyboardInterrupt
                 coefficients = np.array(plan.coefficients)
         yield profile.path(coefficients, *task.move)
 
@@ -249,13 +221,13 @@ def _within_limits(program: FloorProgram, best: FreeSolution) -> tuple[FreeSolut
     for _ in range(_ROUNDS):
         if not simulated.motion.passed(limits, _KEPT):
             break
-        used = tightened(used, simulated.motion, limits)
+        used = tighten(used, simulated.motion, limits)
         again = program.solve(best.free, used, warm=True)
         if not again.status.solved:
             break
         best, simulated = again, _resimulated(program, again)
     remedy = "the grid is too coarse for this motion; give a smaller tolerance"
-    refuse_passed(simulated.motion, limits, remedy)
+    refuse_exceeded(simulated.motion, limits, remedy)
     return best, simulated
 
 

@@ -11,7 +11,7 @@ from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.profiles.free_motion import joint_after
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, NodeState, Step
-from quietarm.ocp.solvers.ipopt import OPTIONS, compiled
+from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp
 from quietarm.ocp.task import QUANTITIES
 
 _COLD = {**OPTIONS, "tol": 1e-8, "max_iter": 400, "mumps_pivot_order": 0}
@@ -123,4 +123,4 @@ def solver_of(
         "f": ca.dot(weights, ca.vertcat(mean, peaks)),
         "g": ca.vertcat(*map(ca.vec, constraints)),
     }
-    return compiled(problem, _WARM if warm else _COLD)
+    return compile_nlp(problem, _WARM if warm else _COLD)

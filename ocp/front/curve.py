@@ -1,156 +1,210 @@
-"""From a sweep's solutions to a front: its two ends, and its points put together."""
+"""One trade-off of residual and energy: a task on its steps, solved and certified many times."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.front.answer import Front, reference_corner
-from quietarm.ocp.front.checking import RESIDUAL_LIMIT, SAMPLING, care_of, checked, front_point
+from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
-from quietarm.ocp.front.robust import held_between
-from quietarm.ocp.front.sweep import SAME, Sweep
-from quietarm.ocp.interrupts import note_interrupts
-from quietarm.ocp.planning.feasibility import least_peaks_of
-from quietarm.ocp.planning.starts import from_starts
-from quietarm.ocp.planning.verification import MOST_SOLVER_STEPS, verified
-from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL, STILL, Solution
+from quietarm.ocp.planning.best_of_starts import first_steps, start_coefficients
+from quietarm.ocp.planning.certify import (
+    CHECK_EVERY,
+    FINER_AGREEMENT,
+    OF_A_PLAN,
+    Certified,
+    Tolerances,
+    certify,
+    finer_values,
+)
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.record import Setting, SolveSettings
+from quietarm.ocp.simulation.cvodes import residual_of
+from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem, Scalarization
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, Transcription
+from quietarm.ocp.task import PointToPoint
 
-_ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)
-"""Weights of the energy beside the residual, one solve after the other, on the way to the still end
-of an uncertain plant. At the last one, another hundredth of the cheapest end's residual less would
-cost five times the energy of the assumed plant's motion at rest."""
+Array = NDArray[np.float64]
+Report = Callable[[int, int], None]
+"""Called with the number of points done and asked for."""
+RESIDUAL_LIMIT = "residual_limit"
+
+
+def no_report(done: int, total: int) -> None:
+    """Report nothing."""
+
+
+class Certificate(NamedTuple):
+    """A point by the independent integrator, or why there is none; and the iterations it took."""
+
+    point: FrontPoint | FailedPoint
+    iterations: int
 
 
 @dataclass(frozen=True)
-class Ends:
-    """The ends of a front."""
+class Curve:
+    """A task whose residual is limited or weighted.
 
-    still: Solution
-    still_point: FrontPoint | FailedPoint
-    cheapest: Solution
-
-    @property
-    def width(self) -> float:
-        """How far apart they are in the residual [m]."""
-        return self.cheapest.residual - self.still.residual
-
-    @property
-    def height(self) -> float:
-        """How far apart they are in the energy [J]."""
-        return self.still.energy - self.cheapest.energy
-
-    @property
-    def are_one(self) -> bool:
-        """Whether the cheapest motion is the still one, and there is no front between."""
-        return self.width <= STILL or self.height <= SAME * self.still.energy
-
-
-def find_ends(sweep: Sweep, *, between: bool = True) -> Ends:
-    """Find the motion of least energy that arrives at rest, and that whose residual is free.
-
-    The number of steps is raised until the independent integrator agrees with the still end.
-    Where no motion arrives at rest, that end is the motion of least residual.
+    Attributes
+    ----------
+    transcription : Transcription
+        The task along its profile in a number of steps.
+    settings : SolveSettings
+        Bound, starts, seed, solver.
     """
-    if between and sweep.task.uncertainty is not None:
-        return _ends_of_uncertain(sweep)
-    still = _at_rest(sweep)  # first: it settles the number of steps
-    cheapest = _best(sweep, np.inf)
-    if still is None:
-        least = least_peaks_of(sweep.program, sweep.ask(), sweep.guesses)
-        if RESIDUAL not in least:
-            return Ends(
-                cheapest,
-                checked(sweep, cheapest, {RESIDUAL_LIMIT: cheapest.peaks[RESIDUAL]}),
-                cheapest,
-            )
-        limit = least[RESIDUAL].peaks[RESIDUAL] * (1 + SAMPLING)
-        found = sweep.best([least[RESIDUAL].coefficients], sweep.ask(limit))
-        found = found if found.status.solved else least[RESIDUAL]
-        still = found, checked(sweep, found, {RESIDUAL_LIMIT: limit})
-    return Ends(*still, cheapest)
+
+    transcription: Transcription
+    settings: SolveSettings
+
+    @classmethod
+    def begin(cls, task: PointToPoint, profile: JointProfile, settings: SolveSettings) -> Curve:
+        """On the steps that the settings or the task ask for."""
+        profile.refuse_no_choice()
+        steps = first_steps(task, profile, settings)
+        return cls(Transcription(task, profile, steps), settings)
+
+    @property
+    def task(self) -> PointToPoint:
+        """The move."""
+        return self.transcription.task
+
+    @property
+    def solver(self) -> Solver:
+        """What solves its problems."""
+        return solver_of(self.settings.solver)
+
+    @cached_property
+    def starts(self) -> list[Array]:
+        """Coefficients to start from."""
+        return start_coefficients(self.transcription.profile, self.settings)
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """Of points between the ends: less exact than a plan; steps are doubled once."""
+        return Tolerances(energy=1e-4, most_steps=2 * self.transcription.steps)
+
+    def problem(
+        self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
+    ) -> Problem:
+        """The problem at a residual limit [m]."""
+        limits = {**self.task.limits, RESIDUAL: residual_limit}
+        asked = Scalarization(limits, self.settings.bound, minimise)
+        return Problem(self.transcription, asked)
+
+    def certify(
+        self,
+        solution: Solution,
+        asked: Mapping[str, float],
+        most_residual: float = np.inf,
+        *,
+        free: bool = False,
+    ) -> Certificate:
+        """Give a solution the figures of the independent integrator.
+
+        Its residual is its limit, unless it is the cheapest of all, whose residual is free.
+        """
+        problem = self.problem(np.inf if free else solution.residual)
+        limits = {**self.task.limits, RESIDUAL: most_residual}
+        tolerances = OF_A_PLAN if free else self.tolerances
+        try:
+            found = certify(problem, solution, self.solver, tolerances, limits)
+        except SolverFailedError as error:
+            return Certificate(FailedPoint(asked, str(error)), solution.iterations)
+        return self.point_of(found)
+
+    def point_of(self, found: Certified) -> Certificate:
+        """A certified solution as a point."""
+        coefficients = self.transcription.profile.checked(found.solution.coefficients)
+        point = FrontPoint(coefficients, found.checked.residual, found.checked.energy)
+        return Certificate(point, found.solution.iterations)
+
+    def certify_all(
+        self, found: Sequence[tuple[Solution, Mapping[str, float]]]
+    ) -> list[Certificate]:
+        """Certify many solutions, each with what was asked for."""
+        fine = self._by_finer_steps([solution for solution, _ in found])
+        return [
+            Certificate(fine[i], solution.iterations)
+            if i in fine
+            else self.certify(solution, asked)
+            for i, (solution, asked) in enumerate(found)
+        ]
+
+    def _by_finer_steps(self, found: Sequence[Solution]) -> dict[int, FrontPoint]:
+        """Points with the figures of many more steps, in one call; CVODES confirms every tenth.
+
+        None where it does not, where the solver's own figures differ, or where limits are set,
+        which also have to hold between the nodes.
+        """
+        task, profile = self.task, self.transcription.profile
+        if len(found) < CHECK_EVERY or task.limits or task.uncertainty is not None:
+            return {}
+        table = np.array([one.coefficients for one in found])
+        values = finer_values([self.transcription] * len(table), table)
+        points = dict[int, FrontPoint]()
+        for i, (one, energy) in enumerate(zip(found, values.energy.tolist(), strict=True)):
+            if abs(one.energy - energy) <= self.tolerances.energy * energy:
+                residual = residual_of(task, values.arrival[i])
+                points[i] = FrontPoint(profile.checked(one.coefficients), residual, energy)
+        for point in list(points.values())[::CHECK_EVERY]:
+            exact = resimulate(task, profile, point.coefficients)
+            energy, residual = exact.energy - point.energy, exact.residual - point.residual
+            if (
+                abs(energy) > FINER_AGREEMENT * exact.energy
+                or abs(residual) > FINER_AGREEMENT * exact.residual + STILL
+            ):
+                return {}
+        return points
+
+    def to_front(
+        self,
+        method: str,
+        certificates: Iterable[Certificate],
+        points: int,
+        seconds: float,
+        *,
+        iterations: int = 0,
+        gaps: Iterable[tuple[float, float]] = (),
+        also: Mapping[str, Setting] = {},
+    ) -> Front:
+        """The points as a front; iterations are those that no certificate counts."""
+        found = list(certificates)
+        failures = tuple(one.point for one in found if isinstance(one.point, FailedPoint))
+        settings = self.settings
+        return Front(
+            task=self.task,
+            profile=self.transcription.profile,
+            points=non_dominated(
+                one.point for one in found if isinstance(one.point, FrontPoint)
+            ),
+            method=method,
+            settings={"bound": settings.bound, "points": points, "starts": settings.starts,
+                      "steps": self.transcription.steps, "solver": settings.solver, **also},
+            seed=settings.seed,
+            reference=reference_corner(self.task),
+            iterations=iterations + sum(one.iterations for one in found),
+            failed=len(failures),
+            failures=failures,
+            gaps=tuple(gaps),
+            seconds=seconds,
+        )  # fmt: skip
 
 
-def _best(sweep: Sweep, residual_limit: float) -> Solution:
-    """The best of all starts; KeyboardInterrupt after Ctrl-C."""
-    ask, solver = sweep.ask(residual_limit), sweep.settings.solver
-    found = from_starts(sweep.program, ask, sweep.guesses, solver)
-    sweep.iterations += found.solution.iterations
-    if found.stopped:
-        raise KeyboardInterrupt
-    return found.solution
-
-
-def _ends_of_uncertain(sweep: Sweep) -> Ends:
-    """The ends of an uncertain plant, from those of the assumed one.
-
-    Its energy is that of the assumed plant, so the cheapest motion is the same.
-
-    Neither rest at all samples nor the least residual is asked for: the first costs much energy
-    and leaves no rest between the samples, the second any energy. The still end is where less
-    residual costs too much energy.
-    """
-    alone = Sweep(sweep.task.certain, sweep.profile, sweep.settings)
-    assumed = find_ends(alone)
-    sweep.steps, sweep.iterations = alone.steps, sweep.iterations + alone.iterations
-    guesses = [assumed.cheapest.coefficients, assumed.still.coefficients]
-    cheapest = sweep.best(guesses, sweep.ask())
-    still = cheapest
-    for weight in _ENERGY_WEIGHTS if cheapest.residual > STILL else ():
-        weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / assumed.still.energy}
-        found = sweep.best([still.coefficients], sweep.ask(minimise=weights))
-        still = found if found.status.solved else still
-    return Ends(still, checked(sweep, still, {RESIDUAL_LIMIT: still.residual}), cheapest)
-
-
-def _at_rest(sweep: Sweep) -> tuple[Solution, FrontPoint] | None:
-    try:
-        first, ask, solver = _best(sweep, 0.0), sweep.ask(0.0), sweep.settings.solver
-        care = replace(care_of(sweep), most_steps=MOST_SOLVER_STEPS)
-        found, _, sweep.steps = verified(sweep.program, ask, first, solver, care)
-        end, simulated, _ = verified(sweep.program, ask, found, solver)
-    except SolverFailedError:
-        return None
-    sweep.iterations += end.iterations - first.iterations
-    return found, front_point(sweep, end, simulated)
-
-
-def front_of(
-    sweep: Sweep,
-    method: str,
-    found: Sequence[FrontPoint | FailedPoint],
-    points: int,
-    *,
-    gaps: Sequence[tuple[float, float]] = (),
-    complete: bool = True,
-    between: bool = True,
-    also: Mapping[str, str] = {},
-) -> Front:
-    """Put points together to a front."""
-    excess = None
-    if between and complete:
-        found, excess, complete = held_between(sweep, found)
-    with note_interrupts():  # the points are found; the rest takes a moment
-        reference = reference_corner(sweep.task)
-    failures = tuple(point for point in found if isinstance(point, FailedPoint))
-    settings = sweep.settings
-    return Front(
-        task=sweep.task,
-        profile=sweep.profile,
-        points=non_dominated(point for point in found if isinstance(point, FrontPoint)),
-        method=method,
-        settings={"bound": settings.bound, "points": points, "starts": settings.starts,
-                  "steps": sweep.steps, "solver": settings.solver, **also},
-        seed=settings.seed,
-        reference=reference,
-        iterations=sweep.iterations,
-        failed=len(failures),
-        failures=failures,
-        gaps=tuple(gaps),
-        excess=excess,
-        complete=complete,
-        seconds=time.perf_counter() - sweep.began,
-    )  # fmt: skip
+def curve_of(
+    front: Front, *, starts: int, steps: int | None = None, solver: SolverName = "sqp"
+) -> Curve:
+    """The curve of a front that is there already, within its bound; it must have a point."""
+    front.stillest()
+    bound: Any = front.settings.get("bound")
+    settings = SolveSettings(
+        bound=bound, starts=starts, seed=front.seed or 0, steps=steps, solver=solver
+    )
+    return Curve.begin(front.task, front.profile, settings)

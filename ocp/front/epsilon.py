@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.ocp.checks import positive
-from quietarm.ocp.front.answer import Front
-from quietarm.ocp.front.checking import RESIDUAL_LIMIT, all_checked, checked
-from quietarm.ocp.front.curve import Ends, find_ends, front_of
-from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.sweep import Guess, Report, Sweep, better, no_report
-from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, no_report
+from quietarm.ocp.front.ends import Ends, find_ends
+from quietarm.ocp.front.front import Front
+from quietarm.ocp.front.points import FailedPoint
+from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
-from quietarm.ocp.solvers.solution import STILL, Solution
-from quietarm.ocp.solvers.solving import Solver
+from quietarm.ocp.solvers.choice import SolverName
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.transcription import STILL
 from quietarm.ocp.task import PointToPoint
 
+Array = NDArray[np.float64]
 _SCOUTS = 5
 """Limits between the ends that are solved first, from both ends and a random start."""
 _AUDITED = 4
@@ -30,8 +35,8 @@ _JUST_BELOW = 1 - 1e-4
 """The residual limit is this share of the residual wanted: the verified one may be a little
 above."""
 
-Best = dict[float, Solution]
-"""The best solution until now at each residual limit [m]."""
+Best = Mapping[float, Solution]
+"""The best solution at each residual limit [m]."""
 
 
 @one_at_a_time
@@ -45,9 +50,8 @@ def epsilon_front(
     starts: int = 4,
     seed: int = 0,
     steps: int | None = None,
-    between: bool = True,
     report: Report = no_report,
-    solver: Solver = "sqp",
+    solver: SolverName = "sqp",
 ) -> Front:
     """Find the front of residual and energy by the gradient, least energy at each residual limit.
 
@@ -74,9 +78,6 @@ def epsilon_front(
         Seed of the random starts.
     steps : int, optional
         Steps of the solver's discretisation, as for `plan_move`.
-    between : bool
-        Whether the residual of an uncertain task is what a motion leaves at worst, whatever the
-        error within the ranges; else at the plant's samples alone, as in a search.
     report : callable, optional
         Called with the number of points done and of all.
     solver : {"sqp", "ipopt"}
@@ -86,9 +87,8 @@ def epsilon_front(
     -------
     Front
         Method ``"epsilon"``; figures by the independent integrator. Points that could not be found
-        are in its `failures`. Of an uncertain plant its task has the samples that this took, and
-        its `excess` is the share by which what a point leaves between them may pass its
-        residual. After Ctrl-C what was found until then, with ``complete`` false.
+        are in its `failures`. Of an uncertain task it is the front of the scenarios: a point's
+        residual is the largest over them.
 
     Raises
     ------
@@ -102,48 +102,43 @@ def epsilon_front(
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)
     at = [positive("residual", one, "m") for one in at]
-    sweep = Sweep(
-        task,
-        profile,
-        SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver),
-    )
-    ends = find_ends(sweep, between=between)
-    found: list[FrontPoint | FailedPoint] = [ends.still_point]
-    asked = {RESIDUAL_LIMIT: ends.cheapest.residual}
-    found.append(checked(sweep, ends.cheapest, asked, free=True))
+    settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)
+    began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, settings))
     wanted = _limits_at(ends, at)
     total = points + len(wanted)
-    first, best, complete = Best(), Best(), True
-    try:
-        report(2, total)
-        scouts = _scouted(sweep, ends, points, first)
-        limits = sorted([*_spaced_limits(ends, scouts, points), *wanted])
-        report(2 + len(limits) // 3, total)
-        _solve_between(sweep, ends, scouts, limits, best)
-        report(total, total)
-    except KeyboardInterrupt:
-        best, complete = {**first, **best}, False
-    with note_interrupts() as late:
-        tried = [(one, {RESIDUAL_LIMIT: limit}) for limit, one in best.items()]
-        solved = [(one, ask) for one, ask in tried if one.status.solved]
-        failed = [FailedPoint(ask, one.status.text) for one, ask in tried if not one.status.solved]
-        inner, whole = all_checked(sweep, solved, interrupted=not complete)
-        found = [*found, *(failed if complete else []), *inner]
-    complete = complete and whole and not late
-    also = {"at": ", ".join(map(digits, at))} if at else {}
-    return front_of(sweep, "epsilon", found, points, complete=complete, between=between, also=also)
+    report(2, total)
+    scouts = _scout(ends, points)
+    limits = sorted([*_spaced_limits(ends, list(scouts.values()), points), *wanted])
+    report(2 + len(limits) // 3, total)
+    best = _solve_between(ends, list(scouts.values()), limits)
+    report(total, total)
+    asked = [(one, {RESIDUAL_LIMIT: limit}) for limit, one in best.items()]
+    solved = [(one, limit) for one, limit in asked if one.status.solved]
+    failed = [
+        Certificate(FailedPoint(limit, one.status.text), one.iterations)
+        for one, limit in asked
+        if not one.status.solved
+    ]
+    return ends.curve.to_front(
+        "epsilon",
+        [*ends.certificates, *failed, *ends.curve.certify_all(solved)],
+        points,
+        time.perf_counter() - began,
+        iterations=sum(one.iterations for one in scouts.values()),
+        also={"at": ", ".join(map(digits, at))} if at else {},
+    )
 
 
-def _scouted(sweep: Sweep, ends: Ends, points: int, best: Best) -> list[Solution]:
+def _scout(ends: Ends, points: int) -> Best:
     """Solutions at some limits between the ends, from both ends and a random start."""
     if ends.are_one or points == 2:
-        return []
+        return {}
     count = max(2, min(_SCOUTS, points - 2))
     shares = (np.arange(1, count + 1) / (count + 1)) ** 1.5
     limits = (ends.still.residual + shares * ends.width).tolist()
-    starts = [ends.still.coefficients, ends.cheapest.coefficients, *sweep.guesses[1:2]]
-    _improve(sweep, best, [(limit, start) for limit in limits for start in starts])
-    return [best[limit] for limit in limits if best[limit].status.solved]
+    starts = [ends.still.coefficients, ends.cheapest.coefficients, *ends.curve.starts[1:2]]
+    best, _ = _improve(ends.curve, {}, dict.fromkeys(limits, starts))
+    return {limit: one for limit, one in best.items() if one.status.solved}
 
 
 def _spaced_limits(ends: Ends, scouts: Sequence[Solution], points: int) -> list[float]:
@@ -167,52 +162,58 @@ def _limits_at(ends: Ends, at: Sequence[float]) -> list[float]:
     return [one for one in limits if ends.still.residual < one < ends.cheapest.residual]
 
 
-def _solve_between(
-    sweep: Sweep, ends: Ends, scouts: Sequence[Solution], limits: Sequence[float], best: Best
-) -> None:
+def _solve_between(ends: Ends, scouts: Sequence[Solution], limits: Sequence[float]) -> Best:
     """The best solution at each limit, from the solutions on either side and between them.
 
     One in so many is also tried from a random start. A point that is better for that, or was not
     found, is passed on to its neighbours, and they to it, as long as that helps.
     """
-    known, starts = [ends.still, *scouts, ends.cheapest], list[tuple[float, Guess]]()
-    for limit in limits:
-        after = next(k for k, one in enumerate(known) if one.residual >= limit or one is known[-1])
-        low, high = known[max(after - 1, 0)], known[after]
-        share = (limit - low.residual) / max(high.residual - low.residual, STILL)
-        on_the_line = low.coefficients + np.clip(share, 0, 1) * (
-            high.coefficients - low.coefficients
-        )
-        starts += [(limit, a) for a in (on_the_line, low.coefficients, high.coefficients)]
-    _improve(sweep, best, starts, warm=True)
+    curve, known = ends.curve, [ends.still, *scouts, ends.cheapest]
+    beside = {limit: _starts_beside(known, limit) for limit in limits}
+    best, _ = _improve(curve, {}, beside, warm=True)
     audited = limits[_AUDITED // 2 :: _AUDITED]
-    changed = _improve(sweep, best, [(limit, a) for limit in audited for a in sweep.guesses[1:2]])
+    best, changed = _improve(curve, best, dict.fromkeys(audited, curve.starts[1:2]))
     changed |= {limit for limit in limits if not best[limit].status.solved}
     for _ in range(_ROUNDS):
-        pairs = {pair for pair in pairwise(limits) if changed & set(pair)}
-        both = [*pairs, *(pair[::-1] for pair in pairs)]
-        starts = [(to, best[of].coefficients) for of, to in both if best[of].status.solved]
-        changed = _improve(sweep, best, starts, warm=True)
+        starts: dict[float, list[Array]] = {}
+        for pair in pairwise(limits):
+            if changed & set(pair):
+                for to, of in (pair, pair[::-1]):
+                    if best[of].status.solved:
+                        starts.setdefault(to, []).append(best[of].coefficients)
+        best, changed = _improve(curve, best, starts, warm=True)
         if not changed:
             break
+    return best
+
+
+def _starts_beside(known: Sequence[Solution], limit: float) -> list[Array]:
+    """The known solutions on either side of a limit, and the motion between them."""
+    after = next(k for k, one in enumerate(known) if one.residual >= limit or one is known[-1])
+    low, high = known[max(after - 1, 0)], known[after]
+    share = (limit - low.residual) / max(high.residual - low.residual, STILL)
+    between = low.coefficients + np.clip(share, 0, 1) * (high.coefficients - low.coefficients)
+    return [between, low.coefficients, high.coefficients]
 
 
 def _improve(
-    sweep: Sweep, best: Best, starts: Sequence[tuple[float, Guess]], warm: bool = False
-) -> set[float]:
-    """Solve at limits from coefficients, and keep what is better; tells at which it is.
-
-    After Ctrl-C what was solved is kept as well.
-    """
-    if not starts:
-        return set()
-    rows, changed = [(start, sweep.ask(limit)) for limit, start in starts], set[float]()
-    places = np.unique([limit for limit, _ in starts], return_inverse=True)[1].tolist()
-    found, complete = sweep.solved(rows, warm=warm, groups=None if warm else places)
-    for (limit, _), one in zip(starts, found, strict=True):
-        if limit not in best or better(one, best[limit]):
-            best[limit] = one
-            changed.add(limit)
-    if not complete:
-        raise KeyboardInterrupt
-    return changed
+    curve: Curve, best: Best, starts: Mapping[float, Sequence[Array]], warm: bool = False
+) -> tuple[Best, set[float]]:
+    """The best at each limit, known or from these starts; and where these are better."""
+    limits = [limit for limit, own in starts.items() if own]
+    if not limits:
+        return best, set()
+    problems = [curve.problem(limit) for limit in limits]
+    found = best_of_starts(
+        problems, [starts[limit] for limit in limits], curve.solver, warm=warm, leave=not warm
+    )
+    changed = {
+        limit
+        for limit, problem, one in zip(limits, problems, found, strict=True)
+        if limit not in best or better(one, best[limit], problem.scalarization)
+    }
+    improved = dict(best)
+    for limit, one in zip(limits, found, strict=True):
+        spent = one.iterations + (best[limit].iterations if limit in best else 0)
+        improved[limit] = replace(one if limit in changed else best[limit], iterations=spent)
+    return improved, changed

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import suppress
+import time
 from dataclasses import dataclass, replace
-from itertools import chain, zip_longest
 
 import numpy as np
-from quietarm.ocp.front.answer import Front
-from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
-from quietarm.ocp.front.curve import front_of
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, curve_of, no_report
+from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.sweep import Report, Sweep, no_report, sweep_of
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.solvers.solution import Solution
 
@@ -27,14 +23,11 @@ class Gain:
         Residual of the point, which the improved one keeps [m].
     before, after : float
         Energy [J]; the same where nothing better was found.
-    tried : bool
-        False where Ctrl-C came before.
     """
 
     residual: float
     before: float
     after: float
-    tried: bool = True
 
     @property
     def share(self) -> float:
@@ -58,11 +51,6 @@ class Polish:
     front: Front
     gains: tuple[Gain, ...]
 
-    @property
-    def complete(self) -> bool:
-        """Whether no Ctrl-C ended the work early."""
-        return self.front.complete
-
 
 @one_at_a_time
 def polish_front(front: Front, *, steps: int | None = None, report: Report = no_report) -> Polish:
@@ -80,65 +68,56 @@ def polish_front(front: Front, *, steps: int | None = None, report: Report = no_
     Returns
     -------
     Polish
-        The improved front, whose method is that of the front and ", polished". After Ctrl-C its
-        points not yet done are as given, and it is not complete.
+        The improved front, whose method is that of the front and ", polished"; its settings tell by
+        which solver.
 
     Raises
     ------
     ValueError
         When the front has no point.
     """
-    sweep = sweep_of(front, starts=1, steps=steps)
-    tried = _polished(sweep, front.points, report)
-    untried = front.points[len(tried) :]
-    polished = front_of(
-        sweep,
+    began, curve = time.perf_counter(), curve_of(front, starts=1, steps=steps)
+    problems = [curve.problem(point.residual) for point in front.points]
+    starts = [np.array(point.coefficients) for point in front.points]
+    tried = list[list[Certificate]]()
+    solved = curve.solver.solve(problems, starts)
+    for point, solution in zip(front.points, solved, strict=True):
+        tried.append(_improve(curve, point, solution))
+        report(len(tried), len(front.points))
+    polished = curve.to_front(
         f"{front.method}, polished",
-        [*chain(*tried), *untried],
+        [one for own in tried for one in own],
         len(front.points),
-        complete=front.complete and not untried,
-        between=front.excess is not None,
+        front.seconds + time.perf_counter() - began,
+        iterations=front.iterations,
     )
     with_origin = replace(
         polished,
-        settings={**front.settings, "steps": polished.settings["steps"]},
+        settings={**front.settings, "polish": curve.settings.solver,
+                  "steps": curve.transcription.steps},
         seed=front.seed,
         reference=front.reference,
         evaluations=front.evaluations,
-        iterations=front.iterations + polished.iterations,
         history=front.history,
-        seconds=front.seconds + polished.seconds,
-    )
-    pairs = zip_longest(front.points, tried)
-    return Polish(with_origin, tuple(_gain(*pair) for pair in pairs))
+        complete=front.complete,
+    )  # fmt: skip
+    return Polish(with_origin, tuple(map(_gain, front.points, tried)))
 
 
-_Found = list[FrontPoint | FailedPoint]
-"""The point or a better one; after the former the reason, if there is one."""
+def _improve(curve: Curve, point: FrontPoint, solution: Solution) -> list[Certificate]:
+    """The point or a better one; after the former the reason, if there is one."""
+    asked, kept = {RESIDUAL_LIMIT: point.residual}, Certificate(point, 0)
+    if not solution.status.solved:
+        return [kept, Certificate(FailedPoint(asked, solution.status.text), solution.iterations)]
+    found = curve.certify(solution, asked, point.residual)
+    if isinstance(found.point, FailedPoint):
+        return [kept, found]
+    return [
+        found if found.point.energy < point.energy else kept._replace(iterations=found.iterations)
+    ]
 
 
-def _polished(sweep: Sweep, points: Sequence[FrontPoint], report: Report) -> list[_Found]:
-    """All points at once, then their checks; after Ctrl-C those that were done."""
-    tried: list[_Found] = []
-    with suppress(KeyboardInterrupt):
-        rows = [(np.array(point.coefficients), sweep.ask(point.residual)) for point in points]
-        for point, solved in zip(points, sweep.solve(rows), strict=True):
-            tried.append(_one_polished(sweep, point, solved))
-            report(len(tried), len(points))
-    return tried
-
-
-def _one_polished(sweep: Sweep, point: FrontPoint, solved: Solution) -> _Found:
-    asked = {RESIDUAL_LIMIT: point.residual}
-    if not solved.status.solved:
-        return [point, FailedPoint(asked, solved.status.text)]
-    found = checked(sweep, solved, asked, point.residual)
-    if isinstance(found, FailedPoint):
-        return [point, found]
-    return [found if found.energy < point.energy else point]
-
-
-def _gain(point: FrontPoint, found: _Found | None) -> Gain:
-    after = found[0] if found else point
+def _gain(point: FrontPoint, found: list[Certificate]) -> Gain:
+    after = found[0].point
     assert isinstance(after, FrontPoint)
-    return Gain(point.residual, point.energy, after.energy, tried=found is not None)
+    return Gain(point.residual, point.energy, after.energy)

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 from quietarm.ocp.checks import not_negative
-from quietarm.ocp.front.answer import Front
-from quietarm.ocp.front.checking import RESIDUAL_LIMIT, all_checked
-from quietarm.ocp.front.curve import Ends, find_ends, front_of
-from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.sweep import Guess, Report, Sweep, best_of, no_report
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve, Report, no_report
+from quietarm.ocp.front.ends import Ends, find_ends
+from quietarm.ocp.front.front import Front
+from quietarm.ocp.front.points import FailedPoint
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.best_of_starts import best_of_starts, objective_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import SolveSettings, digits, number_of_points
-from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL, Solution
-from quietarm.ocp.solvers.solving import Solver
+from quietarm.ocp.solvers.choice import SolverName
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL
 from quietarm.ocp.task import PointToPoint
 
 _FLAT = 1e-5
 """A minimum closer to the chord than this share of its length counts as one of the chord's ends."""
 _DIAGONAL = 2**0.5
+Array = NDArray[np.float64]
 
 
 @one_at_a_time
@@ -36,7 +41,7 @@ def weighted_front(
     seed: int = 0,
     steps: int | None = None,
     report: Report = no_report,
-    solver: Solver = "sqp",
+    solver: SolverName = "sqp",
 ) -> Front:
     """Find points of the front by the gradient, as minima of weighted sums of both objectives.
 
@@ -61,7 +66,7 @@ def weighted_front(
     Front
         Method ``"weighted"``; figures by the independent integrator. Its `gaps` are the ranges of
         the residual that no weight reaches, where the weights were not given; given ones stand in
-        ``settings["weights"]``. After Ctrl-C what was found until then, with ``complete`` false.
+        ``settings["weights"]``.
 
     Raises
     ------
@@ -75,25 +80,24 @@ def weighted_front(
     profile = CycloidPolynomial() if profile is None else profile
     points = number_of_points(points)
     chosen = None if weights is None else _pairs(weights)
-    sweep = Sweep(
-        task,
-        profile,
-        SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver),
-    )
-    sums = _Sums(sweep, find_ends(sweep))
-    complete = True
-    try:
-        if chosen is None:
-            sums.by_chords(points, report)
-        else:
-            sums.by_weights(chosen, report)
-    except KeyboardInterrupt:
-        complete = False
-    found, whole = sums.checked(interrupted=not complete)
-    complete = complete and whole
+    settings = SolveSettings(bound=bound, starts=starts, seed=seed, steps=steps, solver=solver)
+    began, ends = time.perf_counter(), find_ends(Curve.begin(task, profile, settings))
+    if ends.are_one:
+        sums = _Sums()
+    elif chosen is None:
+        sums = _along_chords(ends, points, report)
+    else:
+        sums = _at_weights(ends, chosen, report)
+    solved = [(one, {RESIDUAL_LIMIT: one.residual}) for one in sums.found]
     stated = ", ".join(f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen or ())
-    also = {"weights": stated} if stated else {}
-    return front_of(sweep, "weighted", found, points, gaps=sums.gaps, complete=complete, also=also)
+    return ends.curve.to_front(
+        "weighted",
+        [*ends.certificates, *ends.curve.certify_all(solved), *sums.failures],
+        points,
+        time.perf_counter() - began,
+        gaps=sorted(sums.gaps),
+        also={"weights": stated} if stated else {},
+    )
 
 
 def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -109,73 +113,71 @@ def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     return pairs
 
 
+@dataclass
 class _Sums:
-    """The minima of weighted sums found so far."""
+    """Minima of weighted sums, what failed, and ranges of the residual that no weight reaches."""
 
-    def __init__(self, sweep: Sweep, ends: Ends) -> None:
-        self.sweep, self.ends = sweep, ends
-        self.found: list[Solution] = []
-        self.failures: list[FailedPoint] = []
-        self.gaps: list[tuple[float, float]] = []
+    found: list[Solution] = field(default_factory=list)
+    failures: list[Certificate] = field(default_factory=list)
+    gaps: list[tuple[float, float]] = field(default_factory=list)
 
-    def solve(self, of_residual: float, of_energy: float, guesses: Sequence[Guess]) -> Solution:
-        """The best minimum of one weighted sum, weights of the scaled objectives."""
-        minimise = {RESIDUAL: of_residual / self.ends.width, ENERGY: of_energy / self.ends.height}
-        ask = self.sweep.ask(minimise=minimise)
-        # far starts lead past a dearer minimum, near ones keep to the minimum beside them
-        return best_of([self.sweep.best(guesses, ask, warm=warm) for warm in (False, True)], ask)
-
-    def by_chords(self, points: int, report: Report) -> None:
-        """Weights from the chords between neighbours, the longest first."""
-        if self.ends.are_one:
+    def add(self, found: Solution, of_residual: float, of_energy: float) -> None:
+        """Add a minimum, or why there is none."""
+        if found.status.solved:
+            self.found.append(found)
             return
-        chords: list[tuple[Solution, Solution]] = [(self.ends.still, self.ends.cheapest)]
-        while chords and 2 + len(self.found) < points:
-            lengths = [np.hypot(*self._sides(*chord)) for chord in chords]
-            still, cheap = chords.pop(int(np.argmax(lengths)))
-            wide, high = self._sides(still, cheap)
-            found = self.solve(high, wide, [cheap.coefficients, still.coefficients])
-            if not found.status.solved:
-                self._failed(high, wide, found)
-                continue
-            to_right, down = self._sides(still, found)
-            below = (wide * down - high * to_right) / np.hypot(wide, high)
-            if below > _FLAT * np.hypot(wide, high) and 0 < to_right < wide:
-                self.found.append(found)
-                chords += [(still, found), (found, cheap)]
-            elif np.hypot(wide, high) > 2 * _DIAGONAL / (points - 1):
-                self.gaps.append((still.residual, cheap.residual))
-            report(2 + len(self.found), points)
-        self.gaps.sort()
-
-    def by_weights(self, weights: Sequence[tuple[float, float]], report: Report) -> None:
-        """Given weights, sorted from most weight on the energy to most on the residual."""
-        if self.ends.are_one:
-            return
-        beside = self.ends.cheapest.coefficients
-        still = self.ends.still.coefficients
-        for i, pair in enumerate(sorted(weights, key=lambda pair: pair[0] / sum(pair)), start=1):
-            if min(pair) > 0:  # with one weight 0 it is an end of the front
-                found = self.solve(*pair, [beside, still])
-                if found.status.solved:
-                    self.found.append(found)
-                    beside = found.coefficients
-                else:
-                    self._failed(*pair, found)
-            report(i, len(weights))
-
-    def checked(self, interrupted: bool) -> tuple[list[FrontPoint | FailedPoint], bool]:
-        """Every point by the independent integrator, and the failures; whether all were done."""
-        asked = [(one, {RESIDUAL_LIMIT: one.residual}) for one in (self.ends.cheapest, *self.found)]
-        points, whole = all_checked(self.sweep, asked, interrupted=interrupted)
-        return [self.ends.still_point, *points, *self.failures], whole
-
-    def _sides(self, still: Solution, cheap: Solution) -> tuple[float, float]:
-        return (
-            (cheap.residual - still.residual) / self.ends.width,
-            (still.energy - cheap.energy) / self.ends.height,
-        )
-
-    def _failed(self, of_residual: float, of_energy: float, found: Solution) -> None:
         asked = {"residual_weight": of_residual, "energy_weight": of_energy}
-        self.failures.append(FailedPoint(asked, found.status.text))
+        self.failures.append(Certificate(FailedPoint(asked, found.status.text), found.iterations))
+
+
+def _minimise(
+    ends: Ends, of_residual: float, of_energy: float, starts: Sequence[Array]
+) -> Solution:
+    """The best minimum of one weighted sum, weights of the scaled objectives."""
+    weights = {RESIDUAL: of_residual / ends.width, ENERGY: of_energy / ends.height}
+    problem, solver = ends.curve.problem(minimise=weights), ends.curve.solver
+    # far starts lead past a dearer minimum, near ones keep to the minimum beside them
+    found = [best_of_starts([problem], [starts], solver, warm=warm)[0] for warm in (False, True)]
+    return min(found, key=lambda one: objective_of(one, problem.scalarization))
+
+
+def _along_chords(ends: Ends, points: int, report: Report) -> _Sums:
+    """Weights from the chords between neighbours, the longest first."""
+    sums, chords = _Sums(), [(ends.still, ends.cheapest)]
+    while chords and 2 + len(sums.found) < points:
+        lengths = [np.hypot(*_sides(ends, *chord)) for chord in chords]
+        still, cheap = chords.pop(int(np.argmax(lengths)))
+        wide, high = _sides(ends, still, cheap)
+        found = _minimise(ends, high, wide, [cheap.coefficients, still.coefficients])
+        if not found.status.solved:
+            sums.add(found, high, wide)
+            continue
+        to_right, down = _sides(ends, still, found)
+        length = np.hypot(wide, high)
+        if (wide * down - high * to_right) / length > _FLAT * length and 0 < to_right < wide:
+            sums.add(found, high, wide)
+            chords += [(still, found), (found, cheap)]
+        elif length > 2 * _DIAGONAL / (points - 1):
+            sums.gaps.append((still.residual, cheap.residual))
+        report(2 + len(sums.found), points)
+    return sums
+
+
+def _at_weights(ends: Ends, weights: Sequence[tuple[float, float]], report: Report) -> _Sums:
+    """Given weights, sorted from most weight on the energy to most on the residual."""
+    sums, beside = _Sums(), ends.cheapest.coefficients
+    for i, pair in enumerate(sorted(weights, key=lambda pair: pair[0] / sum(pair)), start=1):
+        if min(pair) > 0:  # with one weight 0 it is an end of the front
+            found = _minimise(ends, *pair, [beside, ends.still.coefficients])
+            sums.add(found, *pair)
+            beside = found.coefficients if found.status.solved else beside
+        report(i, len(weights))
+    return sums
+
+
+def _sides(ends: Ends, still: Solution, cheap: Solution) -> tuple[float, float]:
+    """How far apart two solutions are in both objectives, scaled to the ends."""
+    return (
+        (cheap.residual - still.residual) / ends.width,
+        (still.energy - cheap.energy) / ends.height,
+    )

@@ -10,8 +10,8 @@ from typing import Any
 from quietarm.ocp.checks import positive
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.planning.answer import Plan
-from quietarm.ocp.planning.solver import plan_move
+from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.planning.plan_move import plan_move
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.simulation.residual import slowest_swing
@@ -35,13 +35,10 @@ class Fastest:
     failed : tuple of (float, str)
         Shorter durations [s] that were tried, the longest first, and why each failed: the first is
         shorter by no more than the tolerance.
-    complete : bool
-        Whether no Ctrl-C came; the plan is then of the shortest duration found until it did.
     """
 
     plan: Plan
     failed: tuple[tuple[float, str], ...]
-    complete: bool
 
     @property
     def duration(self) -> float:
@@ -95,20 +92,14 @@ def fastest_move(
     search = _Search(task, profile, {
         "residual_limit": residual_limit, "bound": bound, **{"starts": 1, **settings},
     })  # fmt: skip
-    complete = True
-    try:
-        _narrow(search, tolerance)
-    except KeyboardInterrupt:
-        complete = False
-        if search.best is None:
-            raise
+    _narrow(search, tolerance)
     best = search.best
     assert best is not None  # the bracket found one
     seconds = time.perf_counter() - begin
     plan = replace(best, provenance=replace(best.provenance, seconds=seconds))
     failed = sorted(search.failed.items(), reverse=True)
     shorter = tuple(one for one in failed if one[0] < plan.task.duration)
-    return Fastest(plan, shorter, complete)
+    return Fastest(plan, shorter)
 
 
 def _narrow(search: _Search, tolerance: float) -> None:
@@ -146,8 +137,6 @@ class _Search:
         except SolverFailedError as error:
             self.failed[duration] = str(error)
             return False
-        if not plan.complete:
-            raise KeyboardInterrupt
         self.best = plan
         return True
 

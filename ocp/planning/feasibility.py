@@ -8,11 +8,12 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
-from quietarm.ocp.planning.verification import Checked
+from quietarm.ocp.planning.certify import Checked
 from quietarm.ocp.simulation.objective import WithPeaks
-from quietarm.ocp.solvers.program import Program
-from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization, Solution
-from quietarm.ocp.solvers.solving import Row, solve
+from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.solvers.transcription import RESIDUAL, STILL
 from quietarm.ocp.task import QUANTITIES
 
 UNITS = {RESIDUAL: "m", **{name: quantity.unit for name, quantity in QUANTITIES.items()}}
@@ -51,16 +52,15 @@ def least_peaks(
     return best
 
 
-def least_peaks_of(
-    program: Program, ask: Scalarization, starts: Sequence[NDArray[np.float64]]
-) -> dict[str, Solution]:
-    """The same of a program, from several starts."""
+def least_peaks_of(problem: Problem, starts: Sequence[NDArray[np.float64]]) -> dict[str, Solution]:
+    """The same of a problem, from several starts."""
+    transcription, asked = problem
 
     def solve_least(others: Mapping[str, float], name: str) -> list[Solution]:
-        alone = ask._replace(limits=others, minimise={name: 1.0})
-        return solve([Row(program, alone, start) for start in starts]).solutions
+        alone = Problem(transcription, asked._replace(limits=others, minimise={name: 1.0}))
+        return Sqp().solve([alone] * len(starts), starts)
 
-    return least_peaks(ask.limits, solve_least)
+    return least_peaks(asked.limits, solve_least)
 
 
 def keeps(peak: float, name: str, limits: Mapping[str, float]) -> bool:
@@ -83,16 +83,17 @@ def true_peaks(
 
 
 def explain(
-    program: Program, ask: Scalarization, tried: Sequence[Solution], least: Mapping[str, Solution]
+    problem: Problem, tried: Sequence[Solution], least: Mapping[str, Solution]
 ) -> SolverFailedError:
-    """The error for a program that no start solved; other arguments as for `unmet`."""
+    """The error for a problem that no start solved; other arguments as for `unmet`."""
+    transcription, asked = problem
     return unmet(
-        f"motion of {program.profile.amount}",
-        ask.limits,
+        f"motion of {transcription.profile.amount}",
+        asked.limits,
         tried,
-        true_peaks(least, lambda found: Checked(program, found)),
-        f"more {program.profile.term}s or a longer duration",
-        "" if ask.bound is None else f", coefficients within +-{ask.bound:g}",
+        true_peaks(least, lambda found: Checked(transcription, found)),
+        f"more {transcription.profile.term}s or a longer duration",
+        "" if asked.bound is None else f", coefficients within +-{asked.bound:g}",
     )
 
 

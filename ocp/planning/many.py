@@ -10,14 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
-from quietarm.ocp.planning.starts import first_steps, start_coefficients
-from quietarm.ocp.planning.verification import (
+from quietarm.ocp.planning.best_of_starts import (
+    best_of_starts,
+    first_steps,
+    start_coefficients,
+)
+from quietarm.ocp.planning.certify import (
     CHECK_EVERY,
     FINER_AGREEMENT,
     OF_A_PLAN,
+    certify,
     finer_peaks,
     finer_values,
-    verified,
 )
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
@@ -25,9 +29,11 @@ from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.residual import residuals_at_rest, state_matrices
 from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.solvers.batch import Values
-from quietarm.ocp.solvers.program import Program, programs_of
-from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization, Solution
-from quietarm.ocp.solvers.solving import STOPPED, Row, Solved, Solver, solve
+from quietarm.ocp.solvers.choice import Solver, SolverName, solver_of
+from quietarm.ocp.solvers.ipopt import Ipopt
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, transcribe
 from quietarm.ocp.task import QUANTITIES, PointToPoint
 
 Array = NDArray[np.float64]
@@ -59,13 +65,11 @@ class Moves:
         The same in the solver's words.
     iterations : ndarray, shape (moves,)
         Iterations of the solver.
-    prices : tuple of mapping of str to float
+    shadow_prices : tuple of mapping of str to float
         By how much each least energy falls if a limit is widened [J by the limit's unit]; of the
-        residual, too, where rest on arrival is asked for.
+        residual, too, where rest on arrival is asked for. Empty where there is no plan.
     by_cvodes : ndarray of bool, shape (moves,)
-        Whose figures CVODES computed; the others are by a finer rule that it confirmed.
-    complete : bool
-        Whether no Ctrl-C came.
+        Whose figures CVODES computed; the others are by finer steps that it confirmed.
     """
 
     tasks: tuple[PointToPoint, ...]
@@ -77,9 +81,8 @@ class Moves:
     status: tuple[SolveStatus, ...]
     reasons: tuple[str, ...]
     iterations: NDArray[np.intp]
-    prices: tuple[Mapping[str, float], ...]
+    shadow_prices: tuple[Mapping[str, float], ...]
     by_cvodes: NDArray[np.bool_]
-    complete: bool
 
 
 @one_at_a_time
@@ -91,7 +94,7 @@ def plan_moves(
     bound: float | None = None,
     starts: int = 1,
     seed: int = 0,
-    solver: Solver = "sqp",
+    solver: SolverName = "sqp",
 ) -> Moves:
     """Find the motions of least energy of many moves of one plant.
 
@@ -108,8 +111,8 @@ def plan_moves(
     -------
     Moves
         The plans. Moves at rest and without limits are certified together, by a finer rule in one
-        call, and by CVODES at one in ten and wherever the two differ; all others by CVODES. After
-        Ctrl-C those that were solved until then.
+        call, and by CVODES at one in ten and wherever the two differ; all others by CVODES. A move
+        that no certified motion was found for has a status that says so, and no figures.
 
     Raises
     ------
@@ -119,57 +122,47 @@ def plan_moves(
     profile = CycloidPolynomial() if profile is None else profile
     settings = SolveSettings(residual_limit, bound, starts, seed, solver=solver)
     _check(tasks, profile)
-    programs = programs_of(tasks, profile, _steps(tasks, profile, settings))
-    asks = [
-        Scalarization({RESIDUAL: settings.residual_limit, **task.limits}, bound) for task in tasks
+    problems = [
+        Problem(one, Scalarization({RESIDUAL: residual_limit, **one.task.limits}, bound))
+        for one in transcribe(tasks, profile, _steps(tasks, profile, settings))
     ]
-    first = start_coefficients(profile, settings)
+    chosen, first = solver_of(solver), start_coefficients(profile, settings)
     random = start_coefficients(profile, replace(settings, starts=4))[1:]
-    best: list[Solution | None] = [None] * len(tasks)
-    complete = True
-    if starts == 1:
-        found, complete = _from_neighbours(programs, asks, first[0], settings)
-        best = [*found]
     attempts: list[tuple[Solver, list[Array]]]
-    attempts = [(solver, first), (solver, random), ("ipopt", first[:1])]
+    attempts = [(chosen, first), (chosen, random), (Ipopt(), first[:1])]
+    if starts == 1:
+        best = _from_neighbours(problems, first[0], chosen, seed)
+    else:
+        best = best_of_starts(problems, [first] * len(problems), chosen)
+        attempts = attempts[1:]
     for by, guesses in attempts:
-        left = [i for i, one in enumerate(best) if one is None or not one.status.solved]
-        rows = [Row(programs[i], asks[i], guess) for i in left for guess in guesses]
-        if not rows or not complete:
-            break
-        groups = np.repeat(left, len(guesses)).tolist()
-        found, complete = solve(rows, by, groups=groups if len(guesses) > 1 else None)
-        for i, one in zip(groups, found, strict=True):
-            held = best[i]
-            if held is None or _preferred(one) < _preferred(held):
+        unsolved = [i for i, one in enumerate(best) if not one.status.solved]
+        if not unsolved or not guesses:
+            continue
+        own = [problems[i] for i in unsolved]
+        found = best_of_starts(own, [guesses] * len(own), by)
+        for i, one in zip(unsolved, found, strict=True):
+            if one.status.solved:
                 best[i] = one
-    return _certified(programs, asks, [one for one in best if one], settings, complete)
+    return _certify(problems, best, chosen)
 
 
 def _from_neighbours(
-    programs: Sequence[Program],
-    asks: Sequence[Scalarization],
-    start: Array,
-    settings: SolveSettings,
-) -> Solved:
+    problems: Sequence[Problem], start: Array, solver: Solver, seed: int
+) -> list[Solution]:
     """Solve a share of the moves from one start, then all of them from the nearest of these."""
-    count, by = len(programs), settings.solver
-    pilots = np.random.default_rng(settings.seed).permutation(count)[: -(-count // _PILOTS)]
-    found, complete = solve([Row(programs[i], asks[i], start) for i in pilots], by)
+    count = len(problems)
+    pilots = np.random.default_rng(seed).permutation(count)[: -(-count // _PILOTS)].tolist()
+    found = solver.solve([problems[i] for i in pilots], [start] * len(pilots))
     solved = [k for k, one in enumerate(found) if one.status.solved]
-    starts = np.repeat(start[None], count, axis=0)
-    if solved:
-        moves = np.array([program.row for program in programs])
-        moves /= np.ptp(moves, axis=0) + _SAME_MOVE
-        known = moves[pilots[solved]]
-        nearest = [int(np.argmin(np.abs(known - move).sum(axis=1))) for move in moves]
-        starts = np.array([found[solved[k]].coefficients for k in nearest])
-    if not complete:
-        none = replace(found[0], status=SolveStatus.ITERATION_LIMIT, reason=STOPPED, iterations=0)
-        by_place = dict(zip(pilots.tolist(), found, strict=True))
-        return Solved([by_place.get(i, none) for i in range(count)], False)
-    rows = [Row(*one) for one in zip(programs, asks, starts, strict=True)]
-    return solve(rows, by, warm=bool(solved))
+    if not solved:
+        return solver.solve(problems, [start] * count)
+    moves = np.array([problem.transcription.task.row for problem in problems])
+    moves /= np.ptp(moves, axis=0) + _SAME_MOVE
+    known = moves[[pilots[k] for k in solved]]
+    nearest = [int(np.argmin(np.abs(known - move).sum(axis=1))) for move in moves]
+    starts = [found[solved[k]].coefficients for k in nearest]
+    return solver.solve(problems, starts, warm=True)
 
 
 def _steps(tasks: Sequence[PointToPoint], profile: JointProfile, settings: SolveSettings) -> int:
@@ -180,70 +173,75 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile, settings: Solve
     return first_steps(tasks[int(np.argmax(radians))], profile, settings)
 
 
-def _certified(
-    programs: Sequence[Program],
-    asks: Sequence[Scalarization],
-    found: list[Solution],
-    settings: SolveSettings,
-    complete: bool,
-) -> Moves:
+class _Row(NamedTuple):
+    """A move's place, what was asked and what was found."""
+
+    place: int
+    problem: Problem
+    solution: Solution
+
+
+def _certify(problems: Sequence[Problem], found: Sequence[Solution], solver: Solver) -> Moves:
     """Correct what the steps miss, and give the figures of finer steps or of CVODES."""
-    count, profile = len(found), programs[0].profile
+    count, profile = len(found), problems[0].transcription.profile
     moves = Moves(
-        tasks=tuple(program.task for program in programs),
+        tasks=tuple(problem.transcription.task for problem in problems),
         profile=profile,
         coefficients=np.full((count, profile.size), np.nan),
         energy=np.full(count, np.nan),
         residual=np.full(count, np.nan),
         peaks={name: np.full(count, np.nan) for name in QUANTITIES},
-        status=tuple(one.status for one in found),
-        reasons=tuple(one.reason for one in found),
+        status=(),
+        reasons=(),
         iterations=np.array([one.iterations for one in found]),
-        prices=tuple(one.prices for one in found),
+        shadow_prices=(),
         by_cvodes=np.zeros(count, dtype=bool),
-        complete=complete,
     )
-    solved = [i for i, one in enumerate(found) if one.status.solved]
-    together = [i for i in solved if asks[i].at_rest and not programs[i].task.limits]
-    doubtful = set(solved) - set(together)
+    ended = list(found)
+    rows = [_Row(i, *one) for i, one in enumerate(zip(problems, found, strict=True))]
+    rows = [row for row in rows if row.solution.status.solved]
+    together = [row for row in rows if _at_rest_without_limits(row.problem)]
+    doubtful = {row.place for row in rows} - {row.place for row in together}
     if together:
-        rows = [_Found(i, programs[i], asks[i], found[i]) for i in together]
-        doubtful |= _together(moves, rows, settings.solver)
+        doubtful |= _together(moves, together, solver)
     for i in sorted(doubtful):
         try:
-            best, checked, _ = verified(programs[i], asks[i], found[i], settings.solver)
-        except SolverFailedError:
+            best, checked, _ = certify(problems[i], found[i], solver)
+        except SolverFailedError as error:
             moves.coefficients[i] = moves.energy[i] = moves.residual[i] = np.nan
+            for values in moves.peaks.values():
+                values[i] = np.nan
+            ended[i] = replace(
+                found[i], status=SolveStatus.NOT_CERTIFIED, reason=str(error), shadow_prices={}
+            )
             continue
         moves.coefficients[i], moves.by_cvodes[i] = best.coefficients, True
         moves.energy[i], moves.residual[i] = checked.energy, checked.residual
         for name, values in moves.peaks.items():
             values[i] = checked.motion.peak(name)
-    return moves
+    return replace(
+        moves,
+        status=tuple(one.status for one in ended),
+        reasons=tuple(one.reason for one in ended),
+        shadow_prices=tuple(one.shadow_prices if one.status.solved else {} for one in ended),
+    )
 
 
-class _Found(NamedTuple):
-    """A move's place, what was asked and what was found."""
-
-    place: int
-    program: Program
-    ask: Scalarization
-    solution: Solution
+def _at_rest_without_limits(problem: Problem) -> bool:
+    return problem.scalarization.at_rest and not problem.transcription.task.limits
 
 
-def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int = 2) -> set[int]:
+def _together(moves: Moves, rows: list[_Row], solver: Solver, doublings: int = 2) -> set[int]:
     """Certify moves at rest in a few calls; the places of those left to CVODES alone.
 
     Those whose energy the finer steps do not confirm are solved again on twice the steps.
     """
-    one, places = rows[0].program, [row.place for row in rows]
     table = np.array([row.solution.coefficients for row in rows])
-    values = finer_values([row.program for row in rows], table)
+    values = finer_values([row.problem.transcription for row in rows], table)
     energy = np.array([row.solution.energy for row in rows])
-    rough = np.abs(energy - values.energy) > OF_A_PLAN.agreement * values.energy
-    doubtful = set[int]()
+    rough = np.abs(energy - values.energy) > OF_A_PLAN.energy * values.energy
+    doubtful = {rows[k].place for k in np.flatnonzero(rough)}
     if rough.any():
-        doubtful = {places[k] for k in np.flatnonzero(rough)}
         if doublings:
             again = _on_twice_the_steps([rows[k] for k in np.flatnonzero(rough)], solver)
             doubtful = _together(moves, again, solver, doublings - 1)
@@ -251,15 +249,16 @@ def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int =
         rows, table = [rows[k] for k in kept], table[kept]
         if not rows:
             return doubtful
-    table, values, residual = _corrected(rows, table, solver)
+    table, values, residual = _correct_arrivals(rows, table, solver)
     places = [row.place for row in rows]
     moves.coefficients[places], moves.energy[places] = table, values.energy
     moves.residual[places] = residual
-    for name, largest in finer_peaks([row.program for row in rows], table).items():
+    transcriptions = [row.problem.transcription for row in rows]
+    for name, largest in finer_peaks(transcriptions, table).items():
         moves.peaks[name][places] = largest
     doubtful |= {places[k] for k in np.flatnonzero(residual > STILL)}
     for k in range(0, len(rows), CHECK_EVERY):
-        exact = resimulate(rows[k].program.task, one.profile, table[k])
+        exact = resimulate(transcriptions[k].task, transcriptions[k].profile, table[k])
         differs = abs(exact.energy - values.energy[k]) > FINER_AGREEMENT * exact.energy
         if differs or exact.residual > STILL:
             return doubtful | set(places)
@@ -267,38 +266,43 @@ def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int =
     return doubtful
 
 
-def _on_twice_the_steps(rows: list[_Found], solver: Solver) -> list[_Found]:
-    tasks, one = [row.program.task for row in rows], rows[0].program
-    programs = programs_of(tasks, one.profile, 2 * one.steps)
-    given = [
-        Row(program, row.ask, row.solution.coefficients)
-        for program, row in zip(programs, rows, strict=True)
+def _on_twice_the_steps(rows: list[_Row], solver: Solver) -> list[_Row]:
+    tasks, one = [row.problem.transcription.task for row in rows], rows[0].problem.transcription
+    problems = [
+        Problem(transcription, row.problem.scalarization)
+        for transcription, row in zip(
+            transcribe(tasks, one.profile, 2 * one.steps), rows, strict=True
+        )
     ]
-    found = solve(given, solver, warm=True).solutions
-    return [
-        row._replace(program=program, solution=solution)
-        for row, program, solution in zip(rows, programs, found, strict=True)
-    ]
+    found = solver.solve(problems, [row.solution.coefficients for row in rows], warm=True)
+    places = [row.place for row in rows]
+    return [_Row(*row) for row in zip(places, problems, found, strict=True)]
 
 
-def _corrected(rows: list[_Found], table: Array, solver: Solver) -> tuple[Array, Values, Array]:
+def _correct_arrivals(
+    rows: list[_Row], table: Array, solver: Solver
+) -> tuple[Array, Values, Array]:
     """Coefficients, figures and residuals, corrected by what the steps miss on arrival."""
-    programs = [row.program for row in rows]
-    targets = np.array([program.task.target for program in programs])
+    transcriptions = [row.problem.transcription for row in rows]
+    targets = np.array([one.task.target for one in transcriptions])
     by_steps = np.array([row.solution.arrival[0] for row in rows])
     rounds = 0
     while True:
-        values = finer_values(programs, table)
-        missed = values.arrival - [program.wanted for program in programs]
-        residual = residuals_at_rest(programs[0].task, targets, missed)
+        values = finer_values(transcriptions, table)
+        missed = values.arrival - [one.wanted for one in transcriptions]
+        residual = residuals_at_rest(transcriptions[0].task, targets, missed)
         again = np.flatnonzero(residual > _AT_REST * STILL)
         if not again.size or rounds == _ROUNDS:
             return table, values, residual
         rounds += 1
         offset = values.arrival - by_steps
-        given = [Row(programs[k], rows[k].ask._replace(offset=offset[k]), table[k]) for k in again]
-        for k, found in zip(again, solve(given, solver, warm=True).solutions, strict=True):
-            table[k], by_steps[k] = found.coefficients, found.arrival[0] - offset[k]
+        problems = [
+            Problem(transcriptions[k], rows[k].problem.scalarization._replace(offset=offset[k]))
+            for k in again
+        ]
+        found = solver.solve(problems, [table[k] for k in again], warm=True)
+        for k, one in zip(again, found, strict=True):
+            table[k], by_steps[k] = one.coefficients, one.arrival[0] - offset[k]
 
 
 def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
@@ -314,7 +318,3 @@ def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
                 "apart"
             )
     profile.refuse_no_choice()
-
-
-def _preferred(found: Solution) -> tuple[bool, float]:
-    return not found.status.solved, found.energy

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.planning.answer import Plan
-from quietarm.ocp.planning.starts import start_coefficients
-from quietarm.ocp.planning.verification import OVERRUN
+from quietarm.ocp.planning.best_of_starts import start_coefficients
+from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.robustness.measures import quiet_residual
@@ -28,6 +28,8 @@ _TIGHTENINGS = 4
 """Most times that the limit is tightened by what is left of the excess."""
 
 Starts = Sequence[NDArray[np.float64]]
+Peaks = NDArray[np.float64]
+"""Residuals [m] and errors of peaks between the samples, the largest first."""
 PlanFrom = Callable[
     [PointToPoint, JointProfile, SolveSettings, Starts], tuple[Plan, list[NDArray[np.float64]]]
 ]
@@ -62,52 +64,40 @@ def robust_plan(
     passes the limit between them by more than `EXCESS`, those peaks become samples, and the motions
     that were found are the next starts. What is left of the excess is then taken off the limit.
     """
-    began, plan, stopped = time.perf_counter(), None, None
-    try:
-        for better in _held(task, profile, settings, plan_from):
-            plan, stopped = better, better.provenance.stopped
-            if stopped:
-                break
-    except KeyboardInterrupt:
-        if plan is None:
-            raise
-        stopped = "some rounds, before the residual was held between the samples"
-    assert plan is not None
-    seconds = time.perf_counter() - began
-    provenance = replace(plan.provenance, settings=settings, seconds=seconds, stopped=stopped)
-    return replace(plan, provenance=provenance)
+    began, limit = time.perf_counter(), settings.residual_limit
 
-
-def _held(
-    task: PointToPoint, profile: JointProfile, settings: SolveSettings, plan_from: PlanFrom
-) -> Iterator[Plan]:
-    """The plan with its worst, then with more samples, then with tighter limits."""
-    limit = used = settings.residual_limit
-
-    def solved(starts: Starts) -> tuple[Plan, NDArray[np.float64], Starts]:
+    def solve(task: PointToPoint, starts: Starts) -> tuple[Plan, Peaks, Starts]:
         plan, others = plan_from(task, profile, settings, starts)
-        return *_checked(plan), [np.array(plan.coefficients), *others[:_KEPT]]
+        return *_look_between(plan), [np.array(plan.coefficients), *others[:_KEPT]]
 
-    plan, peaks, starts = solved(start_coefficients(profile, settings))
-    yield plan
+    plan, peaks, starts = solve(task, start_coefficients(profile, settings))
     for _ in range(_ROUNDS):
         more = _new_samples(task, peaks[peaks[:, 0] > limit, 1:])
         if peaks[0, 0] / limit - 1 <= EXCESS or not more:
             break
         task = task.with_samples([*task.scenarios[1:], *more])
-        plan, peaks, starts = solved(starts)
-        yield plan
+        plan, peaks, starts = solve(task, starts)
+    plan = _tighten(plan, peaks, settings, plan_from)
+    provenance = replace(plan.provenance, settings=settings, seconds=time.perf_counter() - began)
+    return replace(plan, provenance=provenance)
+
+
+def _tighten(plan: Plan, peaks: Peaks, settings: SolveSettings, plan_from: PlanFrom) -> Plan:
+    """Take what is left of the excess off the limit."""
+    limit = used = settings.residual_limit
     for _ in range(_TIGHTENINGS):
         excess = peaks[0, 0] / limit - 1
         if excess <= 0:
             break
         used /= (1 + excess) * (1 + OVERRUN)
         tighter = replace(settings, residual_limit=used, steps=plan.verification.steps)
+        start = [np.array(plan.coefficients)]
         try:
-            plan, peaks = _checked(plan_from(task, profile, tighter, starts[:1])[0])
+            found, _ = plan_from(plan.task, plan.profile, tighter, start)
         except SolverFailedError:
             break
-        yield plan
+        plan, peaks = _look_between(found)
+    return plan
 
 
 def _new_samples(task: PointToPoint, errors: NDArray[np.float64]) -> list[list[float]]:
@@ -117,6 +107,7 @@ def _new_samples(task: PointToPoint, errors: NDArray[np.float64]) -> list[list[f
     return [one.tolist() for one in errors if (np.abs(known - one) > near).any(axis=1).all()]
 
 
-def _checked(plan: Plan) -> tuple[Plan, NDArray[np.float64]]:
+def _look_between(plan: Plan) -> tuple[Plan, Peaks]:
+    """The plan with its worst case, and the largest peaks between the samples."""
     worst, peaks = peaks_between(plan.task, plan.profile, plan.coefficients, _ADDED)
     return replace(plan, worst=worst), peaks

@@ -54,20 +54,21 @@ def resolved_energy(
     vanish at the nodes move work across a zero and add none to the step; the zeros stay those of
     the quadratic, since the work hardly changes near a zero.
     """
-    c = _quadratic(power)
-    return ca.sum2(h * _parted_energy(c, cubic, quartic, _breaks(c)))
+    c, zeros = quadratic(power), power_zeros(power)
+    return ca.sum2(h * _parted_energy(c, cubic, quartic, zeros))
 
 
-def _quadratic(power: Sequence[Expression]) -> list[Expression]:
+def quadratic(power: Sequence[Expression]) -> list[Expression]:
     """Coefficients, lowest first, of the quadratic through the values at a step's nodes."""
     return [sum(w * p for w, p in zip(row, power, strict=True)) for row in _TO_QUADRATIC]
 
 
-def _breaks(c: Sequence[Expression]) -> list[Expression]:
-    """The zeros of a quadratic on a step, in order; without zeros its extreme's place, twice.
+def power_zeros(power: Sequence[Expression]) -> list[Expression]:
+    """The zeros of that quadratic on a step, in order; without zeros its extreme's place, twice.
 
     Under the root stands no 0, at which its derivative is infinite.
     """
+    c = quadratic(power)
     discriminant = c[1] * c[1] - 4 * c[0] * c[2]
     half = -(c[1] + ca.copysign(ca.sqrt(ca.fmax(discriminant, _TINY)), c[1])) / 2  # no cancellation
     first, second = (
@@ -88,32 +89,6 @@ def _parted_energy(
         work.append(x * (c[0] + x * (c[1] / 2 + x * (c[2] / 3))) + beyond)
     whole = c[0] + c[1] / 2 + c[2] / 3
     return ca.fabs(work[0]) + ca.fabs(work[1] - work[0]) + ca.fabs(whole - work[1])
-
-
-@lru_cache(maxsize=1)
-def energy_derivatives() -> ca.Function:
-    """One step's share of `resolved_energy` with its derivatives, nothing beyond the quadratic.
-
-    The gradient is that with the breaks held fixed, since the power is zero there, and continuous.
-    Second derivatives come from the zeros that move: 2 g g' / |slope| for each, with g the gradient
-    of the power there, never negative; the rest is linear in the power. Where zeros meet, that
-    curvature is without bound, though only there: the slope counts as `least_slope` at least.
-    """
-    power, least_slope = ca.SX.sym("p", NODES), ca.SX.sym("least")
-    breaks = ca.SX.sym("x", 2)
-    c = _quadratic(ca.vertsplit(power))
-    gradient = ca.gradient(_parted_energy(c, 0.0, 0.0, ca.vertsplit(breaks)), power)
-    has_zeros = c[1] * c[1] > 4 * c[0] * c[2]  # else both breaks stand at its extreme
-    bends = ca.SX.zeros(NODES, NODES)
-    for i in range(2):
-        x = breaks[i]
-        at_zero = ca.gradient(c[0] + x * (c[1] + x * c[2]), power)
-        inside = ca.logic_and(has_zeros, ca.logic_and(x > 0, x < 1))
-        bend = 2 / ca.fmax(ca.fabs(c[1] + 2 * x * c[2]), least_slope)
-        bends += ca.if_else(inside, bend, 0) * (at_zero @ at_zero.T)
-    places = ca.vertcat(*_breaks(c))
-    outputs = [ca.densify(ca.substitute(e, breaks, places)) for e in (gradient, bends)]
-    return ca.Function("energy", [power, least_slope], outputs, {"cse": True})
 
 
 @lru_cache(maxsize=32)

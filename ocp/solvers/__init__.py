@@ -1,8 +1,12 @@
-"""The nonlinear programs over a profile's coefficients, many at once, and what solves them.
+"""The nonlinear programs over a profile's coefficients, and the two that solve them.
 
-From what happens at one time (`node`) over the motion of rows of candidates with its derivatives
-(`expressions`, `batch`) to a task's numbers (`program`) and rows of programs with what is asked of
-them (`stack`). These are solved by sequential quadratic programs (`sqp`) or by IPOPT (`interior`);
-`solving` runs either and says what came of it in SI units. May import `simulation`, `profiles`
-and `robustness`.
+A `Problem` is a task on its steps (`Transcription`) with what is minimised and limited
+(`Scalarization`); a solver takes problems with starts and gives a `Solution` for each.
+
+- `Ipopt` writes a problem down in CasADi as it stands and leaves its derivatives to CasADi.
+- `Sqp` solves many at once with derivatives of its own: from what happens at one time (`node`)
+  over the motion of rows of candidates (`derivatives`, `batch`) to scaled programs (`constraints`,
+  `programs`) and their iterations (`funnel`, `quadratic`). Equations: docs/engine.md.
+
+May import `simulation` and `profiles`.
 """

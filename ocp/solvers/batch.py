@@ -1,10 +1,7 @@
 """Candidates in rows: what each costs, leaves and asks of the joint, with exact derivatives.
 
-A row is a candidate with a move and errors of the plant of its own. The modes are linear in the
-state before a step and in what forces them at its nodes, so the first derivatives follow by the
-same steps: they are a rollout of their own, forced by the derivatives of the forcing, with a row
-for each coefficient of each candidate. The same steps backwards carry multipliers to the forcing.
-All that is nonlinear belongs to a single node, where second derivatives are small blocks.
+A row is a candidate with a move and errors of the plant of its own. `derivatives` builds the
+expressions; here they are compiled for blocks of rows and called.
 """
 
 from __future__ import annotations
@@ -13,7 +10,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
-from typing import Any
+from typing import Any, Self
 
 import casadi as ca
 import numpy as np
@@ -25,17 +22,17 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.rollout import node_times
-from quietarm.ocp.solvers.expressions import Kind, function_of_derivatives, function_of_values
-from quietarm.ocp.solvers.node import PathFunctions
+from quietarm.ocp.solvers.derivatives import Kind, compile_derivatives, compile_values
+from quietarm.ocp.solvers.node import Path
 from quietarm.ocp.task import QUANTITIES
 
 Array = NDArray[np.float64]
-_BLOCKS, _MANY = (1, 2, 4, 8), 100
-"""Rows of a compiled call with derivatives, of which more rows take several; and of one without."""
+_FEW, _SOME, _MANY = 1, 4, 100
+"""Rows of a compiled call: of derivatives for one candidate or for more, and of values alone."""
 _LEAST_STRETCH = 1e-3
 """Share of the largest speed below which a direction in a box counts as this share."""
 _PADDED = 200
-"""So many times a larger function serves, its other rows idle, before one is built that fits."""
+"""So many times single rows are padded to the next block before a function of one is built."""
 
 
 @dataclass(frozen=True)
@@ -49,12 +46,32 @@ class Values:
     arrival : ndarray, shape (rows, 2 * modes)
         W [m], then W' [m/s].
     limited : ndarray, shape (rows, values)
-        Each limited quantity at the nodes, one after another.
+        Each limited quantity at the nodes; `Batch.places` tells where.
     """
 
     energy: Array
     arrival: Array
     limited: Array
+
+
+@dataclass(frozen=True)
+class Multipliers:
+    """What weighs the Hessian of a sum of energy, arrival and limited quantities.
+
+    Attributes
+    ----------
+    energy : ndarray, shape (rows,)
+    arrival : ndarray, shape (rows, 2 * modes)
+    limited : ndarray, shape (rows, values)
+    """
+
+    energy: Array
+    arrival: Array
+    limited: Array
+
+    def by_row(self) -> Self:
+        """The rows of candidates, one after another, from arrays by candidate and scenario."""
+        return type(self)(**{name: np.concatenate(part) for name, part in vars(self).items()})
 
 
 @dataclass(frozen=True)
@@ -65,18 +82,31 @@ class Derivatives(Values):
     ----------
     gradient : ndarray, shape (rows, coefficients)
         Of the energy, with the zeros of the power held fixed, which is exact.
-    by_arrival : ndarray, shape (rows, 2 * modes, coefficients)
+    arrival_jacobian : ndarray, shape (rows, 2 * modes, coefficients)
         Of the arrival.
-    by_limited : ndarray, shape (rows, values, coefficients)
+    limited_jacobian : ndarray, shape (rows, values, coefficients)
         Of the limited quantities.
-    curvature : ndarray, shape (rows, coefficients, coefficients)
-        Second derivatives of the Lagrangian.
+    hessian : ndarray, shape (rows, coefficients, coefficients)
+        Of the sum that the multipliers weigh.
     """
 
     gradient: Array
-    by_arrival: Array
-    by_limited: Array
-    curvature: Array
+    arrival_jacobian: Array
+    limited_jacobian: Array
+    hessian: Array
+
+    def take(self, rows: slice) -> Self:
+        """Some rows."""
+        return type(self)(**{name: part[rows] for name, part in vars(self).items()})
+
+    def by_scenario(self, scenarios: int) -> Self:
+        """Arrays of shape (candidates, scenarios, ...) from rows that are pairs of these."""
+        return type(self)(
+            **{
+                name: part.reshape(len(part) // scenarios, scenarios, *part.shape[1:])
+                for name, part in vars(self).items()
+            }
+        )
 
 
 class Batch:
@@ -84,10 +114,25 @@ class Batch:
 
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
-        self._built: dict[int, BufferedFunction] = {}
-        self._lent = dict.fromkeys(_BLOCKS, 0)
+        self._compiled = dict[int, BufferedFunction]()
+        self._padded = 0
         self._valued, self._singles = dict[int, ca.Function](), 0
         self._idle: dict[int, list[BufferedFunction]] = {1: [], _MANY: []}
+
+    @cached_property
+    def places(self) -> dict[str, slice]:
+        """Where the values of each limited quantity stand among all."""
+        places, first = dict[str, slice](), 0
+        for name in self.kind.quantities:
+            count = QUANTITIES[name].rows(self.kind.plant) * NODES * self.kind.steps
+            places[name] = slice(first, first + count)
+            first += count
+        return places
+
+    @property
+    def limited(self) -> int:
+        """How many values of limited quantities there are."""
+        return max((place.stop for place in self.places.values()), default=0)
 
     def even_axes(self, boxed: bool = False) -> Array:
         """Axes along which the path's speed changes alike and independently.
@@ -110,43 +155,18 @@ class Batch:
 
     @cached_property
     def _speeds(self) -> Array | None:
-        """By each coefficient the path's speed at the nodes; None if not linear."""
-        path = PathFunctions(self.kind.profile, self.kind.steps, jerk=False)
+        """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
+        steps, size = self.kind.steps, self.kind.profile.size
+        path = Path(self.kind.profile, steps, False, (1, steps))
         if not path.linear:
             return None
-        times, length = node_times(self.kind.steps)
-        at_nodes = [[np.array(slope[1]).ravel() for slope in path.slopes(at)] for at in times]
-        speeds = np.array(at_nodes) * np.sqrt(np.array(length).ravel())
-        return speeds.transpose(0, 2, 1).reshape(-1, self.kind.profile.size)
-
-    def _function(self, rows: int) -> tuple[int, BufferedFunction]:
-        """One for so many rows or more: to build one takes as long as hundreds of its calls."""
-        fitting = next(size for size in _BLOCKS if size >= rows)
-        larger = [size for size in self._built if size >= rows]
-        if fitting not in self._built and larger and self._lent[fitting] < _PADDED:
-            self._lent[fitting] += 1
-            fitting = min(larger)
-        if fitting not in self._built:
-            self._built[fitting] = BufferedFunction(function_of_derivatives(self.kind, fitting))
-        return fitting, self._built[fitting]
-
-    @property
-    def parts(self) -> list[tuple[str, slice]]:
-        """Where the values of each limited quantity stand among all."""
-        found = list[tuple[str, slice]]()
-        for name in self.kind.quantities:
-            first = found[-1][1].stop if found else 0
-            count = QUANTITIES[name].rows(self.kind.plant) * NODES * self.kind.steps
-            found.append((name, slice(first, first + count)))
-        return found
-
-    def _for_values(self, rows: int) -> int:
-        """Rows of the function that values are asked of: one for who asks for single ones often."""
-        self._singles += rows == 1
-        size = 1 if rows == 1 and self._singles > _PADDED else _MANY
-        if size not in self._valued:
-            self._valued[size] = function_of_values(self.kind, size)
-        return size
+        times, length = node_times(steps)
+        speeds = np.zeros((size, NODES, steps))
+        for j, at in enumerate(times):
+            for (value, n), entry in path.jacobian([], at, []).items():
+                if value == 1:
+                    speeds[n, j] = ca.evalf(entry).full() * np.sqrt(length.full())
+        return speeds.reshape(size, -1).T
 
     @keep_interrupts()  # casadi loses a Ctrl-C
     def values(self, coefficients: Array, move: Array, errors: Array, threads: int = 1) -> Values:
@@ -166,13 +186,21 @@ class Batch:
         energy, arrival, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
         return Values(energy[:, 0], arrival, limited)
 
+    def _for_values(self, rows: int) -> int:
+        """Rows of the function that values are asked of: one for who asks for single ones often."""
+        self._singles += rows == 1
+        size = 1 if rows == 1 and self._singles > _PADDED else _MANY
+        if size not in self._valued:
+            self._valued[size] = compile_values(self.kind, size)
+        return size
+
     def _values(self, size: int, block: list[Array]) -> list[Array]:
         try:
             function = self._idle[size].pop()
         except IndexError:  # all are in use by other threads, or none is made yet
             function = BufferedFunction(self._valued[size])
         rows = len(block[0])
-        found = function(*(_filled(one, size).T for one in block))
+        found = function(*(_fill(one, size).T for one in block))
         copies = [one[:, :rows].T.copy() for one in found]
         self._idle[size].append(function)
         return copies
@@ -182,42 +210,68 @@ class Batch:
         coefficients: Array,
         move: Array,
         errors: Array,
-        width: Array,
-        weights: tuple[Array, Array, Array],
+        width: Array | None = None,
+        multipliers: Multipliers | None = None,
     ) -> Derivatives:
         """Evaluate candidates with first derivatives, and second ones of a weighted sum.
 
-        A row is a candidate: coefficients, move (the `row` of its task), relative errors of the
-        plant, the power [W] over which |power| is rounded off, and the weights of
-        energy, arrival (2 * modes) and limited values in `curvature`.
+        Parameters
+        ----------
+        coefficients : ndarray, shape (rows, profile.size)
+            Candidates.
+        move : ndarray, shape (rows, 3 + 2 * modes)
+            The `row` of each candidate's task.
+        errors : ndarray, shape (rows, ranges)
+            Relative errors of each candidate's plant.
+        width : ndarray, shape (rows,), optional
+            The power [W] over which |power| is rounded off; none by default.
+        multipliers : Multipliers, optional
+            Of the sum whose Hessian is asked for; zeros by default.
         """
-        inputs = [coefficients, move, errors, width[:, None], weights[0][:, None], *weights[1:]]
-        parts = [self._block(block) for block in _blocks(inputs, _BLOCKS[-1])]
+        rows, states = len(coefficients), 2 * self.kind.plant.modes
+        width = np.zeros(rows) if width is None else width
+        weights = multipliers or Multipliers(
+            np.zeros(rows), np.zeros((rows, states)), np.zeros((rows, self.limited))
+        )
+        inputs = [coefficients, move, errors, width[:, None], weights.energy[:, None],
+                  weights.arrival, weights.limited]  # fmt: skip
+        parts = [self._block(block) for block in _blocks(inputs, 2 * _SOME)]
         return Derivatives(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+
+    def _function(self, rows: int) -> tuple[int, BufferedFunction]:
+        """One for so many rows or more: to build one takes as long as hundreds of its calls."""
+        size = _SOME if rows <= _SOME else 2 * _SOME
+        if rows == 1:
+            self._padded += 1
+            size = _FEW if self._padded > _PADDED else _SOME
+        if size not in self._compiled:
+            self._compiled[size] = BufferedFunction(compile_derivatives(self.kind, size))
+        return size, self._compiled[size]
 
     def _block(self, inputs: list[Array]) -> tuple[Array, ...]:
         rows, size = len(inputs[0]), self.kind.profile.size
-        fitting, function = self._function(rows)
-        raw = function(*(_filled(one, fitting).T for one in inputs))
+        filled, function = self._function(rows)
+        outputs = function(*(_fill(one, filled).T for one in inputs))
 
         def by_coefficient(one: Array) -> Array:
             """From (values, coefficients, steps; rows) to (rows; coefficients; values, steps)."""
-            apart = one.reshape(-1, size, self.kind.steps, fitting)[..., :rows]
+            apart = one.reshape(-1, size, self.kind.steps, filled)[..., :rows]
             return apart.transpose(3, 1, 0, 2).reshape(rows, size, -1)
 
         # copies: the next call overwrites the function's own
-        energy, arrival, limited, gradient, by_arrival = (one[:, :rows].T.copy() for one in raw[:5])
-        by_limited, left, right = (by_coefficient(one) for one in raw[5:8])
-        curvature = left @ right.transpose(0, 2, 1)
-        if raw[8].size:
-            curvature += raw[8][:, :rows].T.reshape(rows, size, size)
+        copies = [one[:, :rows].T.copy() for one in outputs[:5]]
+        energy, arrival, limited, gradient, arrival_jacobian = copies
+        limited_jacobian, left, right = (by_coefficient(one) for one in outputs[5:8])
+        hessian = left @ right.transpose(0, 2, 1)
+        if outputs[8].size:
+            hessian += outputs[8][:, :rows].T.reshape(rows, size, size)
         return (
-            energy[:, 0], arrival, limited, gradient, by_arrival.reshape(rows, -1, size),
-            by_limited.transpose(0, 2, 1), curvature,
+            energy[:, 0], arrival, limited, gradient, arrival_jacobian.reshape(rows, -1, size),
+            limited_jacobian.transpose(0, 2, 1), hessian,
         )  # fmt: skip
 
 
-def _filled(rows: Array, count: int) -> Array:
+def _fill(rows: Array, count: int) -> Array:
     """So many rows: these, again and again."""
     return np.resize(rows, (count, rows.shape[1]))
 

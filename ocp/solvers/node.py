@@ -1,6 +1,6 @@
-"""What happens at one time, as functions of numbers: the joint's path, and the plant at a node.
+"""What happens at one time with its derivatives: the joint's path, and the plant at a Gauss node.
 
-Second derivatives belong to a single node, since the modes are linear in all that went before.
+Both are nonlinear, and both belong to a single time: the modes are linear in all that went before.
 """
 
 from __future__ import annotations
@@ -8,149 +8,147 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import casadi as ca
-from quietarm.models import Expression, JointMotion, Plant
+from quietarm.models import JointMotion, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import end_to_end, is_zero
+from quietarm.ocp.solvers.elementwise import (
+    Shape,
+    Table,
+    derivative,
+    hessian,
+    jacobian,
+    symbols,
+)
 from quietarm.ocp.task import QUANTITIES
 from quietarm.ocp.uncertainty import perturb_plant
 
-Places = list[tuple[int, int]]
-"""Rows and columns of a matrix's nonzeros."""
+_CSE = {"cse": True}
 
 
-class PathFunctions:
-    """What of the joint's path depends on the coefficients at one time, as functions of numbers.
+class Path:
+    """The values y(a, t) through which a profile's coefficients a enter the joint's motion.
 
-    Where the jerk is asked for, also at the time of `end_to_end`, with its rates by the fraction.
+    Where the jerk is asked for, y stands once more at the times of `end_to_end`, with its rates by
+    the fraction of the duration.
 
     Attributes
     ----------
     linear : bool
-        Whether it is linear in the coefficients, by slopes that only depend on the time.
-    value, first : Function
-        (coefficients, fraction, move) -> inner; its derivatives by the coefficients, dense.
-    second : Function
-        (coefficients, fraction, move, multipliers of inner) -> second derivatives.
+        Whether y is linear in the coefficients, with a Jacobian that only depends on the time.
+    count : int
+        Number of values.
     """
 
-    def __init__(self, profile: JointProfile, steps: int, jerk: bool) -> None:
-        self.profile = profile
-        a, fraction, move = ca.SX.sym("a", profile.size), ca.SX.sym("t"), ca.SX.sym("move", 3)
-        moves = ca.vertsplit(move)
-        inner = ca.vertcat(*profile.inner(ca.vertsplit(a), fraction, *moves))
-        self._own = inner.numel()
+    def __init__(self, profile: JointProfile, steps: int, jerk: bool, shape: Shape) -> None:
+        self._profile, self._jerk, self._size = profile, jerk, profile.size
+        a, move, at = symbols(profile.size, shape), symbols(3, shape), ca.MX.sym("t", *shape)
+        y = [ca.MX.zeros(*shape) + value for value in profile.inner(a, at, *move)]
+        self._own = len(y)
         if jerk:
-            with_rates = ca.vertcat(inner, ca.jacobian(inner, fraction))
-            at = end_to_end(fraction, steps)
-            inner = ca.vertcat(inner, ca.substitute(with_rates, fraction, at))
-        self.count = inner.numel()
-        first, weights = ca.densify(ca.jacobian(inner, a)), ca.SX.sym("w", self.count)
-        second = ca.densify(ca.hessian(ca.dot(weights, inner), a)[0])
-        self.linear = not ca.depends_on(first, ca.vertcat(a, move))
-        inputs, options = [a, fraction, move], {"cse": True}
-        self.value = ca.Function("inner", inputs, [inner], options)
-        self.first = ca.Function("slopes", inputs, [first], options)
-        self.second = ca.Function("bends", [*inputs, weights], [second], options)
+            rates = [derivative(value, at) for value in y]
+            y += ca.substitute([*y, *rates], [at], [end_to_end(at, steps)])
+        self.count = len(y)
+        y_a, inputs = jacobian(y, a), [*a, at, *move]
+        self._value = ca.Function("y", inputs, y)
+        self._jacobian = ca.Function("y_a", inputs, list(y_a.values()), _CSE)
+        self._places = list(y_a)
+        self.linear = not any(ca.depends_on(x, ca.veccat(*a, *move)) for x in y_a.values())
+        if not self.linear:
+            multipliers = symbols(self.count, shape)
+            y_aa = hessian(sum(w * x for w, x in zip(multipliers, y, strict=True)), a)
+            self._bent = list(y_aa)
+            self._hessian = ca.Function("y_aa", [*inputs, *multipliers], list(y_aa.values()), _CSE)
 
-    def motion(self, inner: ca.SX, move: ca.SX) -> JointMotion:
-        """The joint at a node, with its jerk where that is asked for."""
-        moves = ca.vertsplit(move)
+    def value(self, a: Sequence[ca.MX], at: ca.DM, move: Sequence[ca.MX]) -> list[ca.MX]:
+        """The values y."""
+        return self._value.call([*a, ca.MX(at), *move], True, False)
 
-        def outer(values: ca.SX) -> JointMotion:
-            return self.profile.outer(ca.vertsplit(values), *moves)
+    def jacobian(self, a: Sequence[ca.MX], at: ca.DM, move: Sequence[ca.MX]) -> Table:
+        """Derivatives of y by the coefficients; numbers where y is linear."""
+        if self.linear:
+            one = ca.DM.ones(*at.shape)
+            entries = self._jacobian.call([*[one] * self._size, at, *[one] * 3])
+            return {place: ca.MX(x) for place, x in zip(self._places, entries, strict=True)}
+        entries = self._jacobian.call([*a, ca.MX(at), *move], True, False)
+        return dict(zip(self._places, entries, strict=True))
 
-        joint = outer(inner[: self._own])
-        if inner.numel() == self._own:
+    def hessian(
+        self, a: Sequence[ca.MX], at: ca.DM, move: Sequence[ca.MX], multipliers: Sequence[ca.MX]
+    ) -> Table:
+        """Second derivatives by the coefficients of the sum of multipliers times y."""
+        entries = self._hessian.call([*a, ca.MX(at), *move, *multipliers], True, False)
+        return dict(zip(self._bent, entries, strict=True))
+
+    def motion(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
+        """The joint's motion; with its jerk where that is asked for and y are symbols."""
+        return self._profile.outer(y[: self._own], *move)
+
+    def motion_with_jerk(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
+        """The same with the jerk where that is asked for; y are symbols."""
+        joint = self.motion(y, move)
+        if not self._jerk:
             return joint
-        values, rates = ca.vertsplit(inner[self._own :], self._own)
-        jerk = ca.jtimes(outer(values).acceleration, values, rates) / move[2]
-        return joint._replace(jerk=jerk)
-
-    def slopes(self, fractions: ca.DM) -> list[list[ca.DM]]:
-        """Where it is linear: for each coefficient and value of inner a row over the fractions."""
-        count, size = fractions.numel(), self.profile.size
-        table = self.first(ca.DM.zeros(size, count), fractions, ca.DM.ones(3, count)).full()
-        by_entry = table.reshape(self.count, count, size)
-        return [[ca.DM(by_entry[i, :, n]).T for i in range(self.count)] for n in range(size)]
+        there, rates = y[self._own : 2 * self._own], y[2 * self._own :]
+        by_y = jacobian([self.motion(there, move).acceleration], there)
+        return joint._replace(jerk=sum(x * rates[k] for (_, k), x in by_y.items()) / move[2])
 
 
-class NodeFunctions:
-    """What happens at a node, as functions of numbers.
+class Node:
+    """A Gauss node: what forces the modes, f, and the outputs o of the point v = (y, W, W', W'').
+
+    The outputs are the power, the energy's smooth part where it has one, and the values of the
+    limited quantities.
 
     Attributes
     ----------
-    rows : list of int
-        How many outputs the energy has, the first of them the power, and each limited quantity.
-    first : Function
-        (inner, modes, move, errors) -> outputs; derivatives of what forces the modes by inner; of
-        the outputs by inner and modes. The modes are W, W' and W''.
-    second : Function
-        (inner, modes, move, errors, multipliers of forcing, of outputs) -> second derivatives by
-        inner and modes.
-    by_inner, by_point, bends : list of (int, int)
-        Where the nonzeros of the three stand.
+    count : int
+        Number of outputs.
+    own : int
+        How many of them, the first, belong to the energy.
     """
 
     def __init__(
         self,
         plant: Plant,
-        path: PathFunctions,
+        path: Path,
         quantities: Sequence[str],
         names: Sequence[str],
         energy: Energy,
+        shape: Shape,
     ) -> None:
-        inner, move, errors = (ca.SX.sym("x", n) for n in (path.count, 3, len(names)))
-        modes = ca.SX.sym("modes", 3 * plant.modes)
-        joint, point = path.motion(inner, move), ca.vertcat(inner, modes)
-        W, dW, ddW = (ca.vertsplit(part) for part in ca.vertsplit(modes, plant.modes))
-        wrong = perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
-        forcing = ca.vertcat(*wrong.modal_accelerations(joint, W, dW))
-        torque, tips = wrong.torque(joint, W, dW, ddW), wrong.tip_displacements(W)
+        m, zero = plant.modes, ca.MX.zeros(*shape)
+        y, modes, move = symbols(path.count, shape), symbols(3 * m, shape), symbols(3, shape)
+        errors = symbols(len(names), shape)
+        W, dW, ddW = modes[:m], modes[m : 2 * m], modes[2 * m :]
+        joint, v = path.motion_with_jerk(y, move), [*y, *modes]
+        perturbed = perturb_plant(plant, dict(zip(names, errors, strict=True)))
+        f = [zero + x for x in perturbed.modal_accelerations(joint, W, dW)]
+        torque, tips = perturbed.torque(joint, W, dW, ddW), perturbed.tip_displacements(W)
         smooth = energy.smooth(torque, joint.speed)
-        values = [[power_of(torque, joint.speed), *([] if is_zero(smooth) else [smooth])]]
-        values += [list(QUANTITIES[name].of(joint, tips, torque)) for name in quantities]
-        self.rows = [len(of) for of in values]
-        outputs = ca.vertcat(*(one for of in values for one in of))
-        inputs = [inner, modes, move, errors]
-        by_inner, by_point = ca.jacobian(forcing, inner), ca.jacobian(outputs, point)
-        of_forcing, of_outputs = (ca.SX.sym("w", one.numel()) for one in (forcing, outputs))
-        lagrangian = ca.dot(of_forcing, forcing) + ca.dot(of_outputs, outputs)
-        bends = ca.hessian(lagrangian, point)[0]
-        self.by_inner, self.by_point, self.bends = map(_nonzeros, (by_inner, by_point, bends))
-        first, options = [ca.densify(outputs), by_inner, by_point], {"cse": True}
-        self.first = ca.Function("node", inputs, first, options)
-        inputs += [of_forcing, of_outputs]
-        self.second = ca.Function("node_second", inputs, [bends], options)
+        own = [power_of(torque, joint.speed), *([] if is_zero(smooth) else [smooth])]
+        limited = [x for name in quantities for x in QUANTITIES[name].of(joint, tips, torque)]
+        o = [zero + x for x in (*own, *limited)]
+        self.own, self.count = len(own), len(o)
+        f_y, o_v, inputs = jacobian(f, y), jacobian(o, v), [*v, *move, *errors]
+        self._places = list(f_y), list(o_v)
+        self._first = ca.Function("node", inputs, [*o, *f_y.values(), *o_v.values()], _CSE)
+        multipliers = symbols(m + self.count, shape)
+        l_vv = hessian(sum(w * x for w, x in zip(multipliers, [*f, *o], strict=True)), v)
+        self._bent = list(l_vv)
+        self._second = ca.Function("l_vv", [*inputs, *multipliers], list(l_vv.values()), _CSE)
 
+    def evaluate(self, point: Sequence[ca.MX]) -> tuple[list[ca.MX], Table, Table]:
+        """The outputs, the Jacobian of f by y, and that of the outputs by v.
 
-def _nonzeros(matrix: ca.SX) -> Places:
-    return list(zip(*matrix.sparsity().get_triplet(), strict=True))
+        A point is v, then the move and the errors.
+        """
+        entries = iter(self._first.call(point, True, False))
+        outputs = [next(entries) for _ in range(self.count)]
+        f_y, o_v = ({place: next(entries) for place in places} for places in self._places)
+        return outputs, f_y, o_v
 
-
-def elementwise(function: ca.Function, *inputs: Sequence[Expression]) -> list[list[ca.MX]]:
-    """Apply a function of SX columns entry by entry, each operation to all entries at once.
-
-    For each argument its entries, arrays of one shape or scalars; for each result its nonzeros, in
-    the order of its sparsity.
-    """
-    shape = next((x.shape for of in inputs for x in of if isinstance(x, ca.MX)), (1, 1))
-    results = [[ca.MX()] * function.nnz_out(i) for i in range(function.n_out())]
-    work: dict[int, ca.MX] = {}
-    for k in range(function.n_instructions()):
-        operation, where = function.instruction_id(k), function.instruction_output(k)
-        of = function.instruction_input(k)
-        if operation == ca.OP_OUTPUT:
-            value = work[of[0]]
-            results[where[0]][where[1]] = (
-                value if value.shape == shape else ca.repmat(value, *shape)
-            )
-        elif operation == ca.OP_INPUT:
-            work[where[0]] = ca.MX(inputs[of[0]][of[1]])
-        elif operation == ca.OP_CONST:
-            work[where[0]] = ca.MX(function.instruction_constant(k))
-        elif len(of) == 1:
-            work[where[0]] = ca.MX.unary(operation, work[of[0]])
-        else:
-            work[where[0]] = ca.MX.binary(operation, work[of[0]], work[of[1]])
-    return results
+    def hessian(self, point: Sequence[ca.MX], multipliers: Sequence[ca.MX]) -> Table:
+        """Second derivatives by v of the sum of multipliers times f, then outputs."""
+        entries = self._second.call([*point, *multipliers], True, False)
+        return dict(zip(self._bent, entries, strict=True))

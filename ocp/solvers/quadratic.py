@@ -24,29 +24,50 @@ _EQUALITY, _OPTIMUM, _EMPTY = 5, 1, -1
 """DAQP's mark of one; its words for a solution, and for constraints that cannot be met."""
 
 
+class Multipliers(NamedTuple):
+    """Multipliers of rows, positive where the objective falls if a value may grow.
+
+    Attributes
+    ----------
+    equality, bounded : ndarray, shapes (rows, m) and (rows, k)
+        Of the equalities, and of what is bounded.
+    """
+
+    equality: Array
+    bounded: Array
+
+    def take(self, rows: Index) -> Multipliers:
+        """Some rows."""
+        return Multipliers(self.equality[rows], self.bounded[rows])
+
+    def put(self, rows: Index, other: Multipliers) -> None:
+        """Replace rows."""
+        self.equality[rows], self.bounded[rows] = other
+
+
 class Model(NamedTuple):
     """Rows of programs at their points: values, derivatives, Hessian of the Lagrangian.
 
     Attributes
     ----------
-    f : ndarray, shape (rows,)
+    objective : ndarray, shape (rows,)
         Objective.
     gradient : ndarray, shape (rows, n)
-        Its derivatives.
-    c, v : ndarray, shapes (rows, m) and (rows, k)
-        Equalities, and what is bounded.
-    by_c, by_v : ndarray, shapes (rows, m, n) and (rows, k, n)
+        Its gradient.
+    equality, bounded : ndarray, shapes (rows, m) and (rows, k)
+        Equalities, which are to be 0, and what is bounded.
+    equality_jacobian, bounded_jacobian : ndarray, shapes (rows, m, n) and (rows, k, n)
         Their derivatives.
     hessian : ndarray, shape (rows, n, n)
         Of the Lagrangian.
     """
 
-    f: Array
+    objective: Array
     gradient: Array
-    c: Array
-    by_c: Array
-    v: Array
-    by_v: Array
+    equality: Array
+    equality_jacobian: Array
+    bounded: Array
+    bounded_jacobian: Array
     hessian: Array
 
     def put(self, rows: Index, other: Model) -> None:
@@ -60,34 +81,36 @@ class Model(NamedTuple):
 
 
 class Steps(NamedTuple):
-    """Steps d with multipliers; whether the linearised constraints are met."""
+    """Steps d, shape (rows, n), with multipliers; whether the linearised constraints are met."""
 
     d: Array
-    of_c: Array
-    of_v: Array
+    multipliers: Multipliers
     met: NDArray[np.bool_]
 
 
 def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear: int) -> Steps:
-    """Steps that make quadratic models least within linearised constraints and in a box.
+    """Steps that minimise quadratic models within linearised constraints and in a box.
 
     The Hessians are convex, `radius` is half the sides of the boxes. Where the constraints cannot
-    be met, the step makes their violation least; the last `linear` of v are kept all the same.
+    be met, the step makes their violation least; the last `linear` of what is bounded are kept all
+    the same.
     """
     rows, n = model.gradient.shape
-    m, k = model.c.shape[1], model.v.shape[1]
-    above, below = upper - model.v, lower - model.v
-    room = np.abs(model.by_v).sum(axis=2) * radius[:, None]
-    near = (above <= room) | (-below <= room)
+    m, k = model.equality.shape[1], model.bounded.shape[1]
+    above, below = upper - model.bounded, lower - model.bounded
+    reach = np.abs(model.bounded_jacobian).sum(axis=2) * radius[:, None]
+    near = (above <= reach) | (-below <= reach)
     found = Steps(
-        np.zeros((rows, n)), np.zeros((rows, m)), np.zeros((rows, k)), np.zeros(rows, dtype=bool)
+        np.zeros((rows, n)),
+        Multipliers(np.zeros((rows, m)), np.zeros((rows, k))),
+        np.zeros(rows, dtype=bool),
     )
     for i in range(rows):
         own = np.flatnonzero(near[i])
         box = np.full(n, radius[i])
-        table = np.concatenate([model.by_c[i], model.by_v[i, own]])
-        most = np.concatenate([box, -model.c[i], above[i, own]])
-        least = np.concatenate([-box, -model.c[i], below[i, own]])
+        table = np.concatenate([model.equality_jacobian[i], model.bounded_jacobian[i, own]])
+        most = np.concatenate([box, -model.equality[i], above[i, own]])
+        least = np.concatenate([-box, -model.equality[i], below[i, own]])
         marks = np.zeros(len(most), dtype=np.int32)
         marks[n : n + m] = _EQUALITY
         one = model.hessian[i], model.gradient[i], table, most, least
@@ -97,7 +120,8 @@ def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear:
             d, _, flag, info = daqp.solve(stiffer, *one[1:], marks, **_LOOSER)
         if flag == _OPTIMUM:
             found.met[i], multipliers = True, info["lam"][n:]
-            found.of_c[i], found.of_v[i, own] = multipliers[:m], multipliers[m:]
+            found.multipliers.equality[i] = multipliers[:m]
+            found.multipliers.bounded[i, own] = multipliers[m:]
         else:
             d = _least_violation(table, most[n:], least[n:], radius[i], m, own >= k - linear)
         found.d[i] = d
@@ -128,17 +152,17 @@ def _least_violation(
     return np.asarray(d)[:n]
 
 
-def convex(model: Model) -> Array:
+def convexify(model: Model) -> Array:
     """Hessians with negative curvature along the linearised equalities counted as positive.
 
     Across them the equalities settle the step, so that any curvature will do that keeps the whole
     positive.
     """
     hessian = (model.hessian + model.hessian.transpose(0, 2, 1)) / 2
-    m, n = model.by_c.shape[1:]
+    m, n = model.equality_jacobian.shape[1:]
     if m >= n:
         return np.repeat(np.eye(n)[None], len(hessian), axis=0)
-    basis = np.linalg.svd(model.by_c)[2].transpose(0, 2, 1) if m else np.eye(n)
+    basis = np.linalg.svd(model.equality_jacobian)[2].transpose(0, 2, 1) if m else np.eye(n)
     hessian = basis.swapaxes(-1, -2) @ hessian @ basis
     values, vectors = np.linalg.eigh(hessian[:, m:, m:])
     values = np.abs(values)

@@ -1,57 +1,23 @@
-"""What is asked of a program, and what a solver gives."""
+"""What a solver gives."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
+import daqp
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.solvers.transcription import RESIDUAL
 
-ENERGY, RESIDUAL = "energy", "residual"
-LEAST_ENERGY = {ENERGY: 1.0}
-STILL, STILL_SHARE = 1e-8, 1e-7
-"""A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
-the plain cycloid's residual, whichever is larger."""
-
-
-class Scalarization(NamedTuple):
-    """What is asked of a program.
-
-    Attributes
-    ----------
-    limits : mapping of str to float
-        Largest residual [m], 0 for rest on arrival, and peaks [SI units]; a quantity without an
-        entry is free.
-    bound : float or None
-        Largest absolute coefficient, as the profile's `box` takes it.
-    minimise : mapping of str to float
-        Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is made least.
-    offset : ndarray, shape (2 * modes,), or None
-        What the steps miss of the state on arrival [m, m/s].
-    """
-
-    limits: Mapping[str, float]
-    bound: float | None = None
-    minimise: Mapping[str, float] = LEAST_ENERGY
-    offset: NDArray[np.float64] | None = None
-
-    @property
-    def least(self) -> str | None:
-        """The peak that is made least."""
-        return next((name for name in self.minimise if name != ENERGY), None)
-
-    @property
-    def at_rest(self) -> bool:
-        """Whether rest on arrival is asked for."""
-        return self.limits.get(RESIDUAL, np.inf) == 0 and self.least != RESIDUAL
+_LITTLE = 1e-8
+"""Curvature that makes a linear program a quadratic one."""
 
 
 @dataclass(frozen=True)
 class Solution:
-    """What a solver gives for one start, in SI units and by its own discretisation.
+    """What a solver gives for one start, in SI units and by its own steps.
 
     Attributes
     ----------
@@ -59,15 +25,15 @@ class Solution:
         The profile's coefficients.
     energy : float
         F2 [J].
-    peaks : dict of str to float
+    peaks : mapping of str to float
         Residual [m] and each limited quantity [SI units], at the nodes.
     status : SolveStatus
         How it ended.
     iterations : int
-        Iterations of the solver that it took, those of other starts included.
-    arrival : ndarray, shape (2 * modes,)
-        W (m) and then W' (m/s) on arrival, corrected as asked.
-    prices : dict of str to float
+        Iterations of the solver, those of other starts of the same problem included.
+    arrival : ndarray, shape (scenarios, 2 * modes)
+        W [m] and then W' [m/s] on arrival in every scenario, with the scalarization's offset.
+    shadow_prices : mapping of str to float
         By how much the least energy falls if a limit is widened [J by the limit's unit]; of the
         residual, too, where rest on arrival is asked for.
     reason : str
@@ -76,11 +42,11 @@ class Solution:
 
     coefficients: NDArray[np.float64]
     energy: float
-    peaks: dict[str, float]
+    peaks: Mapping[str, float]
     status: SolveStatus
     iterations: int
     arrival: NDArray[np.float64]
-    prices: dict[str, float] = field(default_factory=dict)
+    shadow_prices: Mapping[str, float] = field(default_factory=dict)
     reason: str = ""
 
     @property
@@ -91,4 +57,18 @@ class Solution:
     @property
     def slope(self) -> float:
         """Change of the least energy with the residual limit [J/m], at most 0."""
-        return -self.prices.get(RESIDUAL, 0.0)
+        return -self.shadow_prices.get(RESIDUAL, 0.0)
+
+
+def price_of_rest(multipliers: NDArray[np.float64], rows: NDArray[np.float64]) -> float:
+    """The most that the objective falls by for a residual of 1 m, from the arrival's multipliers.
+
+    The largest product of the multipliers, shape (2 * modes,), and a state on arrival whose
+    residual is 1 m by the rows, shape (rows, 2 * modes): a linear program, with a little curvature
+    for the solver of quadratic ones.
+    """
+    scale = np.abs(rows).max(axis=0)
+    slope, table = multipliers / scale, rows / scale
+    limit, steepest = np.ones(len(table)), np.abs(slope).max() or 1.0
+    state, *_ = daqp.solve(_LITTLE * np.eye(len(slope)), -slope / steepest, table, limit, -limit)
+    return float(slope @ np.asarray(state))

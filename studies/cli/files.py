@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 from quietarm.ocp import Plan
-from quietarm.ocp.planning.answer import ticks_of_move
+from quietarm.ocp.planning.plan import ticks_of_move
 from quietarm.studies import figures
 from quietarm.studies.cli.options import options, typed
 from quietarm.studies.cli.types import CSV_FILE, JSON_FILE, PICTURE

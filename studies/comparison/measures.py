@@ -16,7 +16,6 @@ from quietarm.metaheuristics.ensemble import Spread
 from quietarm.ocp import Front, PointToPoint
 from quietarm.ocp.checks import not_negative, positive, whole
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.front.robust import on_same_samples
 from quietarm.ocp.saved import plain
 from quietarm.studies.comparison.staircase import best_of, evenly_spaced, filled, objectives, within
 from quietarm.studies.paper import task_difference
@@ -160,7 +159,7 @@ def compare_fronts(
         raise ValueError("no levels are given; give one residual in m or more, as [1e-3]")
     if floor is not None:
         floor = not_negative("floor", floor, "J")
-    given = on_same_samples([*fronts, reference] if reference else fronts)
+    given = [*fronts, reference] if reference else list(fronts)
     check_alike(given, [*names, reference_name][: len(given)])
     fronts, reference = given[: len(fronts)], given[-1] if reference else None
     check_apart(fronts, names)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics import NamedProblem, PopulationObjective
 from quietarm.ocp import QuietarmError, plan_move
 from quietarm.ocp.checks import CountFromOne, Positive, Share
-from quietarm.ocp.front.sweep import Sweep
+from quietarm.ocp.front.curve import Curve
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.saved import Saved
 
@@ -53,20 +53,23 @@ class Landscape(Saved):
 def landscape_of(problem: NamedProblem, seed: int = 0) -> Landscape:
     """Look for the local minima of a problem."""
     settings = SolveSettings(bound=problem.bound, starts=1)
-    sweep, random = Sweep(problem.task, problem.profile, settings), np.random.default_rng(seed)
+    curve, random = (
+        Curve.begin(problem.task, problem.profile, settings),
+        np.random.default_rng(seed),
+    )
     box = problem.profile.box(problem.bound)
     starts = random.uniform(*box, (STARTS, problem.profile.size))
-    found = sweep.solve([(start, sweep.ask(LEVEL)) for start in starts])
+    found = curve.solver.solve([curve.problem(LEVEL)] * STARTS, starts)
     solved = [one for one in found if one.status.solved]
     if not solved:
         raise QuietarmError(f"none of {STARTS} random starts ended at a minimum")
     energies = np.array([one.energy for one in solved])
     places = np.array([one.coefficients for one in solved])
     lowest, width = energies.min(), box[1] - box[0]
-    cheapest = sweep.best([places[energies.argmin()]], sweep.ask()).coefficients
+    (cheapest,) = curve.solver.solve([curve.problem()], [places[energies.argmin()]])
     drawn = random.uniform(*box, (CANDIDATES, problem.profile.size))
     costs = PopulationObjective(problem.task, problem.profile)(drawn).energy
-    far = np.linalg.norm((drawn - cheapest) / width, axis=1)
+    far = np.linalg.norm((drawn - cheapest.coefficients) / width, axis=1)
     return Landscape(
         problem=problem.name,
         starts=STARTS,

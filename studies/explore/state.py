@@ -23,7 +23,7 @@ from quietarm.ocp import (
     evaluate_robustness,
     plan_move,
 )
-from quietarm.ocp.front.sweep import Report, no_report
+from quietarm.ocp.front.curve import Report, no_report
 from quietarm.ocp.task import QUANTITIES
 from quietarm.studies.export import export_plan
 from quietarm.studies.sweep.grid import OF_MOVES

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp import Plan, Trajectory
 from quietarm.ocp.checks import install, unknown
-from quietarm.ocp.planning.answer import ticks_of_move
+from quietarm.ocp.planning.plan import ticks_of_move
 from quietarm.studies.display.templates import templates
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from quietarm.ocp import Front, Polish
-from quietarm.ocp.front.checking import RESIDUAL_LIMIT
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.studies.display.words import millimetres, title_of
 from quietarm.studies.figures.axes import (
     axes_or_new,

@@ -13,7 +13,7 @@ from quietarm.metaheuristics.ensemble import (
     hypervolumes,
 )
 from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint
-from quietarm.ocp.front.checking import RESIDUAL_LIMIT
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.robustness.worst import worst_of
 from quietarm.studies.display.words import counted, energy_words, millimetres, residual_words

@@ -18,7 +18,7 @@ from quietarm.ocp import (
     plan_move,
     plan_moves,
 )
-from quietarm.ocp.planning.verification import OVERRUN
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.sweep.asked import COEFFICIENTS, JUMP
 from quietarm.studies.sweep.grid import Grid
 from quietarm.studies.sweep.interpolation import Interpolation

@@ -147,7 +147,7 @@ def _plans(sweep: Sweep, tasks: list[PointToPoint], starts: int) -> list[_Cell]:
         figures |= {f"price_{name}": price for name, price in prices.items()}
         return _Cell(moves.status[k], figures, moves.coefficients[k])
 
-    return [cell(k, prices) for k, prices in enumerate(moves.prices)]
+    return [cell(k, prices) for k, prices in enumerate(moves.shadow_prices)]
 
 
 def _robust_plans(sweep: Sweep, tasks: Sequence[PointToPoint], starts: int) -> list[_Cell]:

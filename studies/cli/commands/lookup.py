@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 from quietarm.ocp import InfeasibleTaskError, Plan
-from quietarm.ocp.planning.verification import OVERRUN
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.cli.ending import finish
 from quietarm.studies.cli.files import plan_file_options
 from quietarm.studies.cli.options import quiet_option

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from moves import CASES
-from quietarm.ocp.solvers.solution import STILL
+from quietarm.ocp.solvers.transcription import STILL
 
 import quietarm as qa
 

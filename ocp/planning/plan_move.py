@@ -1,4 +1,4 @@
-"""`plan_move`: least energy within a residual limit, from several starts, verified."""
+"""`plan_move`: least energy within a residual limit, from several starts, certified."""
 
 from __future__ import annotations
 
@@ -8,19 +8,23 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.interrupts import note_interrupts, one_at_a_time
-from quietarm.ocp.planning.answer import Plan, evaluate_coefficients
+from quietarm.ocp.errors import InfeasibleTaskError
+from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.best_of_starts import (
+    first_steps,
+    solve_from_starts,
+    start_coefficients,
+)
+from quietarm.ocp.planning.certify import OVERRUN, certify
 from quietarm.ocp.planning.feasibility import UNITS
+from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
 from quietarm.ocp.planning.robust import limit_of, robust_plan
-from quietarm.ocp.planning.starts import first_steps, from_starts, start_coefficients
-from quietarm.ocp.planning.verification import HURRIED, OVERRUN, verified
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Provenance, SolveSettings, Verification
-from quietarm.ocp.solvers.program import Program
-from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization
-from quietarm.ocp.solvers.solving import Solver
+from quietarm.ocp.solvers.choice import SolverName, solver_of
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, Transcription
 from quietarm.ocp.task import PointToPoint
 
 
@@ -57,7 +61,7 @@ def plan_move(
     seed: int = 0,
     steps: int | None = None,
     guess: ArrayLike | None = None,
-    solver: Solver = "sqp",
+    solver: SolverName = "sqp",
 ) -> Plan:
     """Find the motion of least energy whose residual vibration is within a limit.
 
@@ -93,8 +97,7 @@ def plan_move(
     Returns
     -------
     Plan
-        The coefficients, with the figures of an independent integrator. After Ctrl-C the best of
-        the starts that were solved until then, and not ``complete``. Of an uncertain plant the
+        The coefficients, with the figures of an independent integrator. Of an uncertain plant the
         residual limit holds between the samples as well, as its ``worst`` states; its task has the
         samples that this took.
 
@@ -106,8 +109,6 @@ def plan_move(
         When no motion of this profile meets the task; the text says what would be feasible.
     SolverFailedError
         When no start ended at an optimum for another reason.
-    KeyboardInterrupt
-        After Ctrl-C before a start was solved.
     """
     profile = CycloidPolynomial() if profile is None else profile
     if guess is not None:
@@ -134,32 +135,22 @@ def plan_from(
     starts: Sequence[NDArray[np.float64]],
 ) -> tuple[Plan, list[NDArray[np.float64]]]:
     """The plan from given starts, and the coefficients of all that were solved, cheapest first."""
-    began = time.perf_counter()
-    program = Program(task, profile, first_steps(task, profile, settings))
-    ask = Scalarization({RESIDUAL: settings.residual_limit, **task.limits}, settings.bound)
-    found = from_starts(program, ask, starts, settings.solver)
-    stopped = found.stopped
-    try:
-        if stopped:
-            raise KeyboardInterrupt
-        checked = verified(program, ask, found.solution, settings.solver)
-    except KeyboardInterrupt:
-        stopped = stopped or f"{len(starts)} of {len(starts)} starts"
-        with note_interrupts():
-            try:
-                checked = verified(program, ask, found.solution, settings.solver, HURRIED)
-            except SolverFailedError:
-                raise KeyboardInterrupt from None
-    best, simulated, steps_used = checked
-    verification = Verification.between(steps_used, best.energy, best.residual, simulated.motion)
-    seconds = time.perf_counter() - began
+    began, solver = time.perf_counter(), solver_of(settings.solver)
+    transcription = Transcription(task, profile, first_steps(task, profile, settings))
+    limits = {RESIDUAL: settings.residual_limit, **task.limits}
+    problem = Problem(transcription, Scalarization(limits, settings.bound))
+    best, solved = solve_from_starts(problem, starts, solver)
+    certified = certify(problem, best, solver)
+    solution, motion = certified.solution, certified.checked.motion
     plan = Plan(
         task=task,
         profile=profile,
-        coefficients=profile.checked(best.coefficients),
-        motion=simulated.motion,
-        status=best.status,
-        verification=verification,
-        provenance=Provenance(settings.solver, settings, seconds=seconds, stopped=stopped),
+        coefficients=profile.checked(solution.coefficients),
+        motion=motion,
+        status=solution.status,
+        verification=Verification.between(
+            certified.steps, solution.energy, solution.residual, motion
+        ),
+        provenance=Provenance(settings.solver, settings, seconds=time.perf_counter() - began),
     )
-    return plan, [one.coefficients for one in found.solved]
+    return plan, [one.coefficients for one in solved]

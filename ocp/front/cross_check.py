@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from quietarm.ocp.front.answer import Front
+from quietarm.ocp.front.curve import Curve, Report, curve_of, no_report
+from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
-from quietarm.ocp.front.sweep import Report, Sweep, no_report, sweep_of
 from quietarm.ocp.interrupts import one_at_a_time
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import number_of_points
-from quietarm.ocp.solvers.solution import RESIDUAL
+from quietarm.ocp.simulation.resimulation import resimulate
+from quietarm.ocp.solvers.choice import SolverName
+from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.transcription import RESIDUAL
 
 _SAME = 1e-6
 """Energies that differ by no more than this share agree."""
@@ -76,29 +80,34 @@ def cross_check(front: Front, points: int = 7, report: Report = no_report) -> Cr
     ------
     ValueError
         When the front has no point, or `points` is out of range.
-    KeyboardInterrupt
-        After Ctrl-C.
     """
     count = min(number_of_points(points), len(front.points))
-    solver = "sqp" if front.settings.get("solver") == "ipopt" else "ipopt"
-    sweep, found = sweep_of(front, starts=_STARTS, solver=solver), list[Compared]()
+    solver: SolverName = "sqp" if front.settings.get("solver") == "ipopt" else "ipopt"
+    curve, found = curve_of(front, starts=_STARTS, solver=solver), list[Compared]()
     for i in np.linspace(0, len(front.points) - 1, count).round().astype(int):
-        found.append(_compared(sweep, front.points[i]))
+        found.append(_compare(curve, front.points[i]))
         report(len(found), count)
     return CrossCheck(solver, tuple(found))
 
 
-def _compared(sweep: Sweep, point: FrontPoint) -> Compared:
-    """A point by both, on the same steps; its residual there is the limit."""
-    program = sweep.program
-    at = program.evaluated(np.array(point.coefficients))
-    ask = sweep.ask(program.peaks(at)[RESIDUAL])
-    energy = float(at.energy[0])
-    best = np.nan
-    for start in sweep.guesses:
-        found = sweep.solve([(start, ask)])[0]
+def _compare(curve: Curve, point: FrontPoint) -> Compared:
+    """A point by both, within the same limits at the nodes of the same steps."""
+    transcription, asked = curve.problem()
+    task, profile = curve.task, transcription.profile
+    peaks = transcription.peaks(transcription.evaluate(np.array(point.coefficients)))
+    motion = resimulate(task.certain, profile, point.coefficients)
+    # a limit that the point is at was tightened until it held between the nodes as well
+    limits = {
+        name: peaks[name] if motion.peak(name) > limit * (1 - OVERRUN) else limit
+        for name, limit in task.limits.items()
+    }
+    limits[RESIDUAL] = peaks[RESIDUAL]
+    problem, best = Problem(transcription, asked._replace(limits=limits)), np.nan
+    for start in curve.starts:
+        (found,) = curve.solver.solve([problem], [start])
         if found.status.solved:
-            best = np.nanmin([best, found.energy])
-        if best <= energy * (1 + _SAME):
+            energy = resimulate(task.certain, profile, found.coefficients).energy
+            best = float(np.nanmin([best, energy]))
+        if best <= motion.energy * (1 + _SAME):
             break
-    return Compared(point.residual, energy, float(best))
+    return Compared(point.residual, motion.energy, best)

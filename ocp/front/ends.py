@@ -1,0 +1,150 @@
+"""The two ends of a front: at rest on arrival, or of least residual, and the cheapest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve
+from quietarm.ocp.planning.best_of_starts import SAME, best_of_starts, solve_from_starts
+from quietarm.ocp.planning.certify import OF_A_PLAN, Tolerances, certify
+from quietarm.ocp.planning.feasibility import least_peaks_of
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Problem
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL, STILL, Transcription
+
+_ENERGY_WEIGHTS = (1.0, 0.1, 0.02, 2e-3)
+"""Weights of the energy beside the residual, one solve after the other, on the way to the still end
+of an uncertain plant. At the last one, another hundredth of the cheapest end's residual less would
+cost five times the energy of the nominal plant's motion at rest."""
+_SAMPLING = 1e-4
+"""Share by which the residual between its samples may exceed that at them."""
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The ends of a front.
+
+    Attributes
+    ----------
+    curve : Curve
+        On the steps that the still end takes.
+    still, cheapest : Solution
+        The ends.
+    certificates : tuple of Certificate
+        Of both.
+    """
+
+    curve: Curve
+    still: Solution
+    cheapest: Solution
+    certificates: tuple[Certificate, Certificate]
+
+    @property
+    def width(self) -> float:
+        """How far apart they are in the residual [m]."""
+        return self.cheapest.residual - self.still.residual
+
+    @property
+    def height(self) -> float:
+        """How far apart they are in the energy [J]."""
+        return self.still.energy - self.cheapest.energy
+
+    @property
+    def are_one(self) -> bool:
+        """Whether the cheapest motion is the still one, and there is no front between."""
+        return self.width <= STILL or self.height <= SAME * self.still.energy
+
+
+def find_ends(curve: Curve) -> Ends:
+    """Find the motion of least energy that arrives at rest, and that whose residual is free.
+
+    The number of steps is raised until the independent integrator agrees with the still end. Where
+    no motion arrives at rest, that end is the motion of least residual; of an uncertain task it is
+    where less residual would cost too much energy.
+
+    Raises
+    ------
+    InfeasibleTaskError
+        When no motion of the profile keeps the task's limits.
+    SolverFailedError
+        When an end could not be found for another reason.
+    """
+    if curve.task.uncertainty is not None:
+        return _of_scenarios(curve)
+    at_rest = _at_rest(curve)  # first: it settles the number of steps
+    curve = curve if at_rest is None else at_rest[0]
+    cheapest, _ = solve_from_starts(curve.problem(), curve.starts, curve.solver)
+    still, certificate = at_rest[1:] if at_rest else _least_residual(curve, cheapest)
+    return Ends(curve, still, cheapest, (certificate, _certify_cheapest(curve, cheapest)))
+
+
+def _certify_cheapest(curve: Curve, cheapest: Solution) -> Certificate:
+    return curve.certify(cheapest, {RESIDUAL_LIMIT: cheapest.residual}, free=True)
+
+
+def _at_rest(curve: Curve) -> tuple[Curve, Solution, Certificate] | None:
+    """The motion at rest, on a curve of the steps that it takes; None where there is none."""
+    try:
+        first, _ = solve_from_starts(curve.problem(0.0), curve.starts, curve.solver)
+        found = certify(
+            curve.problem(0.0), first, curve.solver, Tolerances(curve.tolerances.energy)
+        )
+        curve = replace(curve, transcription=found.problem.transcription)
+        end = certify(curve.problem(0.0), found.solution, curve.solver)
+    except SolverFailedError:
+        return None
+    return curve, found.solution, curve.point_of(end)
+
+
+def _least_residual(curve: Curve, cheapest: Solution) -> tuple[Solution, Certificate]:
+    """The motion of least residual, and of motions of that residual the cheapest.
+
+    Limits are tightened while the residual is minimised: at the least residual there is no room to
+    tighten them in.
+    """
+    least = least_peaks_of(curve.problem(), curve.starts).get(RESIDUAL)
+    if least is None:
+        return cheapest, _certify_cheapest(curve, cheapest)
+    transcription, asked = curve.problem(minimise={RESIDUAL: 1.0})
+    limits, solver = {**curve.task.limits, RESIDUAL: np.inf}, curve.solver
+    try:
+        reached = certify(Problem(transcription, asked), least, solver, limits=limits)
+        transcription, asked = reached.problem
+        limit = reached.solution.residual * (1 + _SAMPLING)
+        asked = asked._replace(
+            limits={**asked.limits, RESIDUAL: limit}, minimise=LEAST_ENERGY, offset=None
+        )
+        problem = Problem(transcription, asked)
+        (found,) = solver.solve([problem], [reached.solution.coefficients], warm=True)
+        still = found if found.status.solved else reached.solution
+        end = certify(problem, still, solver, OF_A_PLAN, limits)
+    except SolverFailedError:
+        return least, curve.certify(least, {RESIDUAL_LIMIT: least.residual})
+    point, iterations = curve.point_of(end)
+    return still, Certificate(point, least.iterations + iterations)
+
+
+def _of_scenarios(curve: Curve) -> Ends:
+    """The ends of an uncertain task, from those of the nominal one.
+
+    Its energy is that of the nominal plant, so the cheapest motion is the same. Neither rest in all
+    scenarios nor the least residual is asked for: both would cost any energy.
+    """
+    nominal = find_ends(
+        Curve.begin(curve.task.certain, curve.transcription.profile, curve.settings)
+    )
+    steps = nominal.curve.transcription.steps
+    curve = replace(curve, transcription=Transcription(
+        curve.task, curve.transcription.profile, steps))  # fmt: skip
+    starts = [nominal.cheapest.coefficients, nominal.still.coefficients]
+    (cheapest,) = best_of_starts([curve.problem()], [starts], curve.solver)
+    still = cheapest
+    for weight in _ENERGY_WEIGHTS if cheapest.residual > STILL else ():
+        weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / nominal.still.energy}
+        problem = curve.problem(minimise=weights)
+        (found,) = curve.solver.solve([problem], [still.coefficients])
+        still = found if found.status.solved else still
+    certificate = curve.certify(still, {RESIDUAL_LIMIT: still.residual})
+    return Ends(curve, still, cheapest, (certificate, _certify_cheapest(curve, cheapest)))

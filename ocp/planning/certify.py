@@ -1,0 +1,234 @@
+"""Compare a solver's answer with the independent integrator, and correct it where they differ."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.simulation.objective import Motion, WithPeaks
+from quietarm.ocp.simulation.piecewise import PiecewiseMotion
+from quietarm.ocp.simulation.resimulation import in_scenarios
+from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.solvers.batch import Batch, Values, batch
+from quietarm.ocp.solvers.choice import Solver
+from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.solution import Solution
+from quietarm.ocp.solvers.transcription import RESIDUAL, STILL, STILL_SHARE, Transcription
+from quietarm.ocp.task import QUANTITIES
+
+MOST_SOLVER_STEPS = 3200
+"""The solver's steps are doubled up to this many."""
+_RESIDUAL_AGREEMENT = 5e-3
+_AT_REST = 0.3
+"""Of a limit, and of rest: by these shares may the two integrators' residuals differ."""
+_ROUNDS = 12
+_BELOW = 1 + 2e-8
+"""A limit that is passed is tightened by this share beyond the excess: the solver's own tolerance,
+else the next peak passes the limit by as little again."""
+OVERRUN = 1e-3
+"""Share of a limit by which a verified peak may pass it when tightening found nothing better."""
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """When a solution counts as certified.
+
+    Attributes
+    ----------
+    energy : float
+        Share by which the energies of solver and integrator may differ.
+    most_steps : int
+        The solver's steps are doubled up to this many.
+    """
+
+    energy: float = 1e-5
+    most_steps: int = MOST_SOLVER_STEPS
+
+
+OF_A_PLAN = Tolerances()
+"""The solver's cheapest motion is then the independent integrator's within 1e-6, in all but one of
+56 plans tried (6e-6)."""
+
+
+class Certified(NamedTuple):
+    """A solution with the figures of CVODES, and the problem, tightened, that it solves."""
+
+    solution: Solution
+    checked: Checked
+    problem: Problem
+
+    @property
+    def steps(self) -> int:
+        """The solver's steps."""
+        return self.problem.transcription.steps
+
+
+def certify(
+    problem: Problem,
+    solution: Solution,
+    solver: Solver,
+    tolerances: Tolerances = OF_A_PLAN,
+    limits: Mapping[str, float] | None = None,
+) -> Certified:
+    """Compare with CVODES; correct the arrival, double the steps, tighten what is exceeded.
+
+    The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
+    the residual limit at its samples. The differences that the independent integrator finds are
+    given to the solver, which goes on from where it stopped.
+
+    Parameters
+    ----------
+    problem : Problem
+        What was solved.
+    solution : Solution
+        Its solution.
+    solver : Solver
+        What solves it again.
+    tolerances : Tolerances
+        When both count as equal.
+    limits : mapping of str to float, optional
+        What has to hold by CVODES; the problem's own limits by default.
+
+    Raises
+    ------
+    SolverFailedError
+        When a limit is exceeded all the same.
+    """
+    (transcription, asked), best = problem, solution
+    limits, tightened = asked.limits if limits is None else limits, dict(asked.limits)
+    still = max(STILL, STILL_SHARE * transcription.plain_residual)
+    tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * asked.residual_limit)
+    tried: list[Certified] = []
+
+    def check(problem: Problem, found: Solution) -> Checked:
+        tried.append(Certified(found, Checked(transcription, found), problem))
+        return tried[-1].checked
+
+    simulated = check(problem, best)
+    for _ in range(_ROUNDS):
+        tightened = tighten(tightened, simulated, limits)
+        rough = abs(best.energy - simulated.energy) > tolerances.energy * simulated.energy
+        missed = abs(best.residual - simulated.residual) > tolerated
+        again = None
+        if not rough and (missed or simulated.passed(limits)):
+            offset = simulated.arrival - transcription.evaluate(best.coefficients).arrival
+            problem = Problem(transcription, asked._replace(limits=tightened, offset=offset))
+            again = _solve_again(problem, best, solver)
+        elif not rough:
+            break
+        if again is None or not again.status.solved:
+            if 2 * transcription.steps > tolerances.most_steps:
+                break
+            transcription = transcription.refine()
+            problem = Problem(transcription, asked)
+            again = _solve_again(problem, best, solver)
+            tightened = dict(asked.limits)
+            if not again.status.solved:
+                break
+        best, simulated = again, check(problem, again)
+    cheapest = _cheapest_kept(tried, limits, still)
+    remedy = "bound the coefficients or use fewer terms"
+    refuse_exceeded(
+        cheapest.checked,
+        limits,
+        f"the solver's steps are too coarse for this motion; {remedy}",
+        still,
+    )
+    return cheapest
+
+
+def _solve_again(problem: Problem, found: Solution, solver: Solver) -> Solution:
+    """Solve again from a solution close by."""
+    (again,) = solver.solve([problem], [found.coefficients], warm=True)
+    return replace(again, iterations=found.iterations + again.iterations)
+
+
+class Checked(WithPeaks):
+    """What CVODES makes of a solution, in all scenarios."""
+
+    def __init__(self, of: Transcription, found: Solution) -> None:
+        joint = PiecewiseMotion.of_profile(of.task, of.profile, found.coefficients)
+        self._all = in_scenarios(of.task, joint)
+        self.energy = self._all[0].energy
+        self.residual = max(one.residual for one in self._all)
+        self.arrival = np.array([one.arrival for one in self._all])
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The figures: residual and deflection of the worst scenario, all else of the nominal."""
+        return Motion.worst([one.motion for one in self._all])
+
+    def peak(self, name: str) -> float:
+        """As of `WithPeaks`."""
+        return self.residual if name == RESIDUAL else self.motion.peak(name)
+
+
+def tighten(
+    limits: Mapping[str, float], motion: WithPeaks, kept: Mapping[str, float]
+) -> dict[str, float]:
+    """The limits to give the solver, each less by as much as the verified motion exceeds it."""
+    passed = motion.passed(kept)
+    return {
+        name: limit / (_BELOW * passed[name]) if name in passed else limit
+        for name, limit in limits.items()
+    }
+
+
+def refuse_exceeded(
+    motion: WithPeaks, limits: Mapping[str, float], remedy: str, still: float = 0.0
+) -> None:
+    """Refuse a verified motion that exceeds a limit although limits were tightened."""
+    for name, limit in limits.items():
+        if motion.peak(name) > max(limit * (1 + OVERRUN), still):
+            raise SolverFailedError(
+                f"the verified {name} is {motion.peak(name):.4g}, above its limit of {limit:g}: "
+                + remedy
+            )
+
+
+def _cheapest_kept(tried: list[Certified], kept: Mapping[str, float], still: float) -> Certified:
+    """The cheapest of the verified motions that keep every limit; else the last."""
+    keeping = [
+        one
+        for one in tried
+        if all(one.checked.peak(name) <= max(limit, still) for name, limit in kept.items())
+    ]
+    return min(keeping, key=lambda one: one.checked.energy) if keeping else tried[-1]
+
+
+CHECK_EVERY = 10
+"""CVODES checks one motion in so many."""
+FINER_AGREEMENT = 1e-6
+"""The share by which its figures may then differ."""
+_FINER = 3
+
+
+def finer_values(of: Sequence[Transcription], coefficients: NDArray[np.float64]) -> Values:
+    """Figures of one motion of each task, on three times the solver's steps or more."""
+    return _values_of(_finer(of[0]), of, coefficients)
+
+
+def finer_peaks(
+    of: Sequence[Transcription], coefficients: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]:
+    """Peaks of every quantity of one motion of each task, at the nodes of these steps."""
+    finer = _finer(of[0], tuple(QUANTITIES))
+    limited = _values_of(finer, of, coefficients).limited
+    return {name: np.abs(limited[:, place]).max(axis=1) for name, place in finer.places.items()}
+
+
+def _finer(one: Transcription, quantities: tuple[str, ...] = ()) -> Batch:
+    steps = max(default_steps(one.task), _FINER * one.steps)
+    return batch(one.task.plant, one.profile, steps, quantities, energy=one.task.energy)
+
+
+def _values_of(
+    finer: Batch, of: Sequence[Transcription], coefficients: NDArray[np.float64]
+) -> Values:
+    move = np.array([one.task.row for one in of])
+    return finer.values(coefficients, move, np.zeros((len(of), 0)))

@@ -1,0 +1,195 @@
+"""Problems of one form as the nonlinear programs that `funnel.minimise` takes, a row each.
+
+Unknowns are the coefficients along even axes, and last the peak that is minimised, where one is.
+Objective, equalities and what is bounded are scaled; the coefficients' box comes last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.ocp.solvers.batch import Derivatives
+from quietarm.ocp.solvers.batch import Multipliers as MotionMultipliers
+from quietarm.ocp.solvers.constraints import Box, Constraint, Peak, QuantityLimit, ResidualLimit
+from quietarm.ocp.solvers.problem import Problem
+from quietarm.ocp.solvers.quadratic import Model, Multipliers
+from quietarm.ocp.solvers.transcription import ENERGY, RESIDUAL
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+_IN_SCENARIOS = "deflection"
+"""The quantity whose limit holds in all scenarios; the others' hold for the nominal plant."""
+
+
+class Programs:
+    """Problems of the same profile, steps, limited quantities, and kinds of residual and peak.
+
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (problems, bounded)
+        Bounds of what is bounded.
+    linear : int
+        How many of these, the last, are linear in the unknowns.
+    unknowns, equalities : int
+        How many of each a problem has.
+    constraints : dict of str to Constraint
+        What is bounded: the residual and each limited quantity by name, and the box.
+    weights : ndarray, shape (problems, 2)
+        Of the scaled energy and of the scaled peak, the larger of them 1.
+    """
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        self._transcriptions = [problem.transcription for problem in problems]
+        self._scalarizations = [problem.scalarization for problem in problems]
+        one, asked = problems[0]
+        self._batch, self._size, self._scenarios = one.batch, one.profile.size, len(one.errors)
+        self._peak, self._at_rest = asked.peak, asked.at_rest
+        self.unknowns = self._size + (self._peak is not None)
+        self.equalities = one.wanted.size if self._at_rest else 0
+        self._move = np.array([each.task.row for each in self._transcriptions])
+        self._errors = np.array([each.errors for each in self._transcriptions])
+        self._energy = np.array([each.energy_scale for each in self._transcriptions])
+        self._arrival = np.array([each.arrival_scale for each in self._transcriptions])
+        offsets = [0.0 if each.offset is None else each.offset for each in self._scalarizations]
+        self._offset = np.array([
+            np.broadcast_to(offset - each.wanted, (self._scenarios, one.wanted.size))
+            for offset, each in zip(offsets, self._transcriptions, strict=True)
+        ])  # fmt: skip
+        self.weights = np.array([self._weights(*problem) for problem in problems])
+        self._constrain(asked.bounds_residual)
+
+    def _weights(self, transcription: Any, scalarization: Any) -> tuple[float, float]:
+        peak, minimise = self._peak, scalarization.minimise
+        of_energy = minimise.get(ENERGY, 0.0) * transcription.energy_scale
+        of_peak = minimise[peak] * transcription.scale_of(peak) if peak else 0.0
+        largest = max(of_energy, of_peak)
+        return of_energy / largest, of_peak / largest
+
+    def _constrain(self, bounds_residual: bool) -> None:
+        """Everything that is bounded, the box last."""
+        constraints = dict[str, Constraint]()
+        if bounds_residual:
+            limit = self._limits(RESIDUAL) / self._scales(RESIDUAL)
+            constraints[RESIDUAL] = ResidualLimit(self._tips(), limit)
+        for name, place in self._batch.places.items():
+            scenarios = self._scenarios if name == _IN_SCENARIOS else 1
+            own = place, scenarios, self._limits(name), self._scales(name)
+            constraints[name] = QuantityLimit(*own)
+        if self._peak is not None:
+            constraints[self._peak] = Peak(constraints[self._peak])
+        boxes = [each.profile.box(asked.bound) for each, asked in zip(
+            self._transcriptions, self._scalarizations, strict=True)]  # fmt: skip
+        lower, upper = np.array(boxes).transpose(1, 0, 2)
+        boxed = bool(np.isfinite(lower).any() or np.isfinite(upper).any())
+        self._axes = self._batch.even_axes(boxed)
+        widened = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
+        box = Box(lower, upper, widened)
+        self.linear, self.constraints = box.count, {**constraints, "box": box}
+        self.lower, self.upper = (
+            np.hstack([getattr(each, name) for each in self.constraints.values()])
+            for name in ("lower", "upper")
+        )
+
+    def _limits(self, name: str) -> Array:
+        return np.array([asked.limits.get(name, np.inf) for asked in self._scalarizations])
+
+    def _scales(self, name: str) -> Array:
+        return np.array([each.scale_of(name) for each in self._transcriptions])
+
+    def _tips(self) -> Array:
+        """Rows that give the scaled tip displacements of every scenario, filled up with zeros."""
+        most = max(len(rows) for each in self._transcriptions for rows in each.tip_rows)
+        return np.array([
+            [np.pad(rows, ((0, most - len(rows)), (0, 0))) / scale for rows in each.tip_rows]
+            for each, scale in zip(self._transcriptions, self._scales(RESIDUAL), strict=True)
+        ])  # fmt: skip
+
+    def start(self, coefficients: Array) -> Array:
+        """Unknowns of given coefficients, one row each."""
+        x: Any = np.linalg.solve(self._axes, coefficients.T).T
+        if self._peak is not None:
+            rows, peak = np.arange(len(x)), self.constraints[self._peak]
+            x = np.column_stack([x, np.zeros(len(x))])
+            assert isinstance(peak, Peak)
+            x[:, -1] = peak.largest(rows, self._simulate(rows, x, None, np.zeros(len(x))), x)
+        return x
+
+    def coefficients(self, x: Array) -> Array:
+        """The coefficients of unknowns, within their box, which rounding may pass."""
+        found = x[:, : self._size] @ self._axes.T
+        boxes = [each.profile.box(asked.bound) for each, asked in zip(
+            self._transcriptions, self._scalarizations, strict=True)]  # fmt: skip
+        lower, upper = np.array(boxes).transpose(1, 0, 2)
+        return np.clip(found, lower, upper)
+
+    def split(self, bounded: Array) -> dict[str, Array]:
+        """Multipliers of what is bounded by name of the constraint."""
+        stops = np.cumsum([each.count for each in self.constraints.values()])
+        return dict(zip(self.constraints, np.split(bounded, stops[:-1], axis=1), strict=True))
+
+    def evaluate(self, rows: Index, x: Array, multipliers: Multipliers, width: Array) -> Model:
+        """The model of rows at their unknowns, as `funnel.Evaluate`."""
+        motions = self._simulate(rows, x, multipliers, width)
+        scale, weights = self._arrival[rows], self.weights[rows]
+        of_energy, at = weights[:, 0] / self._energy[rows], slice(0, int(self._at_rest))
+        found = [each.evaluate(rows, motions, x) for each in self.constraints.values()]
+        bounded, jacobians = zip(*found, strict=True)
+        objective = of_energy * motions.energy[:, 0]
+        gradient = of_energy[:, None] * motions.gradient[:, 0]
+        if self._peak is not None:
+            objective += weights[:, 1] * x[:, -1]
+            gradient[:, -1] = weights[:, 1]
+        arrival = (motions.arrival / scale[:, None, :])[:, at]
+        jacobian = (motions.arrival_jacobian / scale[:, None, :, None])[:, at]
+        count = len(rows)
+        return Model(
+            objective=objective,
+            gradient=gradient,
+            equality=arrival.reshape(count, self.equalities),
+            equality_jacobian=jacobian.reshape(count, self.equalities, self.unknowns),
+            bounded=np.hstack(bounded),
+            bounded_jacobian=np.concatenate(jacobians, axis=1),
+            hessian=motions.hessian.sum(axis=1),
+        )
+
+    def _simulate(
+        self, rows: Index, x: Array, multipliers: Multipliers | None, width: Array
+    ) -> Derivatives:
+        """Motions in all scenarios with derivatives by the unknowns; of arrivals what is missed."""
+        scenarios, coefficients = self._scenarios, x[:, : self._size] @ self._axes.T
+        weights = None if multipliers is None else self._pull_back(rows, multipliers)
+        found = self._batch.derivatives(
+            np.repeat(coefficients, scenarios, axis=0),
+            np.repeat(self._move[rows], scenarios, axis=0),
+            np.concatenate(self._errors[rows]),
+            np.repeat(width * self._energy[rows] / self._move[rows, 2], scenarios),
+            weights,
+        ).by_scenario(scenarios)
+        along = np.pad(self._axes, ((0, 0), (0, self.unknowns - self._size)))
+        return Derivatives(
+            energy=found.energy,
+            arrival=found.arrival + self._offset[rows],
+            limited=found.limited,
+            gradient=found.gradient @ along,
+            arrival_jacobian=found.arrival_jacobian @ along,
+            limited_jacobian=found.limited_jacobian @ along,
+            hessian=along.T @ found.hessian @ along,
+        )
+
+    def _pull_back(self, rows: Index, multipliers: Multipliers) -> MotionMultipliers:
+        """Multipliers of every motion's energy, arrival and limited values."""
+        count, scenarios = len(rows), self._scenarios
+        onto = MotionMultipliers(
+            np.zeros((count, scenarios)),
+            np.zeros((count, scenarios, self._arrival.shape[1])),
+            np.zeros((count, scenarios, self._batch.limited)),
+        )
+        onto.energy[:, 0] = self.weights[rows, 0] / self._energy[rows]
+        if self._at_rest:
+            onto.arrival[:, 0] += multipliers.equality / self._arrival[rows]
+        for name, own in self.split(multipliers.bounded).items():
+            self.constraints[name].pull_back(rows, own, onto)
+        return onto.by_row()

@@ -1,0 +1,127 @@
+"""One task on a grid of steps: its figures, measured against the profile's plain motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.ocp.interrupts import keep_interrupts
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.simulation.residual import residual_rows
+from quietarm.ocp.solvers.batch import Derivatives, batch
+from quietarm.ocp.task import PointToPoint
+
+Array = NDArray[np.float64]
+ENERGY, RESIDUAL = "energy", "residual"
+STILL, STILL_SHARE = 1e-8, 1e-7
+"""A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
+the plain cycloid's residual, whichever is larger."""
+
+
+class Transcription:
+    """A task along a profile in a number of steps.
+
+    Attributes
+    ----------
+    task : PointToPoint
+        The move.
+    profile : JointProfile
+        How the joint moves.
+    steps : int
+        Number of steps.
+    batch : Batch
+        Evaluates candidates in any scenario.
+    errors : ndarray, shape (scenarios, ranges)
+        The plant's errors in every scenario, the nominal one first.
+    wanted : ndarray, shape (2 * modes,)
+        The state that is wanted on arrival.
+    """
+
+    def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
+        self.task, self.profile, self.steps = task, profile, steps
+        self.wanted = np.array(task.final_state)
+        self.errors = np.array(task.scenarios, dtype=float)
+        self.batch = batch(
+            task.plant, profile, steps, tuple(task.limits), task.error_names, task.energy
+        )
+
+    @cached_property
+    def tip_rows(self) -> list[Array]:
+        """For each scenario, rows that give tip displacements from the state on arrival."""
+        return [residual_rows(self.task, plant) for plant in self.task.perturbed_plants]
+
+    @cached_property
+    def plain(self) -> Derivatives:
+        """The plain motion, in all scenarios."""
+        return self.evaluate(self.profile.plain)
+
+    @cached_property
+    def arrival_scale(self) -> Array:
+        """Scale of the state on arrival, shape (2 * modes,)."""
+        scale = np.abs(self.plain.arrival_jacobian).max(axis=(0, 2))
+        scale[scale == 0] = 1.0
+        return scale
+
+    @cached_property
+    def energy_scale(self) -> float:
+        """Energy of the plain motion [J]."""
+        return float(self.plain.energy[0]) or 1.0
+
+    def scale_of(self, name: str) -> float:
+        """Scale of the residual or of a limited quantity."""
+        if name == RESIDUAL:
+            return max(float(np.abs(r * self.arrival_scale).max()) for r in self.tip_rows) or 1.0
+        return self.peak(self.plain, name) or 1.0
+
+    @property
+    def plain_residual(self) -> float:
+        """Residual of the plain motion [m]."""
+        return self.peaks(self.plain)[RESIDUAL]
+
+    def refine(self) -> Transcription:
+        """The same on twice the steps."""
+        return Transcription(self.task, self.profile, 2 * self.steps)
+
+    @keep_interrupts()  # casadi loses a Ctrl-C
+    def evaluate(self, coefficients: Array) -> Derivatives:
+        """One candidate in all scenarios."""
+        return evaluate([self], coefficients[None])[0]
+
+    def peaks(self, of: Derivatives, offset: Array | None = None) -> dict[str, float]:
+        """The largest residual of all scenarios [m], and the peaks of the limited quantities."""
+        missed = of.arrival - self.wanted + (0.0 if offset is None else offset)
+        tips = [np.abs(r @ z).max() for r, z in zip(self.tip_rows, missed, strict=True)]
+        limited = {name: self.peak(of, name) for name in self.batch.places}
+        return {RESIDUAL: float(max(tips)), **limited}
+
+    def peak(self, of: Derivatives, name: str) -> float:
+        """The peak of a limited quantity of the nominal plant [SI unit]."""
+        return float(np.abs(of.limited[0, self.batch.places[name]]).max())
+
+
+def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> list[Derivatives]:
+    """A candidate of each of several transcriptions of one batch, in all its scenarios.
+
+    Coefficients have shape (transcriptions, profile.size).
+    """
+    counts = [len(one.errors) for one in transcriptions]
+    found = transcriptions[0].batch.derivatives(
+        np.repeat(coefficients, counts, axis=0),
+        np.repeat([one.task.row for one in transcriptions], counts, axis=0),
+        np.concatenate([one.errors for one in transcriptions]),
+    )
+    return [found.take(slice(*ends)) for ends in pairwise(np.cumsum([0, *counts]))]
+
+
+def transcribe(
+    tasks: Sequence[PointToPoint], profile: JointProfile, steps: int
+) -> list[Transcription]:
+    """Many tasks of one plant, whose plain motions are evaluated in one call."""
+    made = [Transcription(task, profile, steps) for task in tasks]
+    plain = np.repeat(profile.plain[None], len(made), axis=0)
+    for one, motion in zip(made, evaluate(made, plain), strict=True):
+        one.__dict__["plain"] = motion
+    return made
