@@ -123,7 +123,7 @@ class PopulationObjective:
         each = zip(missed, self._tip_rows, strict=True)
         residual = np.max([np.abs(z @ tips.T).max(axis=1) for z, tips in each], axis=0)
         violations = np.empty((count, len(self.task.limits)))
-        for i, (name, part) in enumerate(self._batch.parts):
+        for i, (name, part) in enumerate(self._batch.places.items()):
             peak = np.abs(found.limited[:, part]).max(axis=1).reshape(scenarios, count)
             largest = peak.max(axis=0) if name == "deflection" else peak[0]
             violations[:, i] = largest / self.task.limits[name] - 1

@@ -26,7 +26,7 @@ def energy_with_derivatives(
     power, share = [values[0] for values in at_nodes], energy.absolute
     mean = ca.sqrt(ca.sum2(sum(p * p for p in power)) / (NODES * h.shape[1])) + _TINY
     least = _LEAST_SLOPE * ca.repmat(mean, 1, h.shape[1]) * length
-    sharp, bends = _absolute_power(power, least)
+    sharp, bends = power_derivatives(power, least)
     is_rounded, rounded = width > 0, [ca.sqrt(p * p + width * width) for p in power]
     absolute = ca.if_else(is_rounded[:, 0], integrated(rounded, h), resolved_energy(power, h))
     smooth = zip(*(values[1:] for values in at_nodes), strict=True)
@@ -43,7 +43,7 @@ def energy_with_derivatives(
     return value, first, second
 
 
-def _absolute_power(
+def power_derivatives(
     power: Sequence[ca.MX], least_slope: ca.MX
 ) -> tuple[list[ca.MX], list[list[ca.MX]]]:
     """Derivatives by the power at its nodes of the mean of |power| on a step.

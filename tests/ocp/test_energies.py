@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 from quietarm.ocp.energy import known_energies
 from quietarm.ocp.simulation.collocation import GAUSS_NODES
 from quietarm.ocp.simulation.objective import spent
-from quietarm.ocp.solvers.batch import batch
+from quietarm.ocp.solvers.batch import Multipliers, batch
 from scipy.integrate import quad
 from third_opinion import ThirdOpinion
 
@@ -84,7 +84,7 @@ def test_cvodes_and_the_rollout_spend_what_scipy_finds(tasks, name, plant):
 def test_derivatives_are_the_limit_of_differences(plants, name, width):
     made = batch(plants["arm"], qa.CycloidPolynomial(3), 20, energy=ENERGIES[name])
     a, move = np.array([[-0.1, 0.2, -0.3]]), np.array([[0.1, 1.4, 0.8, 0.0, 0.0]])
-    weights = np.ones(1), np.zeros((1, 2)), np.zeros((1, 0))
+    weights = Multipliers(np.ones(1), np.zeros((1, 2)), np.zeros((1, 0)))
 
     def at(x):
         return made.derivatives(x, move, np.zeros((1, 0)), np.array([width]), weights)
@@ -94,7 +94,7 @@ def test_derivatives_are_the_limit_of_differences(plants, name, width):
     slope = [(after.energy - before.energy)[0] / (2 * h) for after, before in sides]
     bend = [(after.gradient - before.gradient)[0] / (2 * h) for after, before in sides]
     assert found.gradient[0] == pytest.approx(np.array(slope), rel=1e-6, abs=1e-7)
-    assert found.curvature[0] == pytest.approx(np.array(bend), rel=1e-4, abs=1e-4)
+    assert found.hessian[0] == pytest.approx(np.array(bend), rel=1e-4, abs=1e-4)
 
 
 def test_both_solvers_and_the_floor_agree_with_the_plan(task, solved):

@@ -53,16 +53,3 @@ def test_the_points_land_on_the_front(polish):
     step = -np.diff(whole.energies).min()
     assert np.all(polish.front.energies < np.array(cheapest) * 1.002)
     assert np.all(polish.front.energies > np.array(cheapest) - 1.01 * step)
-
-
-def test_ctrl_c_keeps_what_was_improved(rough):
-    def interrupt(done, total):
-        if done == 2:
-            raise KeyboardInterrupt
-
-    polish = qa.polish_front(rough, report=interrupt)
-    assert not polish.front.complete
-    assert len(polish.gains) == len(rough.points)
-    assert polish.gains[0].share > 0
-    assert [gain.tried for gain in polish.gains] == [i < 2 for i in range(len(rough.points))]
-    assert {gain.share for gain in polish.gains[2:]} == {0.0}

@@ -11,9 +11,9 @@ from numpy.polynomial import Polynomial
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, mesh
 from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
-    energy_derivatives,
     resolved_energy,
 )
+from quietarm.ocp.solvers.energy import power_derivatives
 
 import quietarm as qa
 
@@ -51,8 +51,10 @@ def _energy(power):
 
 def _derivatives(power, least=LEAST):
     """Gradient [3], second derivatives [3, 3]."""
-    gradient, bends = energy_derivatives()(power, least)
-    return gradient.full().ravel(), bends.full()
+    gradient, bends = power_derivatives([ca.DM(p) for p in power], ca.DM(least))
+    return np.array([float(x) for x in gradient]), np.array(
+        [[float(x) for x in row] for row in bends]
+    )
 
 
 def _with_sign(quadratic, function):

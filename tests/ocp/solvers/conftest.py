@@ -2,7 +2,7 @@
 
 import pytest
 from quietarm.ocp import CycloidPolynomial
-from quietarm.ocp.solvers.program import Program
+from quietarm.ocp.solvers.transcription import Transcription
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])
@@ -11,10 +11,10 @@ def task(request, tasks):
 
 
 @pytest.fixture(scope="session")
-def program():
-    """The program of a task, in few words."""
+def transcribe():
+    """A task on its steps, in few words."""
 
     def of(task, *, terms=6, steps=48):
-        return Program(task, CycloidPolynomial(terms), steps)
+        return Transcription(task, CycloidPolynomial(terms), steps)
 
     return of

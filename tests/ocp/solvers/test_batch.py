@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quietarm.ocp.solvers.batch import batch
-from quietarm.ocp.solvers.sqp import WIDTHS
+from quietarm.ocp.solvers.batch import Multipliers, batch
+from quietarm.ocp.solvers.funnel import WIDTHS
 from quietarm.ocp.task import LIMITS
 
 import quietarm as qa
@@ -34,11 +34,11 @@ def _candidates(rows, kind, seed=0):
 
 
 def _weights(made, rows, energy=1.0, seed=1):
-    random, values = np.random.default_rng(seed), made.parts[-1][1].stop if made.parts else 0
-    return (
+    random = np.random.default_rng(seed)
+    return Multipliers(
         np.full(rows, energy),
         random.normal(size=(rows, 2 * made.kind.plant.modes)),
-        random.normal(size=(rows, values)),
+        random.normal(size=(rows, made.limited)),
     )
 
 
@@ -60,7 +60,7 @@ def test_figures_are_those_of_the_rollout(task, errors):
     expected = qa.rollout(wrong, profile, a[0], steps=steps)
     for found in (made.values(*inputs), _derivatives(made, inputs)):
         assert found.arrival[0] == pytest.approx(np.array(expected.arrival), rel=1e-8, abs=1e-12)
-        for name, part in made.parts:
+        for name, part in made.places.items():
             peak = np.abs(found.limited[0, part]).max()
             assert peak == pytest.approx(expected.motion.peak(name), rel=1e-8)
     energy = expected.motion.energy
@@ -80,7 +80,8 @@ def test_rows_are_independent_of_how_many_there_are(plants, rows, threads):
     for row in {0, rows // 2, rows - 1}:
         only = slice(row, row + 1)
         alone = [one[only] for one in candidates]
-        expected = _derivatives(made, alone, 0.1, tuple(one[only] for one in weights))
+        own = Multipliers(**{name: one[only] for name, one in vars(weights).items()})
+        expected = _derivatives(made, alone, 0.1, own)
         for name, part in vars(together).items():
             whole = vars(expected)[name][0]
             size = np.abs(whole).max()
@@ -127,8 +128,8 @@ def test_first_derivatives_are_the_limit_of_differences(case, width):
     found = _derivatives(made, candidates, width)
     for value, slope in (
         ("energy", found.gradient),
-        ("arrival", found.by_arrival),
-        ("limited", found.by_limited),
+        ("arrival", found.arrival_jacobian),
+        ("limited", found.limited_jacobian),
     ):
         of = {"of": lambda at, value=value: getattr(at, value)}
         expected = _differences(made, candidates, width, **of)
@@ -140,12 +141,12 @@ def test_curvature_is_the_limit_of_differences_of_the_lagrangians_gradient(case,
     made, candidates = case
     # Sharp, where the energy does not count; else rounded off, for zeros of the power may meet.
     width, weights = 0.2 * energy, _weights(made, 2, energy)
-    found = _derivatives(made, candidates, width, weights).curvature
+    found = _derivatives(made, candidates, width, weights).hessian
 
     def gradient(at):
-        slopes = weights[0][:, None] * at.gradient
-        slopes = slopes + np.einsum("rs,rsn->rn", weights[1], at.by_arrival)
-        return slopes + np.einsum("rv,rvn->rn", weights[2], at.by_limited)
+        slopes = weights.energy[:, None] * at.gradient
+        slopes = slopes + np.einsum("rs,rsn->rn", weights.arrival, at.arrival_jacobian)
+        return slopes + np.einsum("rv,rvn->rn", weights.limited, at.limited_jacobian)
 
     expected = _differences(made, candidates, width, gradient)
     assert found == pytest.approx(expected, abs=1e-7 * np.abs(expected).max())
@@ -156,8 +157,9 @@ def test_curvature_is_the_limit_of_differences_of_the_lagrangians_gradient(case,
 def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants, name):
     made = batch(plants[name], qa.CycloidPolynomial(3), 30)
     candidates = _candidates(2, made.kind, seed=5)
-    weights = np.ones(2), np.zeros((2, 2 * made.kind.plant.modes)), np.zeros((2, 0))
-    found = _derivatives(made, candidates, 0.0, weights).curvature
+    none = np.zeros((2, 2 * made.kind.plant.modes))
+    weights = Multipliers(np.ones(2), none, np.zeros((2, 0)))
+    found = _derivatives(made, candidates, 0.0, weights).hessian
     expected = _differences(made, candidates, 0.0, lambda at: at.gradient, h=1e-6)
     assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
 

@@ -1,12 +1,15 @@
-"""Two ways through the same program: sequential quadratic programs, and IPOPT."""
+"""Two ways through the same problem: sequential quadratic programs, and IPOPT."""
 
 from dataclasses import replace
 
+import casadi as ca
 import numpy as np
 import pytest
-from quietarm.ocp.solvers.program import Program
-from quietarm.ocp.solvers.solution import RESIDUAL, Scalarization
-from quietarm.ocp.solvers.solving import SOLVERS, Row, solve
+from quietarm.ocp.solvers import ipopt as ipopt_module
+from quietarm.ocp.solvers.ipopt import Ipopt
+from quietarm.ocp.solvers.problem import Problem, Scalarization
+from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.solvers.transcription import RESIDUAL, Transcription
 
 import quietarm as qa
 
@@ -16,18 +19,28 @@ AT_REST = {RESIDUAL: 0.0}
 LIMITED = Scalarization({RESIDUAL: 2e-3})
 
 
-def _solved(program, ask, solver="sqp", start=PROFILE.plain, **settings):
-    (found,), complete = solve([Row(program, ask, np.array(start))], solver, **settings)
-    assert complete
+SOLVERS = Sqp(), Ipopt()
+
+
+def _solved(transcription, asked, solver=SOLVERS[0], start=PROFILE.plain, **settings):
+    (found,) = solver.solve([Problem(transcription, asked)], [np.array(start)], **settings)
     return found
 
 
+def _true(steps, found):
+    """The energy by CVODES: IPOPT's takes in what neighbouring steps say, the SQP's does not."""
+    return qa.resimulate(steps.task.certain, steps.profile, found.coefficients).energy
+
+
 @pytest.fixture(scope="module")
-def link_and_arm(tasks, program):
-    """Both programs with the box of the paper, and those with a limit of the torque."""
+def link_and_arm(tasks, transcribe):
+    """Both tasks with the paper's box, and with a limit of the torque; their energies agree."""
     made = {"single link": 0.2, "arm": 0.5}
     limited = {name: replace(tasks[name], torque_limit=1.0) for name in made}
-    return {name: (program(tasks[name]), program(limited[name]), box) for name, box in made.items()}
+    return {
+        name: (transcribe(tasks[name], steps=96), transcribe(limited[name], steps=96), box)
+        for name, box in made.items()
+    }
 
 
 @pytest.mark.parametrize("name", ["single link", "arm"])
@@ -35,35 +48,36 @@ def link_and_arm(tasks, program):
 def test_both_solvers_agree(link_and_arm, name, what):
     free, limited, box = link_and_arm[name]
     torque = _solved(limited, Scalarization(AT_REST)).peaks["torque"]
-    program, ask = {
+    steps, ask = {
         "rest": (free, Scalarization(AT_REST)),
         "residual": (free, LIMITED),
         "box": (free, Scalarization(AT_REST, box)),
         "torque": (limited, Scalarization({**AT_REST, "torque": 0.9 * torque})),
         "peak": (limited, Scalarization(AT_REST, None, {"torque": 1.0})),
     }[what]
-    sqp, ipopt = (_solved(program, ask, solver) for solver in SOLVERS)
-    assert sqp.status is ipopt.status is qa.SolveStatus.OPTIMAL
+    sqp, ipopt = (_solved(steps, ask, solver) for solver in SOLVERS)
+    assert sqp.status is qa.SolveStatus.OPTIMAL
+    assert ipopt.status.solved
     if what == "peak":  # of several motions of the same peak, hardly of the same energy
         assert ipopt.peaks["torque"] == pytest.approx(sqp.peaks["torque"], rel=1e-6)
         assert sqp.peaks["torque"] < torque
     else:
-        assert ipopt.energy == pytest.approx(sqp.energy, rel=1e-6)
+        assert _true(steps, ipopt) == pytest.approx(_true(steps, sqp), rel=1e-6)
     for found in (sqp, ipopt):
         assert np.abs(found.coefficients).max() <= (ask.bound or np.inf)
         for quantity, limit in ask.limits.items():
             assert found.peaks[quantity] <= limit * (1 + 1e-6)
-    for quantity, price in sqp.prices.items():
-        assert ipopt.prices[quantity] == pytest.approx(price, rel=1e-3)
+    for quantity, price in sqp.shadow_prices.items():
+        assert ipopt.shadow_prices[quantity] == pytest.approx(price, rel=1e-3)
 
 
 def test_both_solvers_meet_limits_on_every_plant(tasks):
     uncertainty = qa.Uncertainty({"frequency": 0.05})
     task = replace(tasks["arm"], uncertainty=uncertainty, deflection_limit=1.0)
-    program, limits = Program(task, PROFILE, 48), {RESIDUAL: 5e-3}
-    free = _solved(program, Scalarization(limits))
+    steps, limits = Transcription(task, PROFILE, 48), {RESIDUAL: 5e-3}
+    free = _solved(steps, Scalarization(limits))
     limits["deflection"] = 0.95 * free.peaks["deflection"]
-    found = [_solved(program, Scalarization(limits), solver) for solver in SOLVERS]
+    found = [_solved(steps, Scalarization(limits), solver) for solver in SOLVERS]
     for one in found:
         assert one.status.solved
         assert one.arrival.shape == (3, 2)
@@ -83,9 +97,9 @@ def test_the_price_of_a_limit_is_what_a_wider_one_saves(link_and_arm, name, quan
     there = _solved(limited, Scalarization(limits))
     beyond = _solved(limited, Scalarization({**limits, quantity: limits[quantity] + step}))
     price = (there.energy - beyond.energy) / step
-    assert there.prices[quantity] == pytest.approx(price, rel=0.05)
+    assert there.shadow_prices[quantity] == pytest.approx(price, rel=0.05)
     if quantity == RESIDUAL:
-        assert there.slope == -there.prices[RESIDUAL] < 0
+        assert there.slope == -there.shadow_prices[RESIDUAL] < 0
 
 
 def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
@@ -98,8 +112,73 @@ def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
         (limited, Scalarization(AT_REST, None, {"torque": 1.0})),
         (free, Scalarization({RESIDUAL: 5e-3}, box)),
     ]
-    together = solve([Row(*one, PROFILE.plain) for one in asks]).solutions
+    problems = [Problem(*one) for one in asks]
+    together = Sqp().solve(problems, [PROFILE.plain] * len(problems))
     for one, found in zip(asks, together, strict=True):
         alone = _solved(*one)
         assert found.status is alone.status
         assert found.energy == pytest.approx(alone.energy, rel=1e-9)
+
+
+def _corrupt_derivatives(function):
+    """The same function with the first entry of every gradient lost."""
+
+    def corrupted(*arguments):
+        found = function(*arguments)
+        gradient = found.gradient.copy()
+        gradient[:, 0] = 0.0
+        return replace(found, gradient=gradient)
+
+    return corrupted
+
+
+@pytest.mark.parametrize("name", ["single link", "arm"])
+def test_a_wrong_derivative_of_the_sqp_does_not_reach_ipopt(link_and_arm, name, monkeypatch):
+    steps, _, box = link_and_arm[name]
+    asked = Scalarization({RESIDUAL: 2e-3}, box)
+    right = [_solved(steps, asked, solver) for solver in SOLVERS]
+    monkeypatch.setattr(steps.batch, "derivatives", _corrupt_derivatives(steps.batch.derivatives))
+    sqp, ipopt = (_solved(steps, asked, solver) for solver in SOLVERS)
+    assert ipopt.energy == right[1].energy
+    assert _true(steps, ipopt) == pytest.approx(_true(steps, right[0]), rel=1e-6)
+    assert sqp.energy > right[0].energy * (1 + 1e-4)  # else the SQP would not tell either
+
+
+@pytest.mark.parametrize("name", ["single link", "arm"])
+def test_a_wrong_derivative_of_ipopt_does_not_reach_the_sqp(link_and_arm, name, monkeypatch):
+    steps, _, box = link_and_arm[name]
+    asked = Scalarization({RESIDUAL: 2e-3}, box)
+    right = [_solved(steps, asked, solver) for solver in SOLVERS]
+    monkeypatch.setattr(ipopt_module, "compile_nlp", _compile_with_wrong_gradient)
+    ipopt_module.compile_program.cache_clear()
+    sqp, ipopt = (_solved(steps, asked, solver) for solver in SOLVERS)
+    ipopt_module.compile_program.cache_clear()
+    assert sqp.energy == right[0].energy
+    assert not ipopt.status.solved or ipopt.energy > right[1].energy * (1 + 1e-4)
+
+
+def _compile_with_wrong_gradient(nlp, options):
+    """IPOPT with the first entry of the objective's gradient lost."""
+    x, p, f = nlp["x"], nlp["p"], nlp["f"]
+    gradient = ca.gradient(f, x)
+    gradient[0] = 0.0
+    wrong = ca.Function("wrong", [x, p], [f, ca.densify(gradient)])
+    chosen = {"grad_f": wrong, "print_time": False, "no_nlp_grad": True, "calc_lam_p": False}
+    return ca.nlpsol("wrong", "ipopt", nlp, {**chosen, "ipopt": dict(options)})
+
+
+def test_the_log_of_ipopt_can_be_shown(link_and_arm, capfd):
+    steps, _, box = link_and_arm["arm"]
+    quiet = _solved(steps, Scalarization(AT_REST, box), Ipopt())
+    assert capfd.readouterr().out == ""
+    shown = _solved(steps, Scalarization(AT_REST, box), Ipopt(print_level=5))
+    assert "inf_pr" in capfd.readouterr().out  # a column of IPOPT's table of iterations
+    assert shown.energy == quiet.energy
+
+
+def test_how_a_start_ended_is_said_truly(link_and_arm):
+    steps, _, box = link_and_arm["arm"]
+    problem = Problem(steps, Scalarization(AT_REST, box))
+    found = Sqp().solve([problem] * 4, [PROFILE.plain] * 4, groups=[0] * 4)
+    assert [one.status for one in found].count(qa.SolveStatus.SUPERSEDED) == 3
+    assert all("another start" in one.reason for one in found if not one.status.solved)
