@@ -10,35 +10,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+from quietarm.models.beam_modes import beam_modes, mode_shape
 
 Array = NDArray[np.float64]
 
-_ROOT = 1.8751040687119611
-"""The first root k of cosh(k) cos(k) = -1."""
-_SIGMA = (np.cosh(_ROOT) + np.cos(_ROOT)) / (np.sinh(_ROOT) + np.sin(_ROOT))
-_POINTS = 25
-"""Of a bent link: at a thousand pixels the corners between them cannot be seen."""
-
-
-def cantilever(share: ArrayLike) -> Array:
-    """First mode shape of a beam that is clamped at one end and free at the other, 1 at the tip.
-
-    A uniform Euler-Bernoulli beam (Blevins, Formulas for Natural Frequency and Mode Shape, 1979,
-    table 8-1), by the distance from the clamp as a share of the length. A mass at the tip makes it
-    straighter: one of many times the beam's gives s^2 (3 - s) / 2, which differs by 0.03 at most.
-    """
-    x = _ROOT * np.asarray(share, dtype=float)
-    return (np.cosh(x) - np.cos(x) - _SIGMA * (np.sinh(x) - np.sin(x))) / 2
-
-
-TIP_SLOPE = float(_ROOT * (np.sinh(_ROOT) + np.sin(_ROOT)
-                           - _SIGMA * (np.cosh(_ROOT) - np.cos(_ROOT))) / 2)  # fmt: skip
-"""Slope of `cantilever` at the tip: 1.3765."""
-
-
-_SHARE = np.linspace(0.0, 1.0, _POINTS)
-_BENT = cantilever(_SHARE)
+_POINTS = np.linspace(0.0, 1.0, 25)
+"""Of a bent link, as shares of its length: at a thousand pixels no corner can be seen."""
+(_FIRST,), *_ = beam_modes(1, 0.0, 0.0)
+_BENT = [mode_shape(_FIRST, share)[0] for share in _POINTS]
+"""First mode of a beam that is free at its tip. A mass there makes it straighter: one of many times
+the beam's gives s^2 (3 - s) / 2, which differs by 0.03 at most."""
+TIP_SLOPE: float = mode_shape(_FIRST, 1.0)[1]
+"""Its slope at the tip: 1.3765."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,11 +37,6 @@ class Body:
         Whether it is drawn as thick as what does not bend.
     tip : bool
         Whether its last point is a tip, whose path is drawn.
-
-    Raises
-    ------
-    ValueError
-        When the points are no finite numbers of this shape.
     """
 
     points: Array
@@ -97,14 +76,14 @@ def rigid_link(
 def flexible_link(
     length: float, angle: float, displacement: float, base: Sequence[float] = (0.0, 0.0)
 ) -> Array:
-    """A link that is clamped at its base and bent as `cantilever`; arguments as for `rigid_link`.
+    """A link that is clamped at its base and bent in its first mode; arguments as for `rigid_link`.
 
     Returns
     -------
     ndarray, shape (points, 2)
         Points along it, base and tip among them.
     """
-    bent = np.column_stack([length * _SHARE, displacement * _BENT])
+    bent = np.column_stack([length * _POINTS, np.multiply(displacement, _BENT)])
     return _placed(bent, angle, base)
 
 
