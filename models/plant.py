@@ -17,10 +17,9 @@ from pkgutil import iter_modules
 from typing import Any, ClassVar
 
 import numpy as np
-from quietarm.models.contract import check_contract
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.passive import check_passive
+from quietarm.models.validation import check_contract, check_passive
 
 COUNT = "count"
 """Unit of a parameter that is a whole number."""

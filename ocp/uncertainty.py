@@ -12,8 +12,8 @@ from numbers import Real
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.models.contract import check_contract, outputs_of
 from quietarm.models.joint_motion import Modes
+from quietarm.models.validation import check_contract, outputs_of
 from quietarm.ocp.checks import finite, has_no, positive
 from quietarm.ocp.interrupts import keep_interrupts
 

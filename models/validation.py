@@ -1,0 +1,224 @@
+"""The contract of a plant, checked once, when a task is made.
+
+The equations are called as the solvers call them, and evaluated over a turn and more of joint
+angles, moving and at rest, and along a move.
+"""
+
+from __future__ import annotations
+
+import math
+import reprlib
+import traceback
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import Field, is_dataclass
+from functools import lru_cache
+from numbers import Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+from quietarm.models.at_rest import AtRest
+from quietarm.models.joint_motion import Expression, JointMotion
+
+if TYPE_CHECKING:
+    from quietarm.models.plant import Plant
+
+Array = NDArray[np.float64]
+
+_WRITE = {
+    "modal_accelerations": ("self, joint, W, dW", "a list of W'' [m/s^2], one for each mode"),
+    "torque": ("self, joint, W, dW, ddW", "one expression, the joint torque [N m]"),
+    "tip_displacements": ("self, W", "a list of tip displacements [m]"),
+}
+"""For every method its arguments, and what it should return."""
+_RIGHT = math.pi / 2
+_ANGLES = np.linspace(-2 * math.pi, 2 * math.pi, 241)
+_ANGLES += np.random.default_rng(0).uniform(-0.02, 0.02, 241)  # else sin(60 angle) is 0 at all
+_ANGLES[:5] = _RIGHT * np.array([0, -1, 1, -2, 2])
+_ON_THE_WAY = 101
+"""How many joint angles of a move are looked at."""
+_KINDS = np.array([[1, 1, 1, 1], [1, -1, 1, 1], [1, 0, 1, 1], [1, 1, 0, 1], [1, 0, 0, 0]])
+"""Factors of angle, speed, acceleration and modes in the motions at an angle: forwards, backwards,
+at a turning point, at constant speed and, last, at rest."""
+_TINY = 1e-12
+"""What counts as nothing, relative to the values of a moving joint."""
+
+
+def check_contract(plant: Plant) -> None:
+    """Refuse a plant that breaks the contract of `Plant`; ValueError with what is wrong."""
+    kind, modes = type(plant), getattr(plant, "modes", None)
+    bare = any(isinstance(entry, Field) for entry in vars(kind).values())
+    if bare or not is_dataclass(plant) or kind.__hash__ is None:
+        remedy = f"write @dataclass(frozen=True) above class {kind.__name__}"
+        raise ValueError(f"plant {plant.name!r} is no frozen dataclass; {remedy}")
+    if not isinstance(modes, int) or modes < 1:
+        remedy = "write how many it has, 1 or more, as modes: ClassVar[int] = 1"
+        raise ValueError(f"plant {plant.name!r} has {modes} modes; {remedy}")
+    _at_rest(plant)
+
+
+@lru_cache(maxsize=256)
+def check_passive(plant: Plant) -> None:
+    """Refuse a plant whose joint has no positive inertia, or yields work from rest."""
+    _at_rest(plant).check_passive(plant.name)
+
+
+@lru_cache(maxsize=1024)
+def check_along(plant: Plant, start: float, target: float) -> None:
+    """Refuse a move [rad] on which the equations have no value, as a crank's at its dead centre."""
+    low, high = sorted((start, target))
+    right = _RIGHT * np.arange(math.ceil(low / _RIGHT), math.floor(high / _RIGHT) + 1)[:_ON_THE_WAY]
+    angles = np.concatenate([[start, target], right, np.linspace(low, high, _ON_THE_WAY)])
+    motions = _motions(angles, plant.modes)[:, :: len(_KINDS) - 1]  # forwards and at rest
+    remedy = f"that is on the way from {start:.4g} to {target:.4g} rad: move where it is defined"
+    _check_finite(plant, motions, next(_evaluate(plant, motions)), remedy)
+
+
+@lru_cache(maxsize=256)
+def _at_rest(plant: Plant) -> AtRest:
+    """The equations at rest, where they have values; ValueError where they break the contract."""
+    motions = _motions(_ANGLES, plant.modes)
+    values, slopes = _evaluate(plant, motions)
+    # an angle at which no motion has a value is none to move to
+    defined = np.isfinite(values).all(axis=2).any(axis=1)
+    if defined.any():
+        motions, values, slopes = motions[defined], values[defined], slopes[defined]
+    remedy = "divide by nothing that can be 0, take no root of what can be negative"
+    _check_finite(plant, motions, values, remedy)
+    _check_finite(plant, motions, slopes, remedy)
+    _check_side_by_side(plant, motions, values)
+    _check_rest(plant, motions, values)
+    slopes_at_rest = slopes[:, -1].reshape(len(motions), motions.shape[2], -1)
+    at_rest = AtRest.of_slopes(motions[:, -1, 0], slopes_at_rest)
+    at_rest.check_stable(plant.name)
+    return at_rest
+
+
+def _motions(angles: Array, modes: int) -> Array:
+    """Joint motion, W, W' and W'' in the last axis, of every kind at every angle."""
+    columns = [1, 1, 1, 3 * modes]
+    random = np.random.default_rng(0).uniform(-1, 1, (len(angles), 1, sum(columns)))
+    motions = random * np.repeat(_KINDS * [1, 10, 100, 1], columns, axis=1)
+    motions[..., 0] = angles[:, None]
+    return motions
+
+
+def _evaluate(plant: Plant, motions: Array) -> Iterator[Array]:
+    """Outputs of motions in the last axis; then their slopes, in the order of `_equations`."""
+    for table in _equations(plant)(motions.reshape(-1, motions.shape[-1]).T):
+        yield table.full().T.reshape(*motions.shape[:2], -1)
+
+
+@lru_cache(maxsize=256)
+def _equations(plant: Plant) -> ca.Function:
+    """(joint motion, W, W' and W'' in a column) -> every output, the slopes of all by each."""
+    size, modes = 3 * (1 + plant.modes), plant.modes
+    outputs_of(plant, [ca.MX.sym("x") for _ in range(size)])  # math.cos makes a nan of an SX
+    x = ca.SX.sym("x", size)
+    outputs = outputs_of(plant, ca.vertsplit(x))
+    for method, output in zip(_methods(plant), outputs, strict=True):
+        if method != "torque" and not ca.is_linear(output, x[3 : 3 + 2 * modes]):
+            raise _wrong(plant, method, "is not affine in W and W'", "linearise it")
+    column = ca.densify(ca.vertcat(*outputs))
+    slopes = ca.densify(ca.vec(ca.jacobian(column, x)))
+    return ca.Function("equations", [x], [column, slopes])
+
+
+def _methods(plant: Plant) -> list[str]:
+    """The method that each output is of."""
+    tips = ["tip_displacements"] * plant.tips
+    return ["modal_accelerations"] * plant.modes + ["torque", *tips]
+
+
+def outputs_of(plant: Plant, arguments: Sequence[Expression]) -> list[Expression]:
+    """W'', torque and tip displacements, from joint motion, W, W' and W''.
+
+    ValueError where a method fails or gives something else than it should.
+    """
+    modes = plant.modes
+    joint, rest = JointMotion(*arguments[:3]), list(arguments[3:])
+    W, dW, ddW = rest[:modes], rest[modes : 2 * modes], rest[2 * modes :]
+    accelerations = _call(plant, "modal_accelerations", joint, W, dW)
+    torque = _call(plant, "torque", joint, W, dW, ddW)
+    tips = _call(plant, "tip_displacements", W)
+    if len(accelerations) != modes:
+        raise _wrong(plant, "modal_accelerations", f"returns {len(accelerations)} entries")
+    if not tips:
+        raise _wrong(plant, "tip_displacements", "returns an empty list")
+    return [*accelerations, *torque, *tips]
+
+
+def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
+    """What a method returns, as a list."""
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", r"\s*casadi: a numpy function", FutureWarning)
+            found: Any = getattr(plant, method)(*arguments)
+    except Exception as error:
+        inside = traceback.extract_tb(error.__traceback__)[1:2]
+        at = "".join(f" at line {one.lineno} of {Path(one.filename).name}" for one in inside)
+        text = str(error).strip().partition("\n")[0]
+        of_symbol = "to_double" in text or "truth value" in text  # casadi's own words say little
+        why = "a symbol is no number" if of_symbol else f"{type(error).__name__}: {text}"
+        raise _wrong(plant, method, f"fails{at} ({why})") from None
+    entries = [found] if method == "torque" else found
+    kinds = Real | ca.SX | ca.MX | ca.DM
+    if not isinstance(entries, list | tuple) or not all(isinstance(one, kinds) for one in entries):
+        raise _wrong(plant, method, f"returns {reprlib.repr(found)}")
+    return list(entries)
+
+
+def _wrong(plant: Plant, method: str, what: str, remedy: str = "") -> ValueError:
+    """What a method does, and what to do about it."""
+    arguments, returns = _WRITE[method]
+    remedy = remedy or (
+        f"write def {method}({arguments}) for modes = {plant.modes}, with casadi.cos, casadi.fmax, "
+        "casadi.if_else and so on, since math's and numpy's functions, if, max and float() take no "
+        f"symbols, and return {returns}"
+    )
+    return ValueError(f"plant {plant.name!r}: {method} {what}; {remedy}")
+
+
+def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
+    """Many motions that stand side by side in matrices give what each gives alone."""
+    outputs = outputs_of(plant, [ca.DM(column.ravel()) for column in np.moveaxis(motions, 2, 0)])
+    each = np.moveaxis(values, 2, 0).reshape(len(outputs), -1)
+    for method, output, alone in zip(_methods(plant), outputs, each, strict=True):
+        found = ca.DM(output).full().T
+        least = 1e-9 * np.abs(alone).max()
+        if len(found) > 1 or not np.allclose(found, alone, rtol=1e-9, atol=least):
+            remedy = "compute entry by entry: no sum, dot, mtimes or max over entries"
+            raise _wrong(plant, method, "mixes motions that are side by side in a matrix", remedy)
+
+
+def _check_finite(plant: Plant, motions: Array, table: Array, remedy: str) -> None:
+    """Values, or slopes of these, are finite in every motion."""
+    bad = np.argwhere(~np.isfinite(table))
+    if bad.size:
+        angle, kind, column = bad[-1]  # the simplest motion: at rest, if it fails there
+        at, methods = motions[angle, kind], _methods(plant)
+        method = methods[column % len(methods)]
+        which = "" if table.shape[-1] == len(methods) else "the slope of "
+        where = f"{at[0]:.4g} rad, {at[1]:.4g} rad/s and {at[2]:.4g} rad/s^2"
+        raise ValueError(
+            f"plant {plant.name!r}: {which}{method} is {table[angle, kind, column]} with the joint "
+            f"at {where}; {remedy}, or check the parameters"
+        )
+
+
+def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
+    """At rest the structure stays at rest, and there are motions that move every tip."""
+    still, moving = values[:, -1], np.abs(values).max(axis=1)
+    wrong = np.abs(still) > _TINY * moving
+    wrong[:, plant.modes] = False  # the torque may hold the joint
+    for row, column in np.argwhere(wrong):
+        raise ValueError(
+            f"plant {plant.name!r} does not stay at rest: with the joint at rest at "
+            f"{motions[row, -1, 0]:.4g} rad and W = 0, {_methods(plant)[column]} gives "
+            f"{still[row, column]:.4g}, not 0; measure W from the static deflection"
+        )
+    if not moving[:, plant.modes + 1 :].any(axis=0).all():
+        raise _wrong(plant, "tip_displacements", "returns a tip that no W moves", "give W a factor")
