@@ -12,17 +12,19 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import Field, field, fields
 from importlib import import_module
+from numbers import Real
 from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any, ClassVar
 
-import numpy as np
 from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
 from quietarm.models.validation import check_contract, check_passive
 
 COUNT = "count"
 """Unit of a parameter that is a whole number."""
+TIP = "displacement of the tip per modal amplitude"
+"""Meaning of a plant's phi, the mode shape at its tip."""
 
 
 def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
@@ -77,11 +79,10 @@ class Plant(ABC):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        name = cls.__dict__.get("name")
-        if not isinstance(name, str):
+        if not isinstance(name := cls.__dict__.get("name"), str):
             return
-        taken = Plant._known.get(name)
-        if taken is not None and taken.__module__ != cls.__module__ and _is_ours(taken):
+        taken = Plant._known.get(name, cls)
+        if taken.__module__ != cls.__module__ and taken.__module__.startswith(f"{__package__}."):
             raise ValueError(
                 f"plant name {name!r} is that of quietarm's own {taken.__name__}; give class "
                 f"{cls.__name__} another"
@@ -89,15 +90,14 @@ class Plant(ABC):
         Plant._known[name] = cls
 
     def __post_init__(self) -> None:
-        for entry in fields(self):
-            value: Any = getattr(self, entry.name)
-            number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+        for name, value in self.parameters.items():
+            number = isinstance(value, Real) and not isinstance(value, bool)
             if not (number and abs(value) <= _MOST_PARAMETER):
                 raise ValueError(
-                    f"{self.name}: parameter {entry.name} is {reprlib.repr(value)}; give a finite "
-                    f"number of at most {_MOST_PARAMETER:g} in size, in SI units"
+                    f"{self.name}: parameter {name} is {reprlib.repr(value)}; give a finite number "
+                    f"of at most {_MOST_PARAMETER:g} in size, in SI units"
                 )
-            object.__setattr__(self, entry.name, float(value))
+            object.__setattr__(self, name, float(value))
 
     @abstractmethod
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
@@ -148,12 +148,12 @@ class Plant(ABC):
     @property
     def parameters(self) -> dict[str, float]:
         """The plant's parameters by name, in SI units."""
-        return {entry.name: float(getattr(self, entry.name)) for entry in fields(self)}
+        return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
     @property
     def measured(self) -> dict[str, float]:
         """The parameters that may be wrong by a share, all but counts."""
-        counts = {entry.name for entry in fields(self) if entry.metadata.get("unit") == COUNT}
+        counts = [entry.name for entry in fields(self) if entry.metadata.get("unit") == COUNT]
         return {name: value for name, value in self.parameters.items() if name not in counts}
 
     @property
@@ -178,10 +178,6 @@ class Plant(ABC):
 
 _MOST_PARAMETER = 1e100
 """Powers of larger ones are beyond double precision."""
-
-
-def _is_ours(plant: type[Plant]) -> bool:
-    return plant.__module__.partition(".")[0] == __name__.partition(".")[0]
 
 
 def known_plants() -> dict[str, type[Plant]]:

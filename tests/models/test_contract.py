@@ -24,7 +24,10 @@ WRONG = {
         r"torque fails at line \d+ of test_contract.py.*casadi.cos",
     ),
     "other arguments": ({"torque": lambda p, j, W: j.acceleration}, "torque fails .*TypeError"),
-    "two of one mode": ({"accelerations": lambda p, j, W, dW: [-W[0]] * 2}, "returns 2 entries.*modes = 1"),
+    "two of one mode": (
+        {"accelerations": lambda p, j, W, dW: [-W[0]] * 2},
+        "returns 2 entries.*modes = 1",
+    ),
     "a mode too many": ({"tips": lambda p, W: [W[1]]}, "tip_displacements fails .*modes = 1"),
     "cubic spring": ({"accelerations": lambda p, j, W, dW: [-(W[0] ** 3)]}, "affine"),
     "curved tip": ({"tips": lambda p, W: [W[0] ** 2]}, "tip_displacements is not affine"),

@@ -29,7 +29,13 @@ OWN = "from quietarm.models import Plant, SingleLinkManipulator\n"
     [
         ("crane.py", OWN, "no plant"),
         ("crane.py", "\n\nx = 1 / 0\n", ", line 3: ZeroDivisionError"),
-        ("crane.py", OWN + "class S(Plant):\n    name, modes = 's', 1\n", "write modal_acc"),
+        ("crane.py", "\nx = (\n", ", line 2: SyntaxError"),
+        (
+            "crane.py",
+            OWN + "class S(Plant):\n    name, modes = 's', 1\n",
+            "with a name, modes, modal_acc",
+        ),
+        ("crane.py", OWN + "class S(Plant):\n    name = 'single-link'\n", "quietarm's own Single"),
         ("plan.json", "raise RuntimeError('run')", "is not called .py"),
     ],
 )
