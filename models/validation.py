@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from quietarm.models.at_rest import AtRest
+from quietarm.models import at_rest
 from quietarm.models.joint_motion import Expression, JointMotion
 
 if TYPE_CHECKING:
@@ -51,19 +51,20 @@ def check_contract(plant: Plant) -> None:
     """Refuse a plant that breaks the contract of `Plant`; ValueError with what is wrong."""
     kind, modes = type(plant), getattr(plant, "modes", None)
     bare = any(isinstance(entry, Field) for entry in vars(kind).values())
-    if bare or not is_dataclass(plant) or kind.__hash__ is None:
-        remedy = f"write @dataclass(frozen=True) above class {kind.__name__}"
-        raise ValueError(f"plant {plant.name!r} is no frozen dataclass; {remedy}")
-    if not isinstance(modes, int) or modes < 1:
-        remedy = "write how many it has, 1 or more, as modes: ClassVar[int] = 1"
-        raise ValueError(f"plant {plant.name!r} has {modes} modes; {remedy}")
-    _at_rest(plant)
+    is_frozen = is_dataclass(plant) and not bare and kind.__hash__ is not None
+    if not (is_frozen and isinstance(modes, int) and modes > 0):
+        raise ValueError(
+            f"plant {plant.name!r} is no frozen dataclass, or has {modes} modes; write "
+            f"@dataclass(frozen=True) above class {kind.__name__}, and modes: ClassVar[int] = 1 or "
+            "more in it"
+        )
+    _slopes_at_rest(plant)
 
 
 @lru_cache(maxsize=256)
 def check_passive(plant: Plant) -> None:
     """Refuse a plant whose joint has no positive inertia, or yields work from rest."""
-    _at_rest(plant).check_passive(plant.name)
+    at_rest.check_passive(plant.name, *_slopes_at_rest(plant))
 
 
 @lru_cache(maxsize=1024)
@@ -78,8 +79,8 @@ def check_along(plant: Plant, start: float, target: float) -> None:
 
 
 @lru_cache(maxsize=256)
-def _at_rest(plant: Plant) -> AtRest:
-    """The equations at rest, where they have values; ValueError where they break the contract."""
+def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
+    """Angles that have values, and the slopes there; ValueError where the equations are wrong."""
     motions = _motions(_ANGLES, plant.modes)
     values, slopes = _evaluate(plant, motions)
     # an angle at which no motion has a value is none to move to
@@ -87,19 +88,19 @@ def _at_rest(plant: Plant) -> AtRest:
     if defined.any():
         motions, values, slopes = motions[defined], values[defined], slopes[defined]
     remedy = "divide by nothing that can be 0, take no root of what can be negative"
-    _check_finite(plant, motions, values, remedy)
-    _check_finite(plant, motions, slopes, remedy)
+    _check_finite(plant, motions, np.concatenate([slopes, values], axis=2), remedy)
     _check_side_by_side(plant, motions, values)
     _check_rest(plant, motions, values)
-    slopes_at_rest = slopes[:, -1].reshape(len(motions), motions.shape[2], -1)
-    at_rest = AtRest.of_slopes(motions[:, -1, 0], slopes_at_rest)
-    at_rest.check_stable(plant.name)
-    return at_rest
+    # where the angle does not matter, the first is enough
+    still, first = np.unique(slopes[:, -1], axis=0, return_index=True)
+    found = motions[first, -1, 0], still.reshape(len(still), motions.shape[2], -1)
+    at_rest.check_stable(plant.name, *found)
+    return found
 
 
 def _motions(angles: Array, modes: int) -> Array:
-    """Joint motion, W, W' and W'' in the last axis, of every kind at every angle."""
-    columns = [1, 1, 1, 3 * modes]
+    """Joint motion, W and W' in the last axis, of every kind at every angle."""
+    columns = [1, 1, 1, 2 * modes]
     random = np.random.default_rng(0).uniform(-1, 1, (len(angles), 1, sum(columns)))
     motions = random * np.repeat(_KINDS * [1, 10, 100, 1], columns, axis=1)
     motions[..., 0] = angles[:, None]
@@ -114,13 +115,13 @@ def _evaluate(plant: Plant, motions: Array) -> Iterator[Array]:
 
 @lru_cache(maxsize=256)
 def _equations(plant: Plant) -> ca.Function:
-    """(joint motion, W, W' and W'' in a column) -> every output, the slopes of all by each."""
-    size, modes = 3 * (1 + plant.modes), plant.modes
+    """(joint motion, W and W' in a column) -> every output, the slopes of all by each."""
+    size = 3 + 2 * plant.modes
     outputs_of(plant, [ca.MX.sym("x") for _ in range(size)])  # math.cos makes a nan of an SX
     x = ca.SX.sym("x", size)
     outputs = outputs_of(plant, ca.vertsplit(x))
     for method, output in zip(_methods(plant), outputs, strict=True):
-        if method != "torque" and not ca.is_linear(output, x[3 : 3 + 2 * modes]):
+        if method != "torque" and not ca.is_linear(output, x[3:]):
             raise _wrong(plant, method, "is not affine in W and W'", "linearise it")
     column = ca.densify(ca.vertcat(*outputs))
     slopes = ca.densify(ca.vec(ca.jacobian(column, x)))
@@ -134,21 +135,20 @@ def _methods(plant: Plant) -> list[str]:
 
 
 def outputs_of(plant: Plant, arguments: Sequence[Expression]) -> list[Expression]:
-    """W'', torque and tip displacements, from joint motion, W, W' and W''.
+    """W'', torque and tip displacements, from joint motion, W and W'.
 
     ValueError where a method fails or gives something else than it should.
     """
-    modes = plant.modes
-    joint, rest = JointMotion(*arguments[:3]), list(arguments[3:])
-    W, dW, ddW = rest[:modes], rest[modes : 2 * modes], rest[2 * modes :]
-    accelerations = _call(plant, "modal_accelerations", joint, W, dW)
+    joint, modes = JointMotion(*arguments[:3]), plant.modes
+    W, dW = list(arguments[3 : 3 + modes]), list(arguments[3 + modes :])
+    ddW = _call(plant, "modal_accelerations", joint, W, dW)
+    if len(ddW) != modes:
+        raise _wrong(plant, "modal_accelerations", f"returns {len(ddW)} entries")
     torque = _call(plant, "torque", joint, W, dW, ddW)
     tips = _call(plant, "tip_displacements", W)
-    if len(accelerations) != modes:
-        raise _wrong(plant, "modal_accelerations", f"returns {len(accelerations)} entries")
     if not tips:
         raise _wrong(plant, "tip_displacements", "returns an empty list")
-    return [*accelerations, *torque, *tips]
+    return [*ddW, *torque, *tips]
 
 
 def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
@@ -195,18 +195,16 @@ def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
 
 
 def _check_finite(plant: Plant, motions: Array, table: Array, remedy: str) -> None:
-    """Values, or slopes of these, are finite in every motion."""
+    """Values, or slopes and values after them, are finite in every motion."""
     bad = np.argwhere(~np.isfinite(table))
     if bad.size:
         angle, kind, column = bad[-1]  # the simplest motion: at rest, if it fails there
-        at, methods = motions[angle, kind], _methods(plant)
-        method = methods[column % len(methods)]
-        which = "" if table.shape[-1] == len(methods) else "the slope of "
-        where = f"{at[0]:.4g} rad, {at[1]:.4g} rad/s and {at[2]:.4g} rad/s^2"
-        raise ValueError(
-            f"plant {plant.name!r}: {which}{method} is {table[angle, kind, column]} with the joint "
-            f"at {where}; {remedy}, or check the parameters"
-        )
+        methods = _methods(plant)
+        what = "is" if column >= table.shape[-1] - len(methods) else "has a slope of"
+        at = "{:.4g} rad, {:.4g} rad/s and {:.4g} rad/s^2".format(*motions[angle, kind])
+        what = f"{what} {table[angle, kind, column]} with the joint at {at}"
+        remedy = f"{remedy}, or check the parameters"
+        raise _wrong(plant, methods[column % len(methods)], what, remedy)
 
 
 def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
@@ -215,10 +213,10 @@ def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
     wrong = np.abs(still) > _TINY * moving
     wrong[:, plant.modes] = False  # the torque may hold the joint
     for row, column in np.argwhere(wrong):
-        raise ValueError(
-            f"plant {plant.name!r} does not stay at rest: with the joint at rest at "
-            f"{motions[row, -1, 0]:.4g} rad and W = 0, {_methods(plant)[column]} gives "
-            f"{still[row, column]:.4g}, not 0; measure W from the static deflection"
+        what = (
+            f"gives {still[row, column]:.4g}, not 0, with the joint at rest at "
+            f"{motions[row, -1, 0]:.4g} rad and W = 0"
         )
+        raise _wrong(plant, _methods(plant)[column], what, "measure W from the static deflection")
     if not moving[:, plant.modes + 1 :].any(axis=0).all():
         raise _wrong(plant, "tip_displacements", "returns a tip that no W moves", "give W a factor")
