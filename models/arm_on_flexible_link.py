@@ -75,8 +75,7 @@ class ArmOnFlexibleLink(Plant):
         link = flexible_link(_LENGTH, 0.0, tips[0])
         slope = np.arctan(TIP_SLOPE * tips[0] / _LENGTH)
         arm = rigid_link(_ARM, np.pi - angle + slope, base=link[-1])
-        clamp = [[0.0, -_CLAMP], [0.0, _CLAMP]]
         return [
-            Body(np.array(clamp), rigid=True), Body(link, tip=True),
+            Body(np.array([[0.0, -_CLAMP], [0.0, _CLAMP]]), rigid=True), Body(link, tip=True),
             Body(arm, rigid=True), Body(link[-1:], rigid=True),
         ]  # fmt: skip

@@ -1,27 +1,22 @@
 """Whether a plant can exist, by its equations linearised with the joint at rest.
 
-The modes must be stable. Torque over joint speed is an impedance Z(s): Z(s)/s at the highest
-frequencies is the inertia, and no work is gained where Z is positive real (Brune, J. Math. and
-Phys. 10, 1931): where its real part is not negative for any s whose own is positive.
-
-Slopes are those of W'' and the torque, in the last axis, by the joint's angle, speed and
-acceleration, W and W', at every angle.
+Torque over joint speed is an impedance Z(s). No work is gained where it is positive real (Brune, J.
+Math. and Phys. 10, 1931): where its real part is not negative for any s whose own is positive.
+Slopes are those of W'' and the torque (last axis) by the joint's angle, speed and acceleration, W
+and W', at every angle.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from quietarm.models.joint_motion import Array
 
 _TINY = 1e-12
 """An eigenvalue that is nothing, relative to the largest."""
 _GROWTH = 1e-6
 """Growth of a mode, relative to its frequency, that rounding does not explain."""
 _IDENTIFIED = 1e-2
-"""Share of |Z| that its real part may be below 0: coefficients are identified one by one, and the
-paper's arm changes the sign of its coupling in the modes and in the torque 1 degree apart."""
+"""Share of |Z| that its real part may be below 0, as coefficients are identified one by one."""
 _SWINGS = (1e-3 + 1j) * np.geomspace(1e-2, 1e2, 21)
 """Z is looked at close to the imaginary axis, at these multiples of the modes' frequencies."""
 
@@ -37,8 +32,7 @@ def check_stable(plant: str, angles: Array, slopes: Array) -> None:
         raise ValueError(
             f"plant {plant!r} has a mode that grows or drifts: with the joint at rest at "
             f"{angles[row]:.4g} rad it goes as exp({values[row, mode].real:.3g} t); check its "
-            "parameters, and the signs in modal_accelerations, which returns "
-            "W'' = -2 zeta omega W' - omega^2 W - ..."
+            "parameters and the signs in W'' = -2 zeta omega W' - omega^2 W - ..."
         )
 
 

@@ -1,8 +1,4 @@
-"""How a structure looks from above: bodies in the plane, flexible links bent as their mode is.
-
-Lengths are metres; the joint, or what carries the structure, is at the origin. Pictures only: no
-equation of motion uses this.
-"""
+"""How a structure looks from above, in metres: for pictures, no equation of motion uses this."""
 
 from __future__ import annotations
 
@@ -10,10 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from quietarm.models.beam_modes import beam_modes, mode_shape
-
-Array = NDArray[np.float64]
+from quietarm.models.joint_motion import Array
 
 _POINTS = np.linspace(0.0, 1.0, 25)
 """Of a bent link, as shares of its length: at a thousand pixels no corner can be seen."""
@@ -33,42 +27,26 @@ class Body:
     ----------
     points : ndarray, shape (points, 2)
         The line through its length [m]; a single point stands for a disc, as of a hub.
-    rigid : bool
-        Whether it is drawn as thick as what does not bend.
-    tip : bool
-        Whether its last point is a tip, whose path is drawn.
+    rigid, tip : bool
+        Whether it does not bend; whether its last point is a tip, whose path is drawn.
     """
 
     points: Array
     rigid: bool = False
     tip: bool = False
 
-    def __post_init__(self) -> None:
-        points = np.array(self.points, dtype=float)
-        points.setflags(write=False)
-        object.__setattr__(self, "points", points)
-
 
 def rigid_link(
     length: float, angle: float, displacement: float = 0.0, base: Sequence[float] = (0.0, 0.0)
 ) -> Array:
-    """A straight link, whose tip may be displaced across it.
+    """Ends of a straight link, shape (2, 2), whose tip may be displaced across it.
 
     Parameters
     ----------
-    length : float
-        From the base to the tip [m].
-    angle : float
-        Its direction without the displacement [rad].
-    displacement : float
-        Of the tip, positive to the left of the direction [m].
+    length, angle, displacement : float
+        From base to tip [m]; direction [rad]; of the tip, to the left of the direction [m].
     base : sequence of float
         Where it begins [m].
-
-    Returns
-    -------
-    ndarray, shape (2, 2)
-        Its ends.
     """
     return _placed(np.array([[0.0, 0.0], [length, displacement]]), angle, base)
 
@@ -76,13 +54,7 @@ def rigid_link(
 def flexible_link(
     length: float, angle: float, displacement: float, base: Sequence[float] = (0.0, 0.0)
 ) -> Array:
-    """A link that is clamped at its base and bent in its first mode; arguments as for `rigid_link`.
-
-    Returns
-    -------
-    ndarray, shape (points, 2)
-        Points along it, base and tip among them.
-    """
+    """Points of a link that is bent in its first mode, shape (points, 2); as `rigid_link`."""
     bent = np.column_stack([length * _POINTS, np.multiply(displacement, _BENT)])
     return _placed(bent, angle, base)
 

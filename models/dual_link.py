@@ -75,8 +75,6 @@ class DualLinkManipulator(Plant):
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """Two links on one hub, the second opposite the first: how they stand is not published."""
-        first, second = (
-            flexible_link(_LENGTH, at, tip)
-            for at, tip in zip((angle, angle + np.pi), tips, strict=True)
-        )
+        first = flexible_link(_LENGTH, angle, tips[0])
+        second = flexible_link(_LENGTH, angle + np.pi, tips[1])
         return [Body(first, tip=True), Body(second, tip=True), Body(first[:1], rigid=True)]

@@ -43,34 +43,30 @@ class FlexibleBeam(Plant):
     omega: float = parameter(10.43, "rad/s", "eq (10)", "first frequency, hub held, as measured")
     zeta: float = parameter(9.636e-3, "-", "eq (10)", "damping ratio of every mode")
     hub_inertia: float = parameter(
-        5.0e-4, "kg m^2", "alpha1 of eq (10) less plate and tip mass",
-        "of all that turns without the beam: rotor, hub",
-    )  # fmt: skip
+        5.0e-4, "kg m^2", "alpha1 of eq (10) less plate and tip", "of rotor, hub and the like"
+    )
     friction: float = parameter(3.091e-2, "N m s", "eq (10)", "viscous friction of the joint")
     length: float = parameter(0.475, "m", _PAPERS, "of the beam, from the hub to the tip")
     mass_per_length: float = parameter(
-        0.425, "kg/m", f"{_PAPERS}: 50 mm x 1 mm of brass of 8500 kg/m^3",
-        "width times thickness times density",
-    )  # fmt: skip
+        0.425, "kg/m", f"{_PAPERS}: brass of 8500 kg/m^3", "width times thickness times density"
+    )
     tip_mass: float = parameter(0.036, "kg", _PAPERS, "at the tip")
     hub_radius: float = parameter(0.0, "m", _NONE, "from the axis to the clamp")
     mode_count: float = parameter(1.0, COUNT, _NONE, f"how many modes, up to {_MOST_MODES}")
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in ("omega", "length", "mass_per_length"):
-            if getattr(self, name) <= 0:
-                raise ValueError(f"{name} is {getattr(self, name):g}; give more than 0")
-        for name in ("zeta", "hub_inertia", "friction", "tip_mass", "hub_radius"):
-            if getattr(self, name) < 0:
-                raise ValueError(f"{name} is {getattr(self, name):g}; give 0 or more")
+        for name, value in self.parameters.items():
+            positive = name in ("omega", "length", "mass_per_length")
+            if value < 0 or (positive and value == 0):
+                least = "more than 0" if positive else "0 or more"
+                raise ValueError(f"{name} is {value:g}; give {least}")
         if self.length > _LONGEST:
+            raise ValueError(f"length is {self.length:g} m, of no joint; give metres, or 475mm")
+        if (count := self.mode_count) not in range(1, _MOST_MODES + 1):
             raise ValueError(
-                f"length is {self.length:g} m, a beam of no joint; give metres, or 475mm"
+                f"mode_count is {count:g}; give a whole number from 1 to {_MOST_MODES}"
             )
-        if self.mode_count not in range(1, _MOST_MODES + 1):
-            given = f"mode_count is {self.mode_count:g}"
-            raise ValueError(f"{given}; give a whole number from 1 to {_MOST_MODES}")
 
     @property
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -94,18 +90,9 @@ class FlexibleBeam(Plant):
         tip_mass: float = 0.0,
         **others: float,
     ) -> FlexibleBeam:
-        """A beam whose frequency is not measured, from its section and material.
+        """A beam whose frequency is not measured, from its section [m] and material [kg/m^3, Pa].
 
-        Parameters
-        ----------
-        width, thickness : float
-            Of the section [m]; it bends across its thickness.
-        density : float
-            Of the material [kg/m^3].
-        youngs_modulus : float
-            Of the material [Pa].
-        length, tip_mass, **others
-            As of the class.
+        It bends across its thickness; the other parameters are those of the class.
         """
         per_length = width * thickness * density
         (k,), *_ = beam_modes(1, tip_mass / (per_length * length), 0.0)
@@ -116,18 +103,7 @@ class FlexibleBeam(Plant):
         )
 
     def carrying(self, tip_mass: float) -> FlexibleBeam:
-        """The same beam, of the same stiffness, with another mass at its tip.
-
-        Parameters
-        ----------
-        tip_mass : float
-            The mass [kg].
-
-        Returns
-        -------
-        FlexibleBeam
-            Its frequency is the one that the beam's equation makes of this one's.
-        """
+        """The same beam, of the same stiffness, with another mass [kg] at its tip."""
         (before,), *_ = beam_modes(1, self.tip_mass / self._mass, 0.0)
         (after,), *_ = beam_modes(1, tip_mass / self._mass, 0.0)
         return replace(self, tip_mass=tip_mass, omega=self.omega * (after / before) ** 2)

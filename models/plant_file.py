@@ -17,15 +17,7 @@ from quietarm.models.plant import Plant
 
 @dataclass(frozen=True)
 class PlantFile:
-    """A file that defines plants.
-
-    Attributes
-    ----------
-    path : str
-        Its name, as it was given.
-    source : bytes
-        Its content.
-    """
+    """A file that defines plants: its name, as it was given, and its content."""
 
     path: str
     source: bytes = field(repr=False)
@@ -36,19 +28,16 @@ class PlantFile:
         return hashlib.sha256(self.source).hexdigest()
 
 
-_plants_by_digest: dict[str, dict[str, type[Plant]]] = {}
 _file_of: dict[type[Plant], PlantFile] = {}
 
 
 def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
-    """Import a file as a module, and make its plants known by name.
-
-    The file is run: name only one that you trust. What it imports must be installed.
+    """Run a Python file that you trust, and make its plants known by name.
 
     Parameters
     ----------
     path : str or Path
-        The file, in Python.
+        The file; what it imports must be installed.
 
     Returns
     -------
@@ -77,14 +66,14 @@ def file_of_plant(plant: type[Plant]) -> PlantFile | None:
 
 def _plants_of(file: PlantFile) -> Mapping[str, type[Plant]]:
     """The plants of a file by name, from now on known everywhere."""
-    if file.digest not in _plants_by_digest:
+    plants = {plant.name: plant for plant, of in _file_of.items() if of.source == file.source}
+    if not plants:
         known = dict(Plant._known)
         try:
-            _plants_by_digest[file.digest] = _run(file)
+            plants = _run(file)
         except BaseException:
             Plant._known = known
             raise
-    plants = _plants_by_digest[file.digest]
     for plant in plants.values():
         copyreg.pickle(plant, _to_other_process)  # which could not import it by name
         _file_of[plant] = file  # by the name that it was given last
@@ -115,10 +104,9 @@ def _run(file: PlantFile) -> dict[str, type[Plant]]:
         if plant.__module__ == module.__name__ and not isabstract(plant)
     }
     if not plants:
-        equations = ", ".join(sorted(Plant.__abstractmethods__))
         raise ValueError(
             f"plant file {file.path} defines no plant; write a class of models.Plant in it, with a "
-            f"name, modes, {equations}"
+            f"name, modes, {', '.join(sorted(Plant.__abstractmethods__))}"
         )
     return plants
 

@@ -19,21 +19,18 @@ from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 from quietarm.models import at_rest
-from quietarm.models.joint_motion import Expression, JointMotion
+from quietarm.models.joint_motion import Array, Expression, JointMotion
 
 if TYPE_CHECKING:
     from quietarm.models.plant import Plant
 
-Array = NDArray[np.float64]
-
 _WRITE = {
-    "modal_accelerations": ("self, joint, W, dW", "a list of W'' [m/s^2], one for each mode"),
-    "torque": ("self, joint, W, dW, ddW", "one expression, the joint torque [N m]"),
-    "tip_displacements": ("self, W", "a list of tip displacements [m]"),
+    "modal_accelerations": "(self, joint, W, dW) that returns a list of W'' [m/s^2], one a mode",
+    "torque": "(self, joint, W, dW, ddW) that returns one expression, the joint torque [N m]",
+    "tip_displacements": "(self, W) that returns a list of tip displacements [m]",
 }
-"""For every method its arguments, and what it should return."""
+"""What every method takes, and what it should return."""
 _RIGHT = math.pi / 2
 _ANGLES = np.linspace(-2 * math.pi, 2 * math.pi, 241)
 _ANGLES += np.random.default_rng(0).uniform(-0.02, 0.02, 241)  # else sin(60 angle) is 0 at all
@@ -55,8 +52,7 @@ def check_contract(plant: Plant) -> None:
     if not (is_frozen and isinstance(modes, int) and modes > 0):
         raise ValueError(
             f"plant {plant.name!r} is no frozen dataclass, or has {modes} modes; write "
-            f"@dataclass(frozen=True) above class {kind.__name__}, and modes: ClassVar[int] = 1 or "
-            "more in it"
+            f"@dataclass(frozen=True) above {kind.__name__} and modes: ClassVar[int] = 1 in it"
         )
     _slopes_at_rest(plant)
 
@@ -74,8 +70,7 @@ def check_along(plant: Plant, start: float, target: float) -> None:
     right = _RIGHT * np.arange(math.ceil(low / _RIGHT), math.floor(high / _RIGHT) + 1)[:_ON_THE_WAY]
     angles = np.concatenate([[start, target], right, np.linspace(low, high, _ON_THE_WAY)])
     motions = _motions(angles, plant.modes)[:, :: len(_KINDS) - 1]  # forwards and at rest
-    remedy = f"that is on the way from {start:.4g} to {target:.4g} rad: move where it is defined"
-    _check_finite(plant, motions, next(_evaluate(plant, motions)), remedy)
+    _check_finite(plant, motions, next(_evaluate(plant, motions)))
 
 
 @lru_cache(maxsize=256)
@@ -87,8 +82,7 @@ def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     defined = np.isfinite(values).all(axis=2).any(axis=1)
     if defined.any():
         motions, values, slopes = motions[defined], values[defined], slopes[defined]
-    remedy = "divide by nothing that can be 0, take no root of what can be negative"
-    _check_finite(plant, motions, np.concatenate([slopes, values], axis=2), remedy)
+    _check_finite(plant, motions, np.concatenate([slopes, values], axis=2))
     _check_side_by_side(plant, motions, values)
     _check_rest(plant, motions, values)
     # where the angle does not matter, the first is enough
@@ -102,7 +96,7 @@ def _motions(angles: Array, modes: int) -> Array:
     """Joint motion, W and W' in the last axis, of every kind at every angle."""
     columns = [1, 1, 1, 2 * modes]
     random = np.random.default_rng(0).uniform(-1, 1, (len(angles), 1, sum(columns)))
-    motions = random * np.repeat(_KINDS * [1, 10, 100, 1], columns, axis=1)
+    motions = random * np.repeat(_KINDS * [1, 10, 100, 1], columns, axis=1) + 0.0  # no -0
     motions[..., 0] = angles[:, None]
     return motions
 
@@ -142,13 +136,8 @@ def outputs_of(plant: Plant, arguments: Sequence[Expression]) -> list[Expression
     joint, modes = JointMotion(*arguments[:3]), plant.modes
     W, dW = list(arguments[3 : 3 + modes]), list(arguments[3 + modes :])
     ddW = _call(plant, "modal_accelerations", joint, W, dW)
-    if len(ddW) != modes:
-        raise _wrong(plant, "modal_accelerations", f"returns {len(ddW)} entries")
     torque = _call(plant, "torque", joint, W, dW, ddW)
-    tips = _call(plant, "tip_displacements", W)
-    if not tips:
-        raise _wrong(plant, "tip_displacements", "returns an empty list")
-    return [*ddW, *torque, *tips]
+    return [*ddW, *torque, *_call(plant, "tip_displacements", W)]
 
 
 def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
@@ -165,21 +154,21 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
         why = "a symbol is no number" if of_symbol else f"{type(error).__name__}: {text}"
         raise _wrong(plant, method, f"fails{at} ({why})") from None
     entries = [found] if method == "torque" else found
+    entries = list(entries) if isinstance(entries, list | tuple) else []
+    count = plant.modes if method == "modal_accelerations" else max(1, len(entries))
     kinds = Real | ca.SX | ca.MX | ca.DM
-    if not isinstance(entries, list | tuple) or not all(isinstance(one, kinds) for one in entries):
+    if len(entries) != count or not all(isinstance(entry, kinds) for entry in entries):
         raise _wrong(plant, method, f"returns {reprlib.repr(found)}")
-    return list(entries)
+    return entries
 
 
 def _wrong(plant: Plant, method: str, what: str, remedy: str = "") -> ValueError:
     """What a method does, and what to do about it."""
-    arguments, returns = _WRITE[method]
-    remedy = remedy or (
-        f"write def {method}({arguments}) for modes = {plant.modes}, with casadi.cos, casadi.fmax, "
-        "casadi.if_else and so on, since math's and numpy's functions, if, max and float() take no "
-        f"symbols, and return {returns}"
+    write = f"write def {method}{_WRITE[method]} for modes = {plant.modes}"
+    symbols = (
+        "with casadi.cos, casadi.if_else and so on, as math, numpy, if and max take no symbols"
     )
-    return ValueError(f"plant {plant.name!r}: {method} {what}; {remedy}")
+    return ValueError(f"plant {plant.name!r}: {method} {what}; {remedy or f'{write}, {symbols}'}")
 
 
 def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
@@ -194,7 +183,7 @@ def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
             raise _wrong(plant, method, "mixes motions that are side by side in a matrix", remedy)
 
 
-def _check_finite(plant: Plant, motions: Array, table: Array, remedy: str) -> None:
+def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
     """Values, or slopes and values after them, are finite in every motion."""
     bad = np.argwhere(~np.isfinite(table))
     if bad.size:
@@ -203,7 +192,9 @@ def _check_finite(plant: Plant, motions: Array, table: Array, remedy: str) -> No
         what = "is" if column >= table.shape[-1] - len(methods) else "has a slope of"
         at = "{:.4g} rad, {:.4g} rad/s and {:.4g} rad/s^2".format(*motions[angle, kind])
         what = f"{what} {table[angle, kind, column]} with the joint at {at}"
-        remedy = f"{remedy}, or check the parameters"
+        remedy = (
+            "move where it is defined, or divide by nothing that can be 0 and check the parameters"
+        )
         raise _wrong(plant, methods[column % len(methods)], what, remedy)
 
 
@@ -213,10 +204,8 @@ def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
     wrong = np.abs(still) > _TINY * moving
     wrong[:, plant.modes] = False  # the torque may hold the joint
     for row, column in np.argwhere(wrong):
-        what = (
-            f"gives {still[row, column]:.4g}, not 0, with the joint at rest at "
-            f"{motions[row, -1, 0]:.4g} rad and W = 0"
-        )
+        at = f"with the joint at rest at {motions[row, -1, 0]:.4g} rad and W = 0"
+        what = f"gives {still[row, column]:.4g}, not 0, {at}"
         raise _wrong(plant, _methods(plant)[column], what, "measure W from the static deflection")
     if not moving[:, plant.modes + 1 :].any(axis=0).all():
         raise _wrong(plant, "tip_displacements", "returns a tip that no W moves", "give W a factor")

@@ -35,7 +35,11 @@ OWN = "from quietarm.models import Plant, SingleLinkManipulator\n"
             OWN + "class S(Plant):\n    name, modes = 's', 1\n",
             "with a name, modes, modal_acc",
         ),
-        ("crane.py", OWN + "class S(Plant):\n    name = 'single-link'\n", "quietarm's own Single"),
+        (
+            "crane.py",
+            OWN + "class S(Plant):\n    name = 'single-link'\n",
+            "quietarm's own; give S another",
+        ),
         ("plan.json", "raise RuntimeError('run')", "is not called .py"),
     ],
 )
