@@ -54,8 +54,7 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     try:
         source = Path(path).read_bytes()
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise ValueError(f"plant file {path} cannot be read: {reason}; give another file") from None
+        raise ValueError(f"plant file {path} cannot be read: {error}; give another file") from None
     return dict(_plants_of(PlantFile(str(path), source)))
 
 

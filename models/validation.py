@@ -82,7 +82,7 @@ def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     defined = np.isfinite(values).all(axis=2).any(axis=1)
     if defined.any():
         motions, values, slopes = motions[defined], values[defined], slopes[defined]
-    _check_finite(plant, motions, np.concatenate([slopes, values], axis=2))
+    _check_finite(plant, motions, np.concatenate([values, slopes], axis=2))
     _check_side_by_side(plant, motions, values)
     _check_rest(plant, motions, values)
     # where the angle does not matter, the first is enough
@@ -184,12 +184,12 @@ def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
 
 
 def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
-    """Values, or slopes and values after them, are finite in every motion."""
-    bad = np.argwhere(~np.isfinite(table))
-    if bad.size:
-        angle, kind, column = bad[-1]  # the simplest motion: at rest, if it fails there
-        methods = _methods(plant)
-        what = "is" if column >= table.shape[-1] - len(methods) else "has a slope of"
+    """Values, and slopes after them, are finite in every motion."""
+    finite, methods = np.isfinite(table), _methods(plant)
+    if not finite.all():
+        angle, kind, _ = np.argwhere(~finite)[-1]  # the simplest motion: at rest, if it fails there
+        column = finite[angle, kind].argmin()
+        what = "is" if column < len(methods) else "has a slope of"
         at = "{:.4g} rad, {:.4g} rad/s and {:.4g} rad/s^2".format(*motions[angle, kind])
         what = f"{what} {table[angle, kind, column]} with the joint at {at}"
         remedy = (
