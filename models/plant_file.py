@@ -82,7 +82,7 @@ def _plants_of(file: PlantFile) -> Mapping[str, type[Plant]]:
 
 def _run(file: PlantFile) -> dict[str, type[Plant]]:
     """The plants that the module of a file defines; ValueError with the line where it fails."""
-    module = ModuleType(f"plant file {file.path}")
+    module = ModuleType(f"plant file {file.path}, {file.digest}")
     sys.modules[module.__name__] = module  # dataclasses look their annotations up there
     module.__file__ = file.path
     try:

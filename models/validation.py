@@ -79,7 +79,7 @@ def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
     motions = _motions(_ANGLES, plant.modes)
     values, slopes = _evaluate(plant, motions)
     # an angle at which no motion has a value is none to move to
-    defined = np.isfinite(values).all(axis=2).any(axis=1)
+    defined = np.any(np.isfinite(values).all(axis=2), axis=1)
     if defined.any():
         motions, values, slopes = motions[defined], values[defined], slopes[defined]
     _check_finite(plant, motions, np.concatenate([values, slopes], axis=2))
