@@ -19,7 +19,7 @@ from quietarm.models.joint_motion import Modes
 from quietarm.ocp.energy import power_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import keep_interrupts, silent_errors
-from quietarm.ocp.simulation.residual import fastest_mode
+from quietarm.ocp.simulation.residual import fastest_along
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -167,7 +167,7 @@ class _Rest:
 def _rest(task: PointToPoint, errors: Errors = ()) -> _Rest:
     faster = 1 + max((abs(error) for _, error in errors), default=0.0)
     faster = math.ceil(10 * faster) / 10  # so that like errors share what is compiled
-    radians = task.residual_window * fastest_mode(task) * faster
+    radians = task.residual_window * fastest_along(task.plant, task.target, task.target) * faster
     samples = max(1, math.ceil(radians / _RADIANS_A_SAMPLE))
     with cvodes_for("'s residual vibration"):
         return _from_unit_states(task.plant, task.target, task.residual_window, samples, errors)

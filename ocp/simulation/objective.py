@@ -19,6 +19,8 @@ _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
 ).tolist()
 _TINY = 1e-300
+_MOST_KEPT = 4000
+"""Steps up to which `beyond_quadratic` is kept, in 160 bytes a step: at most 20 MB in all."""
 
 
 def spent(
@@ -116,13 +118,17 @@ def energy_derivatives() -> ca.Function:
     return ca.Function("energy", [power, least_slope], outputs, {"cse": True})
 
 
-@lru_cache(maxsize=32)
 def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
     """What the neighbouring steps say about the power on a step, for `resolved_energy`.
 
     The quartic through five nodes in a row, the step's own three in the middle, is the quadratic
     through these plus (x - node 1)(x - node 2)(x - node 3) (cubic + quartic (x - 1/2)).
+    Both are kept for the next rollout of as many steps, but those of a long recording are not.
     """
+    return (_kept_beyond if steps <= _MOST_KEPT else _beyond)(steps)
+
+
+def _beyond(steps: int) -> tuple[ca.DM, ca.DM]:
     if steps == 1:
         return ca.DM(NODES, 1), ca.DM(NODES, 1)  # no neighbour
     begin, length = (entry.full() for entry in mesh(ca.DM(np.arange(steps)), steps))
@@ -138,6 +144,9 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
         ca.DM.triplet(*at, cubic.ravel().tolist(), len(nodes), steps),
         ca.DM.triplet(*at, quartic.ravel().tolist(), len(nodes), steps),
     )
+
+
+_kept_beyond = lru_cache(maxsize=32)(_beyond)
 
 
 class WithPeaks:

@@ -39,7 +39,7 @@ from quietarm.ocp.simulation.cvodes import (
 from quietarm.ocp.simulation.extremes import extremes
 from quietarm.ocp.simulation.objective import Motion, WithPeaks, integrated, spent
 from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
-from quietarm.ocp.simulation.residual import fastest_mode, residual_samples
+from quietarm.ocp.simulation.residual import fastest_along, residual_samples
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -212,7 +212,8 @@ def resimulated(task: PointToPoint, joint: PiecewiseMotion, errors: Errors = ())
     """Simulate a joint motion with CVODES, on the nominal plant or one with errors."""
     residual_samples(task)  # refuses a window that is too long
     least = _SMOOTH_STEPS if joint.smooth else _STEPS
-    blocks = math.ceil(_STEPS_A_RADIAN * fastest_mode(task) * task.duration / least)
+    fastest = fastest_along(task.plant, task.start, task.target)
+    blocks = math.ceil(_STEPS_A_RADIAN * fastest * task.duration / least)
     of_a_piece = math.ceil(least * max(1, blocks) / joint.given.shape[1])
     steps = max(of_a_piece, _LEAST_STEPS_OF_A_PIECE)
     with cvodes_for(joint.remedy):

@@ -25,7 +25,7 @@ from quietarm.ocp.simulation.collocation import (
     step,
 )
 from quietarm.ocp.simulation.objective import Motion, integrated, spent
-from quietarm.ocp.simulation.residual import fastest_of, residual_rows, residual_samples
+from quietarm.ocp.simulation.residual import fastest_along, residual_rows, residual_samples
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -200,9 +200,9 @@ def _by_step(entry: Expression, steps: int) -> list[Expression]:
 
 
 def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
-    """Steps that resolve the profile (`least`) and the plant's fastest mode (2 a radian)."""
-    plants = task.perturbed_plants
-    fastest = max(fastest_of(plant, task.start, task.target) for plant in plants)
+    """Steps that resolve the profile (`least`) and the plant's fastest mode on the way (2 a radian)."""
+    plants, ends = task.perturbed_plants, (task.start, task.target)
+    fastest = max(fastest_along(plant, *ends) for plant in plants)
     radians = fastest * task.duration
     if 2 * radians > MOST_STEPS:
         raise ValueError(
