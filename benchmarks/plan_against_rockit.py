@@ -42,13 +42,13 @@ from dataclasses import dataclass
 from statistics import median
 from time import process_time
 
-import casadi as ca
 import numpy as np
 import rockit
 from parts.conditions import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
-from quietarm.ocp.simulation.collocation import NODES, mesh
+from quietarm.ocp.simulation.collocation import NODES
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.solvers.ipopt import OPTIONS
 from quietarm.ocp.solvers.program import Program
@@ -145,7 +145,7 @@ class RockitMove:
 
 
 def _boundaries(steps: int) -> list[float]:
-    return mesh(ca.DM(np.arange(steps + 1)), steps)[0].full().ravel().tolist()
+    return Grid(steps).boundaries.tolist()
 
 
 def fewest(above: Callable[[int], float], within: float) -> int:

@@ -50,8 +50,8 @@ from .robustness.population import Figures as Figures
 from .robustness.sensitivity import Sensitivity as Sensitivity
 from .robustness.worst import Worst as Worst
 from .simulation.cvodes import Trajectory as Trajectory
+from .simulation.free_vibration import FreeVibration as FreeVibration
 from .simulation.objective import Motion as Motion
-from .simulation.residual import residual_matrix as residual_matrix
 from .simulation.resimulation import resimulate as resimulate
 from .simulation.resimulation import sample_trajectory as sample_trajectory
 from .simulation.rollout import Rollout as Rollout

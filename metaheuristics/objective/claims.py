@@ -15,8 +15,8 @@ from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.planning.verification import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.robustness.worst import worst_at, worst_of
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.resimulation import resimulate
-from quietarm.ocp.simulation.rollout import default_steps
 from quietarm.ocp.task import QUANTITIES
 
 _SAMPLE = 100

@@ -18,10 +18,10 @@ from quietarm.ocp.planning.verification import refuse_passed, tightened
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import Provenance, Verification
+from quietarm.ocp.simulation.free_vibration import after_arrival
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.residual import residual_samples
 from quietarm.ocp.simulation.resimulation import Resimulation, resimulated
-from quietarm.ocp.simulation.rollout import default_steps
 from quietarm.ocp.task import PointToPoint
 
 FIRST_INTERVALS = 80
@@ -124,7 +124,7 @@ def energy_floor(
 
 
 def _first_steps(task: PointToPoint) -> int:
-    residual_samples(task)  # a window that is too long is refused before the solves, not after
+    after_arrival(task)  # a window that is too long is refused before the solves, not after
     steps = default_steps(task, least=FIRST_INTERVALS)
     if steps > MOST_FIRST_INTERVALS:
         raise ValueError(

@@ -19,7 +19,7 @@ from quietarm.ocp.planning.verification import (
     finer_values,
     verified,
 )
-from quietarm.ocp.simulation.cvodes import residual_of
+from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Solution
 
@@ -98,7 +98,7 @@ def _by_finer_rule(sweep: Sweep, found: Sequence[Solution]) -> dict[int, FrontPo
     points = dict[int, FrontPoint]()
     for i, (one, energy) in enumerate(zip(found, values.energy.tolist(), strict=True)):
         if abs(one.energy - energy) <= care_of(sweep).agreement * energy:
-            residual = residual_of(task, values.arrival[i])
+            residual = float(after_arrival(task)[0].peak(task.missed(values.arrival[i])))
             points[i] = FrontPoint(profile.checked(one.coefficients), residual, energy)
     for i in list(points)[::CHECK_EVERY]:
         exact, point = resimulate(task, profile, points[i].coefficients), points[i]

@@ -22,7 +22,7 @@ from quietarm.ocp.planning.verification import (
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.simulation.residual import residuals_at_rest, state_matrices
+from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_of_moves
 from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.solvers.batch import Values
 from quietarm.ocp.solvers.program import Program, programs_of
@@ -174,9 +174,8 @@ def _from_neighbours(
 
 def _steps(tasks: Sequence[PointToPoint], profile: JointProfile, settings: SolveSettings) -> int:
     """Steps that do for all: those of the move that takes the most periods."""
-    ends = np.array([angle for task in tasks for angle in (task.start, task.target)])
-    fastest = np.abs(np.linalg.eigvals(state_matrices(tasks[0].plant, ends))).max(axis=1)
-    radians = fastest.reshape(-1, 2).max(axis=1) * [task.duration for task in tasks]
+    starts, targets, durations = np.array([task.move for task in tasks]).T
+    radians = durations * fastest_of_moves(tasks[0].plant, starts, targets)
     return first_steps(tasks[int(np.argmax(radians))], profile, settings)
 
 
@@ -284,13 +283,14 @@ def _on_twice_the_steps(rows: list[_Found], solver: Solver) -> list[_Found]:
 def _corrected(rows: list[_Found], table: Array, solver: Solver) -> tuple[Array, Values, Array]:
     """Coefficients, figures and residuals, corrected by what the steps miss on arrival."""
     programs = [row.program for row in rows]
-    targets = np.array([program.task.target for program in programs])
+    one, targets = programs[0].task, [program.task.target for program in programs]
+    vibrations = FreeVibration(one.plant, targets, one.residual_window)
     by_steps = np.array([row.solution.arrival[0] for row in rows])
     rounds = 0
     while True:
         values = finer_values(programs, table)
         missed = values.arrival - [program.wanted for program in programs]
-        residual = residuals_at_rest(programs[0].task, targets, missed)
+        residual = vibrations.peak(missed)
         again = np.flatnonzero(residual > _AT_REST * STILL)
         if not again.size or rounds == _ROUNDS:
             return table, values, residual

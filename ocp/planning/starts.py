@@ -12,7 +12,7 @@ from quietarm.ocp.planning.feasibility import explain, least_peaks_of
 from quietarm.ocp.planning.verification import MOST_SOLVER_STEPS
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import SolveSettings
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.solvers.program import Program
 from quietarm.ocp.solvers.solution import Scalarization, Solution
 from quietarm.ocp.solvers.solving import STOPPED, Row, Solver, solve

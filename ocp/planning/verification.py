@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import Motion, WithPeaks
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
 from quietarm.ocp.simulation.resimulation import in_scenarios
-from quietarm.ocp.simulation.rollout import default_steps
 from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.program import Program
 from quietarm.ocp.solvers.solution import RESIDUAL, STILL, STILL_SHARE, Scalarization, Solution

@@ -6,10 +6,9 @@ Nothing here knows how the joint moves: `resimulation` drives it along a profile
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -19,9 +18,8 @@ from quietarm.models.joint_motion import Modes
 from quietarm.ocp.energy import power_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.interrupts import keep_interrupts, silent_errors
-from quietarm.ocp.simulation.residual import fastest_along
+from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.task import PointToPoint
-from quietarm.ocp.uncertainty import perturb_plant
 
 CVODES = {
     "linear_multistep_method": "adams",  # order up to 12: a fifth of the steps of BDF's 5
@@ -35,7 +33,7 @@ _MOST_STEPS, _LEAST_A_SAMPLE = 3_000_000, 1_000
 """Steps in a run: it takes some seconds, in which CVODES hears no signal. Coefficients of 1000,
 five hundred times those of any plan, take 700 from one of 3500 samples to the next."""
 _RADIANS_A_SAMPLE = 0.003
-"""Phase of the fastest mode between samples of the residual: misses 1.2e-6 of a peak at most."""
+"""Phase of the fastest mode between samples after arrival: these miss 1.2e-6 of a peak at most."""
 
 
 @dataclass(frozen=True)
@@ -137,86 +135,18 @@ def options_for(times: ArrayLike) -> dict[str, str | float | int]:
     return {**CVODES, "max_num_steps": max(_LEAST_A_SAMPLE, round(_MOST_STEPS * share))}
 
 
-def after_arrival(
-    plant: Plant, target: float, times: NDArray[np.float64], names: Sequence[str] = ()
-) -> ca.Function:
-    """CVODES from `x0`, W [m] and then W' [m/s] at arrival, with errors `p` of these names.
-
-    Its `xf` has a column for each of the times since arrival [s], which increase from beyond 0.
-    """
-    state, errors = ca.SX.sym("x", 2 * plant.modes), ca.SX.sym("e", len(names))
-    wrong = perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
-    rates = rates_of(wrong, JointMotion(target, 0.0, 0.0), state)
-    problem, options = {"x": state, "p": errors, "ode": rates}, options_for(times)
-    return ca.integrator("rest", "cvodes", problem, 0.0, times.tolist(), options)
-
-
-@dataclass(frozen=True, eq=False)
-class _Rest:
-    """Constant matrices from the state at arrival to the states in the residual window.
-
-    The time of a sample is the sum of a long and a short time, so that s samples take about 2
-    sqrt(s) matrices: with many modes, one for every sample would fill the memory.
-    """
-
-    short: NDArray[np.float64]  # (short times, 2 * modes, 2 * modes)
-    long: NDArray[np.float64]  # (long times, 2 * modes, 2 * modes)
-    tips: NDArray[np.float64]  # (tips * short times, 2 * modes)
-
-
-def _rest(task: PointToPoint, errors: Errors = ()) -> _Rest:
-    faster = 1 + max((abs(error) for _, error in errors), default=0.0)
-    faster = math.ceil(10 * faster) / 10  # so that like errors share what is compiled
-    radians = task.residual_window * fastest_along(task.plant, task.target, task.target) * faster
-    samples = max(1, math.ceil(radians / _RADIANS_A_SAMPLE))
-    with cvodes_for("'s residual vibration"):
-        return _from_unit_states(task.plant, task.target, task.residual_window, samples, errors)
-
-
-@lru_cache(maxsize=256)
-@keep_interrupts()  # casadi loses a Ctrl-C, and what it left unfinished would be kept here
-def _from_unit_states(
-    plant: Plant, target: float, window: float, samples: int, errors: Errors
-) -> _Rest:
-    size, short = 2 * plant.modes, math.ceil(math.sqrt(samples))
-    long = math.ceil(samples / short)
-    run = _after_arrival(plant, target, window, (short, long), tuple(name for name, _ in errors))
-    values = ca.DM([error for _, error in errors])
-    later = run(x0=ca.DM.eye(size), p=values)["xf"].full().reshape(size, size, -1)
-    matrices = np.concatenate([np.eye(size)[None], later.transpose(2, 0, 1)])
-    into = matrices[: short + 1]
-    W = [ca.DM(into[:, mode].reshape(1, -1)) for mode in range(plant.modes)]
-    wrong = perturb_plant(plant, dict(errors))
-    tips = ca.horzcat(*wrong.tip_displacements(W)).full().reshape(-1, size)
-    return _Rest(into, matrices[[0, *range(short, short + long - 1)]], tips)
-
-
-@lru_cache(maxsize=32)
-def _after_arrival(
-    plant: Plant, target: float, window: float, counts: tuple[int, int], names: tuple[str, ...]
-) -> ca.Function:
-    short, long = counts
-    at = np.append(np.arange(1, short + 1), short * np.arange(2, long + 1))
-    return after_arrival(plant, target, window * at / (short * long), names)
-
-
-def residual_of(task: PointToPoint, arrival: NDArray[np.float64], errors: Errors = ()) -> float:
-    """Largest tip displacement [m] of what is missed on arrival, on a plant with errors."""
-    rest = _rest(task, errors)
-    return float(np.abs(rest.tips @ (rest.long @ task.missed(arrival)).T).max())
-
-
-@keep_interrupts()
 def rest_of(task: PointToPoint, arrival: ArrayLike) -> Trajectory:
-    """What happens in the residual window, from W (m) and then W' (m/s) at arrival, by CVODES."""
-    rest = _rest(task)
-    states = (rest.short @ (rest.long @ np.asarray(arrival)).T).transpose(1, 2, 0)
-    # The last short time is the first of the next long one, except in the end.
-    joined = np.hstack([states[:, :, :-1].reshape(len(states), -1), states[:, -1:, -1]])
-    times = task.duration + np.linspace(0.0, task.residual_window, joined.shape[1])
-    return Trajectory.from_outputs(task.plant, times, outputs_at_rest(task, ca.DM(joined)))
+    """What happens in the residual window, from W (m) and then W' (m/s) at arrival."""
+    vibration = after_arrival(task)[0]
+    window = task.residual_window
+    samples = math.ceil(window * vibration.fastest / _RADIANS_A_SAMPLE) + 2
+    later = np.linspace(0.0, window, samples)
+    outputs = outputs_at_rest(task, vibration.states(arrival, later))
+    return Trajectory.from_outputs(task.plant, task.duration + later, outputs)
 
 
-def outputs_at_rest(task: PointToPoint, states: ca.DM) -> NDArray[np.float64]:
-    """`outputs_of` the joint at rest at the target."""
-    return outputs_of(task.plant, JointMotion(task.target, 0.0, 0.0, 0.0), states).full()
+@keep_interrupts()  # casadi loses a Ctrl-C
+def outputs_at_rest(task: PointToPoint, states: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`outputs_of` the joint at rest at the target, from a row for each sample."""
+    joint = JointMotion(task.target, 0.0, 0.0, 0.0)
+    return outputs_of(task.plant, joint, ca.DM(states.T)).full()

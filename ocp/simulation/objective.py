@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.energy import Energy, power_of
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES, mesh
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.task import QUANTITIES, PointToPoint
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
@@ -131,11 +132,11 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
 def _beyond(steps: int) -> tuple[ca.DM, ca.DM]:
     if steps == 1:
         return ca.DM(NODES, 1), ca.DM(NODES, 1)  # no neighbour
-    begin, length = (entry.full() for entry in mesh(ca.DM(np.arange(steps)), steps))
-    nodes = (begin + length * np.array(GAUSS_NODES)).ravel()
+    grid = Grid(steps)
+    nodes = grid.nodes.T.ravel()
     step = np.arange(steps)[:, None]
     five = np.clip(NODES * step - 1, 0, len(nodes) - 5) + np.arange(5)
-    x = (nodes[five] - begin) / length
+    x = (nodes[five] - grid.boundaries[:-1, None]) / grid.lengths[:, None]
     to_quartic = np.linalg.inv(x[:, :, None] ** np.arange(5))
     # lists: casadi takes twenty times as long over arrays here
     at = (five % NODES * steps + five // NODES).ravel().tolist(), np.repeat(step, 5).tolist()

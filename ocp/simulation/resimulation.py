@@ -23,23 +23,22 @@ from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, NODES, mesh
+from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.cvodes import (
     Errors,
     Trajectory,
-    after_arrival,
     cvodes_for,
     options_for,
     outputs_at_rest,
     outputs_of,
     rates_of,
-    residual_of,
     rest_of,
 )
 from quietarm.ocp.simulation.extremes import extremes
+from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival, fastest_along
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import Motion, WithPeaks, integrated, spent
 from quietarm.ocp.simulation.piecewise import Law, PiecewiseMotion
-from quietarm.ocp.simulation.residual import fastest_along, residual_samples
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -100,9 +99,8 @@ def sample_trajectory(
         )
         rows = outputs.full()[:, at[:-2]]
     if later.size:
-        with cvodes_for(f"'s vibration until {grid[-1]:g} s; give earlier sample times"):
-            resting = after_arrival(task.plant, task.target, later)(x0=states[:, -1])["xf"]
-            rows = np.hstack([rows, outputs_at_rest(task, resting)])
+        resting = after_arrival(task)[0].states(states[:, -1].full().ravel(), later)
+        rows = np.hstack([rows, outputs_at_rest(task, resting)])
     return Trajectory.from_outputs(task.plant, grid, rows)
 
 
@@ -167,7 +165,7 @@ class Resimulation(WithPeaks):
 
         They take a fifth of the simulation's time, and a front without limits needs none of them.
         """
-        largest = extremes(_fractions(self._steps), self.outputs)
+        largest = extremes(Grid(self._steps).samples, self.outputs)
         extreme = Trajectory.from_outputs(self.task.plant, np.zeros(2), largest)
         return Motion.from_samples(
             self.task,
@@ -197,7 +195,7 @@ class Resimulation(WithPeaks):
         """
         lengths = self.joint.given[-1]
         begins = np.append(0.0, np.cumsum(lengths[:-1]))
-        times = (begins[:, None] + np.outer(lengths, _fractions(self._steps))).ravel()
+        times = (begins[:, None] + np.outer(lengths, Grid(self._steps).samples)).ravel()
         times = np.minimum(times, self.task.duration)  # beyond it by rounding
         moving = vars(Trajectory.from_outputs(self.task.plant, times, self.outputs))
         resting = vars(rest_of(self.task, self.arrival))
@@ -210,7 +208,10 @@ class Resimulation(WithPeaks):
 @keep_interrupts()
 def resimulated(task: PointToPoint, joint: PiecewiseMotion, errors: Errors = ()) -> Resimulation:
     """Simulate a joint motion with CVODES, on the nominal plant or one with errors."""
-    residual_samples(task)  # refuses a window that is too long
+    vibration = after_arrival(task)[0]
+    if errors:
+        wrong_plant = perturb_plant(task.plant, dict(errors))
+        vibration = FreeVibration(wrong_plant, task.target, task.residual_window)
     least = _SMOOTH_STEPS if joint.smooth else _STEPS
     fastest = fastest_along(task.plant, task.start, task.target)
     blocks = math.ceil(_STEPS_A_RADIAN * fastest * task.duration / least)
@@ -224,15 +225,8 @@ def resimulated(task: PointToPoint, joint: PiecewiseMotion, errors: Errors = ())
             value.T.copy() for value in figures(joint.given.T, wrong, [task.initial_state])
         )
     arrived = arrival[:, 0]
-    residual = residual_of(task, arrived, errors)
+    residual = float(vibration.peak(task.missed(arrived)))
     return Resimulation(task, joint, residual, energy.item(), net_work.item(), arrived, outputs)
-
-
-@lru_cache(maxsize=16)
-def _fractions(steps: int) -> NDArray[np.float64]:
-    """When the Gauss nodes of all steps of a piece come, and its ends, as shares of its length."""
-    begin, length = (entry.full() for entry in mesh(ca.DM(np.arange(steps)), steps))
-    return np.concatenate([[0.0], (begin + length * np.array(GAUSS_NODES)).ravel(), [1.0]])
 
 
 @lru_cache(maxsize=32)
@@ -246,15 +240,15 @@ def _figures(
     definition: Energy,
 ) -> BufferedFunction:
     """(given, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
-    given, fractions = ca.MX.sym("p", *shape), _fractions(steps)
+    given, grid = ca.MX.sym("p", *shape), Grid(steps)
     errors, initial = ca.MX.sym("e", len(names)), ca.MX.sym("x", 2 * plant.modes)
-    states, outputs = _along(plant, law, shape, fractions, names)(given, errors, initial)
+    states, outputs = _along(plant, law, shape, grid.samples, names)(given, errors, initial)
     rows = ca.vertsplit(outputs)
     torque, speed = (
         [samples[1 + node : -1 : NODES, :].T for node in range(NODES)]
         for samples in (ca.reshape(row, -1, shape[1]) for row in (rows[-1], rows[1]))
     )
-    h = given[-1, :].T @ mesh(ca.DM(np.arange(steps)).T, steps)[1]
+    h = given[-1, :].T @ grid.columns()[1]
     power = [power_of(*node) for node in zip(torque, speed, strict=True)]
     energy, net_work = spent(definition, torque, speed, h), integrated(power, h)
     figures = [outputs, states[:, -1], ca.sum1(energy), ca.sum1(net_work)]

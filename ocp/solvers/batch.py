@@ -24,7 +24,7 @@ from quietarm.ocp.interrupts import keep_interrupts
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.buffered import BufferedFunction
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.rollout import node_times
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.solvers.expressions import Kind, function_of_derivatives, function_of_values
 from quietarm.ocp.solvers.node import PathFunctions
 from quietarm.ocp.task import QUANTITIES
@@ -114,7 +114,7 @@ class Batch:
         path = PathFunctions(self.kind.profile, self.kind.steps, jerk=False)
         if not path.linear:
             return None
-        times, length = node_times(self.kind.steps)
+        times, length = Grid(self.kind.steps).columns()
         at_nodes = [[np.array(slope[1]).ravel() for slope in path.slopes(at)] for at in times]
         speeds = np.array(at_nodes) * np.sqrt(np.array(length).ravel())
         return speeds.transpose(0, 2, 1).reshape(-1, self.kind.profile.size)

@@ -15,7 +15,8 @@ from quietarm.models import Plant
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import NODES, Step, step
-from quietarm.ocp.simulation.rollout import march, node_times, symbolic_rollout
+from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.rollout import march, symbolic_rollout
 from quietarm.ocp.solvers.energy import energy_parts
 from quietarm.ocp.solvers.node import NodeFunctions, PathFunctions, Places, elementwise
 from quietarm.ocp.task import QUANTITIES, ask_for_jerk
@@ -56,7 +57,7 @@ def function_of_values(kind: Kind, rows: int) -> ca.Function:
     plant, profile, steps, quantities, names, energy, breaks = kind
     counts = profile.size, 3 + 2 * plant.modes, len(names)
     inputs = [ca.MX.sym("x", rows, count) for count in counts]
-    columns = node_times(steps, breaks=breaks)[1].shape[1]
+    columns = len(Grid(steps, breaks).lengths)
     a, row, errors = (_wide(one, columns) for one in inputs)
     moving = perturb_plant(plant, dict(zip(names, errors, strict=True)))
     rollout = symbolic_rollout(
@@ -103,7 +104,7 @@ class _Differentiated:
             _wide(one, steps) for one in self.inputs[:5]
         )
         self.move, self.initial = row[:3], ca.horzsplit(self.inputs[1], 1)[3:]
-        self.times, self.length = node_times(steps, rows)
+        self.times, self.length = Grid(steps).columns(rows)
         self.h = self.move[2] * self.length
         self._move(perturb_plant(plant, dict(zip(names, errors, strict=True))), errors)
         self._go_along()

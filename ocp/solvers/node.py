@@ -11,7 +11,8 @@ import casadi as ca
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.collocation import end_to_end, is_zero
+from quietarm.ocp.simulation.collocation import is_zero
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.task import QUANTITIES
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -22,7 +23,7 @@ Places = list[tuple[int, int]]
 class PathFunctions:
     """What of the joint's path depends on the coefficients at one time, as functions of numbers.
 
-    Where the jerk is asked for, also at the time of `end_to_end`, with its rates by the fraction.
+    Where the jerk is asked for, also at the time of `Grid.stretch`, with its rates by the fraction.
 
     Attributes
     ----------
@@ -42,7 +43,7 @@ class PathFunctions:
         self._own = inner.numel()
         if jerk:
             with_rates = ca.vertcat(inner, ca.jacobian(inner, fraction))
-            at = end_to_end(fraction, steps)
+            at = Grid(steps).stretch(fraction)
             inner = ca.vertcat(inner, ca.substitute(with_rates, fraction, at))
         self.count = inner.numel()
         first, weights = ca.densify(ca.jacobian(inner, a)), ca.SX.sym("w", self.count)

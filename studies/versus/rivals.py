@@ -21,8 +21,8 @@ from quietarm.ocp import (
 from quietarm.ocp.checks import install
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shapers import SHAPERS, Impulses, convolved
+from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.residual import vibrations
 from quietarm.ocp.simulation.resimulation import resimulated
 
 _ALONG = {1: 41, 2: 9}
@@ -93,7 +93,7 @@ def _by_ruckig(task: PointToPoint, impulses: Impulses) -> PiecewiseMotion:
 
 
 def _impulses(task: PointToPoint, shaper: str) -> Impulses:
-    modes = vibrations(task.plant, task.target)
+    modes = FreeVibration(task.plant, task.target).modes
     return convolved([SHAPERS[shaper](*mode) for mode in modes])
 
 

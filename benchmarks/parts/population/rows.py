@@ -13,7 +13,7 @@ from parts.population.marches import march_arrays, march_compiled
 from parts.population.one_by_one import integrate, rates_in_floats, rates_in_numpy
 from quietarm.metaheuristics import PopulationObjective
 from quietarm.ocp import rollout
-from quietarm.ocp.simulation.collocation import mesh
+from quietarm.ocp.simulation.grid import Grid
 
 CANDIDATES = 200
 FEW, TUNING = 5, 40  # candidates of solve_ivp: to time, to choose its samples
@@ -29,8 +29,7 @@ def even(steps: int) -> NDArray[np.float64]:
 
 
 def graded(steps: int) -> NDArray[np.float64]:
-    begin, _ = mesh(np.arange(steps + 1.0), steps)
-    return np.array(begin).ravel()
+    return Grid(steps).boundaries
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from quietarm.ocp import (
     resimulate,
 )
 
-FINE = 140  # ocp.simulation.rollout.ROLLOUT_STEPS
+FINE = 140  # ocp.simulation.grid.ROLLOUT_STEPS
 
 
 @pytest.mark.parametrize(("plant", "start", "target", "duration", "bound"), CONDITIONS)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from quietarm.metaheuristics.objective.population import PopulationObjective
-from quietarm.ocp.simulation.rollout import default_steps
+from quietarm.ocp.simulation.grid import default_steps
 
 import quietarm as qa
 

@@ -28,7 +28,7 @@ def test_energy_and_residual_are_those_of_the_rollout_at_the_same_steps(tasks, n
     motions = [rollout(task, PROFILE, x, objective.steps).motion for x in X]
     assert values.energy == pytest.approx([m.energy for m in motions], rel=1e-12, abs=0)
     # Both watch the tip at times of their own, that miss a peak by 5e-5 of it at most
-    # (ocp.simulation.residual.RADIANS_A_SAMPLE).
+    # (`FreeVibration.rows`).
     assert values.residual == pytest.approx([m.residual for m in motions], rel=5e-5, abs=0)
 
 

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
-from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, mesh
+from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS
+from quietarm.ocp.simulation.grid import Grid
 from quietarm.ocp.simulation.objective import (
     beyond_quadratic,
     energy_derivatives,
@@ -99,13 +100,11 @@ def test_terms_beyond_the_quadratic_move_work_across_its_zeros(c0, c1, c2, cubic
 @pytest.mark.parametrize("steps", [2, 10])
 def test_a_power_of_degree_four_is_told_exactly(steps):
     quartic_power = Polynomial([0.3, -2.0, 5.0, 7.0, -11.0])
-    begin, length = (x.full() for x in mesh(ca.DM(np.arange(steps)), steps))
-    at_nodes = quartic_power(begin + length * NODE).T.reshape(
-        1, -1
-    )  # horzcat(*power): node after node
+    grid = Grid(steps)
+    at_nodes = quartic_power(grid.nodes).reshape(1, -1)  # horzcat(*power): node after node
     found = [(ca.DM(at_nodes) @ weights).full().ravel() for weights in beyond_quadratic(steps)]
     for step in range(steps):
-        local = quartic_power(begin[step, 0] + length[step, 0] * X)
+        local = quartic_power(grid.boundaries[step] + grid.lengths[step] * X)
         _, remainder = divmod(local, VANISHING)
         beyond = (local - remainder) // VANISHING  # cubic + quartic (x - 1/2)
         assert found[0][step] == pytest.approx(beyond(0.5), abs=1e-9)

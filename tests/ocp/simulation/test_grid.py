@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import casadi as ca
 import pytest
+from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import beyond_quadratic
-from quietarm.ocp.simulation.rollout import default_steps
 
 import quietarm as qa
 
