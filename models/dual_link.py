@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from quietarm.models.drawing import Body, flexible_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.plant import Plant, parameter
+from quietarm.models.plant import TIP, Plant, parameter
 
 _LENGTH = 0.5
 """Length at which both links are drawn [m]: theirs are not published."""
-_IDENTIFIED = "theoretical value times identified factor, docs/physics.md"
+
+
+def _identified(theory: float, factor: float, unit: str, meaning: str) -> Any:
+    source = "theoretical value times identified factor, docs/physics.md"
+    return parameter(theory * factor, unit, source, meaning)
 
 
 @dataclass(frozen=True)
@@ -27,37 +31,24 @@ class DualLinkManipulator(Plant):
     name: ClassVar[str] = "dual-link"
     modes: ClassVar[int] = 2
 
-    omega1: float = parameter(12.68 * 0.993, "rad/s", _IDENTIFIED, "frequency of link 1, hub held")
-    zeta1: float = parameter(15.49e-3 * 1.214, "-", _IDENTIFIED, "damping ratio of link 1")
-    a1: float = parameter(
-        0.2266 * 0.984, "m", _IDENTIFIED, "push on link 1 by the joint's acceleration"
+    omega1: float = _identified(12.68, 0.993, "rad/s", "frequency of link 1, hub held")
+    zeta1: float = _identified(15.49e-3, 1.214, "-", "damping ratio of link 1")
+    a1: float = _identified(0.2266, 0.984, "m", "push on link 1 by the joint's acceleration")
+    b1: float = _identified(
+        2.004e-3, 1.020, "-", "stiffening of link 1 by the joint's speed squared"
     )
-    b1: float = parameter(
-        2.004e-3 * 1.020, "-", _IDENTIFIED, "stiffening of link 1 by the joint's speed squared"
+    omega2: float = _identified(10.71, 0.993, "rad/s", "frequency of link 2, hub held")
+    zeta2: float = _identified(14.27e-3, 1.071, "-", "damping ratio of link 2")
+    a2: float = _identified(0.2570, 1.003, "m", "push on link 2 by the joint's acceleration")
+    b2: float = _identified(
+        5.822e-3, 1.006, "-", "stiffening of link 2 by the joint's speed squared"
     )
-    omega2: float = parameter(10.71 * 0.993, "rad/s", _IDENTIFIED, "frequency of link 2, hub held")
-    zeta2: float = parameter(14.27e-3 * 1.071, "-", _IDENTIFIED, "damping ratio of link 2")
-    a2: float = parameter(
-        0.2570 * 1.003, "m", _IDENTIFIED, "push on link 2 by the joint's acceleration"
-    )
-    b2: float = parameter(
-        5.822e-3 * 1.006, "-", _IDENTIFIED, "stiffening of link 2 by the joint's speed squared"
-    )
-    g1: float = parameter(
-        2.996e-2 * 1.016, "kg m^2", _IDENTIFIED, "inertia of hub and rigid links together"
-    )
-    g2: float = parameter(
-        6.652e-2 * 1.018, "kg m", _IDENTIFIED, "torque by the acceleration of mode 1"
-    )
-    g3: float = parameter(
-        5.237e-2 * 1.052, "kg m", _IDENTIFIED, "torque by the acceleration of mode 2"
-    )
-    c: float = parameter(4.202e-2 * 1.131, "N m s", _IDENTIFIED, "viscous friction of the joint")
+    g1: float = _identified(2.996e-2, 1.016, "kg m^2", "inertia of hub and rigid links together")
+    g2: float = _identified(6.652e-2, 1.018, "kg m", "torque by the acceleration of mode 1")
+    g3: float = _identified(5.237e-2, 1.052, "kg m", "torque by the acceleration of mode 2")
+    c: float = _identified(4.202e-2, 1.131, "N m s", "viscous friction of the joint")
     phi: float = parameter(
-        2.7244,
-        "-",
-        "first mode shape of a clamped-free beam at its tip, docs/physics.md",
-        "displacement of the tip per modal amplitude",
+        2.7244, "-", "first mode of a clamped-free beam at its tip, docs/physics.md", TIP
     )
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:
@@ -84,8 +75,6 @@ class DualLinkManipulator(Plant):
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """Two links on one hub, the second opposite the first: how they stand is not published."""
-        first, second = (
-            flexible_link(_LENGTH, at, tip)
-            for at, tip in zip((angle, angle + np.pi), tips, strict=True)
-        )
+        first = flexible_link(_LENGTH, angle, tips[0])
+        second = flexible_link(_LENGTH, angle + np.pi, tips[1])
         return [Body(first, tip=True), Body(second, tip=True), Body(first[:1], rigid=True)]

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 Expression = Any
 """An SX scalar, an MX matrix or a number: casadi gives these no common base class."""
 Modes = Sequence[Expression]
@@ -12,18 +16,9 @@ Modes = Sequence[Expression]
 
 
 class JointMotion(NamedTuple):
-    """Angle, speed, acceleration and jerk of the joint: entries of the same shape.
+    """Angle [rad], speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of the joint.
 
-    Attributes
-    ----------
-    angle : Expression
-        theta [rad].
-    speed : Expression
-        theta' [rad/s].
-    acceleration : Expression
-        theta'' [rad/s^2].
-    jerk : Expression or None
-        theta''' [rad/s^3]; None where it is not asked for. No plant's equations may use it.
+    All have the same shape. The jerk is None where it is not asked for; no plant may use it.
     """
 
     angle: Expression

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from quietarm.models.drawing import Body, flexible_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.plant import Plant, parameter
+from quietarm.models.plant import TIP, Plant, parameter
 
 _LENGTH = 0.475
 """Of the plate [m], section 3.1."""
+
+
+def _printed(value: float, unit: str, meaning: str) -> Any:
+    return parameter(value, unit, "eq (10)", meaning)
 
 
 @dataclass(frozen=True)
@@ -24,24 +28,15 @@ class SingleLinkManipulator(Plant):
     """A tenth of the plate's length, where the linear stiffness of a cantilever is 1 %
     off (Bisshopp and Drucker, Quart. Appl. Math. 3, 1945)."""
 
-    alpha1: float = parameter(
-        2.383e-2, "kg m^2", "eq (10)", "inertia of hub and rigid link together"
-    )
-    alpha2: float = parameter(9.261e-2, "kg m", "eq (10)", "torque by the mode's acceleration")
-    c: float = parameter(3.091e-2, "N m s", "eq (10)", "viscous friction of the joint")
-    beta1: float = parameter(
-        2.555e-1, "m", "eq (10)", "push on the mode by the joint's acceleration"
-    )
-    beta2: float = parameter(2.614e-1, "-", "eq (10)", "stiffening by the joint's speed squared")
-    zeta: float = parameter(9.636e-3, "-", "eq (10)", "damping ratio of the mode")
-    omega: float = parameter(10.43, "rad/s", "eq (10)", "frequency of the mode, hub held")
+    alpha1: float = _printed(2.383e-2, "kg m^2", "inertia of hub and rigid link together")
+    alpha2: float = _printed(9.261e-2, "kg m", "torque by the mode's acceleration")
+    c: float = _printed(3.091e-2, "N m s", "viscous friction of the joint")
+    beta1: float = _printed(2.555e-1, "m", "push on the mode by the joint's acceleration")
+    beta2: float = _printed(2.614e-1, "-", "stiffening by the joint's speed squared")
+    zeta: float = _printed(9.636e-3, "-", "damping ratio of the mode")
+    omega: float = _printed(10.43, "rad/s", "frequency of the mode, hub held")
     phi: float = parameter(
-        2.28,
-        "-",
-        "mode shape at the tip, not printed: the paper's residual amplitude of 'about 7.7 cm' for "
-        "the plain cycloid (pi/6 in 0.8 s) over the max |W| of 0.03382 m computed for it; see "
-        "docs/physics.md",
-        "displacement of the tip per modal amplitude",
+        2.28, "-", "not printed: by the cycloid's residual of 'about 7.7 cm', docs/physics.md", TIP
     )
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:

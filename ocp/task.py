@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.models.contract import check_along
+from quietarm.models.validation import check_along
 from quietarm.ocp.checks import finite, positive
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time

@@ -12,8 +12,8 @@ from numbers import Real
 import casadi as ca
 import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.models.contract import check_contract, outputs_of
 from quietarm.models.joint_motion import Modes
+from quietarm.models.validation import check_contract, outputs_of
 from quietarm.ocp.checks import finite, has_no, positive
 from quietarm.ocp.interrupts import keep_interrupts
 
@@ -183,7 +183,7 @@ def _check_symbols(plant: Plant, name: str, error: float) -> None:
     if name in _OF_MODES:
         return
     value, symbol = getattr(plant, name) * (1 + error), ca.SX.sym(name)
-    motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 3 * plant.modes).tolist()
+    motion = np.random.default_rng(0).uniform(0.1, 1.0, 3 + 2 * plant.modes).tolist()
     expressions = outputs_of(with_values(plant, {name: symbol}), motion)
     found = ca.Function("found", [symbol], [ca.vertcat(*expressions)])(value).full().ravel()
     anew = outputs_of(replace(plant, **{name: value}), motion)

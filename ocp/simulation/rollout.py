@@ -253,7 +253,7 @@ def rollout(
     names = task.error_names
     function = _compiled(task.plant, profile, steps, breaks, task.energy, names)
     given = ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.row)
-    each = [_of_scenario(task, function(*given, ca.DM(errors)), k)
+    each = [_of_scenario(task, function.call([*given, ca.DM(errors)]), k)
             for k, errors in enumerate(task.scenarios)]  # fmt: skip
     motion = Motion.worst([motion for motion, _ in each])
     return Rollout(motion, each[0][1], steps)

@@ -51,10 +51,9 @@ def sweep_document(store: Store, between: Between | None = None) -> Document:
 
 def _along_one_axis(store: Store) -> list[Table]:
     """The trade-off along the only axis, a line a cell; nothing where there are more or many."""
-    axes = store.sweep.grid.axes
-    if len(axes) > 1 or len(axes[0].values) > _MOST_LINES:
+    axis, *others = store.sweep.grid.axes
+    if others or len(axis.values) > _MOST_LINES:
         return []
-    (axis,) = axes
     heads = f"{axis.name} [{axis.unit}]", "energy [J]", "residual [mm]", "how it ended"
     energy, residual = (store.read(name).tolist() for name in ("energy", "residual"))
     rows: list[list[Cell]] = []

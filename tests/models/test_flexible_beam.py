@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 from quietarm.models import FlexibleBeam, SingleLinkManipulator
-from quietarm.models.flexible_beam import beam_modes
+from quietarm.models.beam_modes import beam_modes
 from quietarm.models.joint_motion import JointMotion
 from quietarm.ocp import PointToPoint, evaluate_coefficients, plan_move
 

@@ -16,6 +16,12 @@ def test_changed_content_gives_another_class(crane_file):
     assert known_plants()["crane"] is after
 
 
+def test_a_plant_that_was_renamed_is_not_among_those_of_the_new_content(crane_file):
+    load_plant_file(crane_file)
+    crane_file.write_text(crane_file.read_text().replace('"crane"', '"derrick"'))
+    assert list(load_plant_file(crane_file)) == ["derrick"]
+
+
 def test_its_plants_go_to_other_processes(crane_file):
     crane = load_plant_file(crane_file)["crane"](omega=2.0)
     assert pickle.loads(pickle.dumps(crane)) == crane
@@ -29,7 +35,17 @@ OWN = "from quietarm.models import Plant, SingleLinkManipulator\n"
     [
         ("crane.py", OWN, "no plant"),
         ("crane.py", "\n\nx = 1 / 0\n", ", line 3: ZeroDivisionError"),
-        ("crane.py", OWN + "class S(Plant):\n    name, modes = 's', 1\n", "write modal_acc"),
+        ("crane.py", "\nx = (\n", ", line 2: SyntaxError"),
+        (
+            "crane.py",
+            OWN + "class S(Plant):\n    name, modes = 's', 1\n",
+            "with a name, modes, modal_acc",
+        ),
+        (
+            "crane.py",
+            OWN + "class S(Plant):\n    name = 'single-link'\n",
+            "quietarm's own; give S another",
+        ),
         ("plan.json", "raise RuntimeError('run')", "is not called .py"),
     ],
 )

@@ -1,0 +1,211 @@
+"""The contract of a plant, checked once, when a task is made.
+
+The equations are called as the solvers call them, and evaluated over a turn and more of joint
+angles, moving and at rest, and along a move.
+"""
+
+from __future__ import annotations
+
+import math
+import reprlib
+import traceback
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import Field, is_dataclass
+from functools import lru_cache
+from numbers import Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+from quietarm.models import at_rest
+from quietarm.models.joint_motion import Array, Expression, JointMotion
+
+if TYPE_CHECKING:
+    from quietarm.models.plant import Plant
+
+_WRITE = {
+    "modal_accelerations": "(self, joint, W, dW) that returns a list of W'' [m/s^2], one a mode",
+    "torque": "(self, joint, W, dW, ddW) that returns one expression, the joint torque [N m]",
+    "tip_displacements": "(self, W) that returns a list of tip displacements [m]",
+}
+"""What every method takes, and what it should return."""
+_RIGHT = math.pi / 2
+_ANGLES = np.linspace(-2 * math.pi, 2 * math.pi, 241)
+_ANGLES += np.random.default_rng(0).uniform(-0.02, 0.02, 241)  # else sin(60 angle) is 0 at all
+_ANGLES[:5] = _RIGHT * np.array([0, -1, 1, -2, 2])
+_ON_THE_WAY = 101
+"""How many joint angles of a move are looked at."""
+_KINDS = np.array([[1, 1, 1, 1], [1, -1, 1, 1], [1, 0, 1, 1], [1, 1, 0, 1], [1, 0, 0, 0]])
+"""Factors of angle, speed, acceleration and modes in the motions at an angle: forwards, backwards,
+at a turning point, at constant speed and, last, at rest."""
+_TINY = 1e-12
+"""What counts as nothing, relative to the values of a moving joint."""
+
+
+def check_contract(plant: Plant) -> None:
+    """Refuse a plant that breaks the contract of `Plant`; ValueError with what is wrong."""
+    kind, modes = type(plant), getattr(plant, "modes", None)
+    bare = any(isinstance(entry, Field) for entry in vars(kind).values())
+    is_frozen = is_dataclass(plant) and not bare and kind.__hash__ is not None
+    if not (is_frozen and isinstance(modes, int) and modes > 0):
+        raise ValueError(
+            f"plant {plant.name!r} is no frozen dataclass, or has {modes} modes; write "
+            f"@dataclass(frozen=True) above {kind.__name__} and modes: ClassVar[int] = 1 in it"
+        )
+    _slopes_at_rest(plant)
+
+
+@lru_cache(maxsize=256)
+def check_passive(plant: Plant) -> None:
+    """Refuse a plant whose joint has no positive inertia, or yields work from rest."""
+    at_rest.check_passive(plant.name, *_slopes_at_rest(plant))
+
+
+@lru_cache(maxsize=1024)
+def check_along(plant: Plant, start: float, target: float) -> None:
+    """Refuse a move [rad] on which the equations have no value, as a crank's at its dead centre."""
+    low, high = sorted((start, target))
+    right = _RIGHT * np.arange(math.ceil(low / _RIGHT), math.floor(high / _RIGHT) + 1)[:_ON_THE_WAY]
+    angles = np.concatenate([[start, target], right, np.linspace(low, high, _ON_THE_WAY)])
+    motions = _motions(angles, plant.modes)[:, :: len(_KINDS) - 1]  # forwards and at rest
+    _check_finite(plant, motions, next(_evaluate(plant, motions)))
+
+
+@lru_cache(maxsize=256)
+def _slopes_at_rest(plant: Plant) -> tuple[Array, Array]:
+    """Angles that have values, and the slopes there; ValueError where the equations are wrong."""
+    motions = _motions(_ANGLES, plant.modes)
+    values, slopes = _evaluate(plant, motions)
+    # an angle at which no motion has a value is none to move to
+    defined = np.any(np.isfinite(values).all(axis=2), axis=1)
+    if defined.any():
+        motions, values, slopes = motions[defined], values[defined], slopes[defined]
+    _check_finite(plant, motions, np.concatenate([values, slopes], axis=2))
+    _check_side_by_side(plant, motions, values)
+    _check_rest(plant, motions, values)
+    # where the angle does not matter, the first is enough
+    still, first = np.unique(slopes[:, -1], axis=0, return_index=True)
+    found = motions[first, -1, 0], still.reshape(len(still), motions.shape[2], -1)
+    at_rest.check_stable(plant.name, *found)
+    return found
+
+
+def _motions(angles: Array, modes: int) -> Array:
+    """Joint motion, W and W' in the last axis, of every kind at every angle."""
+    columns = [1, 1, 1, 2 * modes]
+    random = np.random.default_rng(0).uniform(-1, 1, (len(angles), 1, sum(columns)))
+    motions = random * np.repeat(_KINDS * [1, 10, 100, 1], columns, axis=1) + 0.0  # no -0
+    motions[..., 0] = angles[:, None]
+    return motions
+
+
+def _evaluate(plant: Plant, motions: Array) -> Iterator[Array]:
+    """Outputs of motions in the last axis; then their slopes, in the order of `_equations`."""
+    for table in _equations(plant)(motions.reshape(-1, motions.shape[-1]).T):
+        yield table.full().T.reshape(*motions.shape[:2], -1)
+
+
+@lru_cache(maxsize=256)
+def _equations(plant: Plant) -> ca.Function:
+    """(joint motion, W and W' in a column) -> every output, the slopes of all by each."""
+    size = 3 + 2 * plant.modes
+    outputs_of(plant, [ca.MX.sym("x") for _ in range(size)])  # math.cos makes a nan of an SX
+    x = ca.SX.sym("x", size)
+    outputs = outputs_of(plant, ca.vertsplit(x))
+    for method, output in zip(_methods(plant), outputs, strict=True):
+        if method != "torque" and not ca.is_linear(output, x[3:]):
+            raise _wrong(plant, method, "is not affine in W and W'", "linearise it")
+    column = ca.densify(ca.vertcat(*outputs))
+    slopes = ca.densify(ca.vec(ca.jacobian(column, x)))
+    return ca.Function("equations", [x], [column, slopes])
+
+
+def _methods(plant: Plant) -> list[str]:
+    """The method that each output is of."""
+    tips = ["tip_displacements"] * plant.tips
+    return ["modal_accelerations"] * plant.modes + ["torque", *tips]
+
+
+def outputs_of(plant: Plant, arguments: Sequence[Expression]) -> list[Expression]:
+    """W'', torque and tip displacements, from joint motion, W and W'.
+
+    ValueError where a method fails or gives something else than it should.
+    """
+    joint, modes = JointMotion(*arguments[:3]), plant.modes
+    W, dW = list(arguments[3 : 3 + modes]), list(arguments[3 + modes :])
+    ddW = _call(plant, "modal_accelerations", joint, W, dW)
+    torque = _call(plant, "torque", joint, W, dW, ddW)
+    return [*ddW, *torque, *_call(plant, "tip_displacements", W)]
+
+
+def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
+    """What a method returns, as a list."""
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", r"\s*casadi: a numpy function", FutureWarning)
+            found: Any = getattr(plant, method)(*arguments)
+    except Exception as error:
+        inside = traceback.extract_tb(error.__traceback__)[1:2]
+        at = "".join(f" at line {one.lineno} of {Path(one.filename).name}" for one in inside)
+        text = str(error).strip().partition("\n")[0]
+        of_symbol = "to_double" in text or "truth value" in text  # casadi's own words say little
+        why = "a symbol is no number" if of_symbol else f"{type(error).__name__}: {text}"
+        raise _wrong(plant, method, f"fails{at} ({why})") from None
+    entries = [found] if method == "torque" else found
+    entries = list(entries) if isinstance(entries, list | tuple) else []
+    count = plant.modes if method == "modal_accelerations" else max(1, len(entries))
+    kinds = Real | ca.SX | ca.MX | ca.DM
+    if len(entries) != count or not all(isinstance(entry, kinds) for entry in entries):
+        raise _wrong(plant, method, f"returns {reprlib.repr(found)}")
+    return entries
+
+
+def _wrong(plant: Plant, method: str, what: str, remedy: str = "") -> ValueError:
+    """What a method does, and what to do about it."""
+    write = f"write def {method}{_WRITE[method]} for modes = {plant.modes}"
+    symbols = (
+        "with casadi.cos, casadi.if_else and so on, as math, numpy, if and max take no symbols"
+    )
+    return ValueError(f"plant {plant.name!r}: {method} {what}; {remedy or f'{write}, {symbols}'}")
+
+
+def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
+    """Many motions that stand side by side in matrices give what each gives alone."""
+    outputs = outputs_of(plant, [ca.DM(column.ravel()) for column in np.moveaxis(motions, 2, 0)])
+    each = np.moveaxis(values, 2, 0).reshape(len(outputs), -1)
+    for method, output, alone in zip(_methods(plant), outputs, each, strict=True):
+        found = ca.DM(output).full().T
+        least = 1e-9 * np.abs(alone).max()
+        if len(found) > 1 or not np.allclose(found, alone, rtol=1e-9, atol=least):
+            remedy = "compute entry by entry: no sum, dot, mtimes or max over entries"
+            raise _wrong(plant, method, "mixes motions that are side by side in a matrix", remedy)
+
+
+def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
+    """Values, and slopes after them, are finite in every motion."""
+    finite, methods = np.isfinite(table), _methods(plant)
+    if not finite.all():
+        angle, kind, _ = np.argwhere(~finite)[-1]  # the simplest motion: at rest, if it fails there
+        column = finite[angle, kind].argmin()
+        what = "is" if column < len(methods) else "has a slope of"
+        at = "{:.4g} rad, {:.4g} rad/s and {:.4g} rad/s^2".format(*motions[angle, kind])
+        what = f"{what} {table[angle, kind, column]} with the joint at {at}"
+        remedy = (
+            "move where it is defined, or divide by nothing that can be 0 and check the parameters"
+        )
+        raise _wrong(plant, methods[column % len(methods)], what, remedy)
+
+
+def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
+    """At rest the structure stays at rest, and there are motions that move every tip."""
+    still, moving = values[:, -1], np.abs(values).max(axis=1)
+    wrong = np.abs(still) > _TINY * moving
+    wrong[:, plant.modes] = False  # the torque may hold the joint
+    for row, column in np.argwhere(wrong):
+        at = f"with the joint at rest at {motions[row, -1, 0]:.4g} rad and W = 0"
+        what = f"gives {still[row, column]:.4g}, not 0, {at}"
+        raise _wrong(plant, _methods(plant)[column], what, "measure W from the static deflection")
+    if not moving[:, plant.modes + 1 :].any(axis=0).all():
+        raise _wrong(plant, "tip_displacements", "returns a tip that no W moves", "give W a factor")
