@@ -47,9 +47,9 @@ import rockit
 from parts.conditions import conditions
 from parts.measuring import console, forget_compiled, load_plugins, machine, timed
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.solvers.ipopt import OPTIONS
 from quietarm.ocp.solvers.program import Program
 from quietarm.ocp.solvers.solution import ENERGY, RESIDUAL, Scalarization, Solution
@@ -83,7 +83,7 @@ class Move:
 
     def above(self, coefficients: np.ndarray) -> float:
         """How far the true energy of a motion is from the best, relative."""
-        return resimulate(self.task, PROFILE, coefficients).energy / self.best - 1
+        return Candidate.of_profile(self.task, PROFILE, coefficients).energy / self.best - 1
 
     def plan(self) -> Plan:
         """Plan by quietarm, as a user would, with the verification."""

@@ -17,7 +17,7 @@ from quietarm.ocp import Front, PointToPoint, QuietarmError
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.planning.solver import plan_at_samples
 from quietarm.ocp.planning.starts import first_steps
-from quietarm.ocp.planning.verification import Checked
+from quietarm.ocp.planning.verification import judge
 from quietarm.ocp.record import SolveSettings, versions
 from quietarm.ocp.saved import Saved, plain
 from quietarm.ocp.solvers.program import Program
@@ -129,7 +129,7 @@ def _certified(name: str, task: PointToPoint, front: Front, problem: NamedProble
     found = [*enumerate(warm.solutions), *((i, one) for (i, _), one in zip(
         rows, cold.solutions, strict=True))]  # fmt: skip
     solved = [(i, one) for i, one in found if one.status.solved]
-    judged = [Checked(program, _as_given(one)) for one in motions]
+    judged = [judge(program, _as_given(one)) for one in motions]
     energies, residuals = (np.array([getattr(one, name) for one in judged])
                            for name in ("energy", "residual"))  # fmt: skip
     by_steps = PopulationObjective(task, front.profile, steps=FIXED_STEPS)(np.array(motions))
@@ -174,7 +174,7 @@ def _gained(
 
 def _priced(program: Program, ask: Scalarization, found: Solution, energy: float) -> float:
     """The share by which a solution is cheaper at the price of what it passes its limits by."""
-    checked = Checked(program, found)
+    checked = judge(program, found)
     over = {name: max(0.0, checked.peak(name) - limit) for name, limit in ask.limits.items()}
     priced = sum(found.prices.get(name, 0.0) * most for name, most in over.items())
     return 1 - (checked.energy + priced) / energy

@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
 from quietarm.ocp.front.sweep import Sweep
@@ -15,12 +16,10 @@ from quietarm.ocp.planning.verification import (
     FINER_AGREEMENT,
     OF_A_PLAN,
     Care,
-    Checked,
     finer_values,
     verified,
 )
 from quietarm.ocp.simulation.free_vibration import after_arrival
-from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Solution
 
 RESIDUAL_LIMIT = "residual_limit"
@@ -35,7 +34,7 @@ def care_of(sweep: Sweep) -> Care:
     return Care(agreement=1e-4, most_steps=2 * sweep.steps)
 
 
-def front_point(sweep: Sweep, found: Solution, simulated: Checked) -> FrontPoint:
+def front_point(sweep: Sweep, found: Solution, simulated: Candidate) -> FrontPoint:
     """A solution's coefficients with the figures of the independent integrator."""
     coefficients = sweep.profile.checked(found.coefficients)
     return FrontPoint(coefficients, simulated.residual, simulated.energy)
@@ -101,7 +100,7 @@ def _by_finer_rule(sweep: Sweep, found: Sequence[Solution]) -> dict[int, FrontPo
             residual = float(after_arrival(task)[0].peak(task.missed(values.arrival[i])))
             points[i] = FrontPoint(profile.checked(one.coefficients), residual, energy)
     for i in list(points)[::CHECK_EVERY]:
-        exact, point = resimulate(task, profile, points[i].coefficients), points[i]
+        exact, point = Candidate.of_profile(task, profile, points[i].coefficients), points[i]
         differs = [
             abs(exact.energy - point.energy) > FINER_AGREEMENT * exact.energy,
             abs(exact.residual - point.residual) > FINER_AGREEMENT * exact.residual + STILL,

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.front.answer import Front
 from quietarm.ocp.front.checking import RESIDUAL_LIMIT, checked
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.front.sweep import Sweep
 from quietarm.ocp.record import REST
-from quietarm.ocp.robustness.worst import peaks_between, worst_at
+from quietarm.ocp.robustness.worst import peaks_between
 
 _SOLVED, _STATED = 0.02, 1e-3
 """Shares by which it may do so before points are solved again, and before their residual is."""
@@ -136,11 +137,12 @@ def _target(one: Found) -> float:
 
 def _residual(sweep: Sweep, point: FrontPoint) -> float:
     """The largest at the samples [m]."""
-    return max(_left(sweep, point, errors) for errors in sweep.program.errors.tolist())
+    return Candidate.of_profile(sweep.task, sweep.profile, point.coefficients).residual
 
 
 def _left(sweep: Sweep, point: FrontPoint, errors: Sequence[float]) -> float:
-    return worst_at(sweep.task, sweep.profile, point.coefficients, errors).residual
+    candidate = Candidate.of_profile(sweep.task, sweep.profile, point.coefficients)
+    return candidate.perturbed(dict(zip(sweep.task.error_names, errors, strict=True))).residual
 
 
 def _at_worst(sweep: Sweep, found: Sequence[Found]) -> tuple[list[Found], float]:
@@ -179,9 +181,11 @@ def _at_samples(front: Front, samples: Sequence[tuple[float, ...]]) -> Front:
         return front
     task = front.task.with_samples(samples)
     new = [one for one in samples if one not in front.task.scenarios]
+    errors = [dict(zip(task.error_names, one, strict=True)) for one in new]
+    judged = [Candidate.of_profile(task, front.profile, p.coefficients) for p in front.points]
     left = [
-        max([p.residual, *(worst_at(task, front.profile, p.coefficients, e).residual for e in new)])
-        for p in front.points
+        max([point.residual, *(candidate.perturbed(one).residual for one in errors)])
+        for point, candidate in zip(front.points, judged, strict=True)
     ]
     points = (replace(p, residual=most) for p, most in zip(front.points, left, strict=True))
     return replace(front, task=task, points=non_dominated(points))

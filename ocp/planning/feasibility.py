@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
-from quietarm.ocp.planning.verification import Checked
+from quietarm.ocp.planning.verification import judge
 from quietarm.ocp.simulation.objective import WithPeaks
 from quietarm.ocp.solvers.program import Program
 from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization, Solution
@@ -90,7 +90,7 @@ def explain(
         f"motion of {program.profile.amount}",
         ask.limits,
         tried,
-        true_peaks(least, lambda found: Checked(program, found)),
+        true_peaks(least, lambda found: judge(program, found)),
         f"more {program.profile.term}s or a longer duration",
         "" if ask.bound is None else f", coefficients within +-{ask.bound:g}",
     )

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.planning.starts import first_steps, start_coefficients
@@ -23,7 +24,6 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.polynomial import CycloidPolynomial
 from quietarm.ocp.record import SolveSettings
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_of_moves
-from quietarm.ocp.simulation.resimulation import resimulate
 from quietarm.ocp.solvers.batch import Values
 from quietarm.ocp.solvers.program import Program, programs_of
 from quietarm.ocp.solvers.solution import RESIDUAL, STILL, Scalarization, Solution
@@ -258,7 +258,7 @@ def _together(moves: Moves, rows: list[_Found], solver: Solver, doublings: int =
         moves.peaks[name][places] = largest
     doubtful |= {places[k] for k in np.flatnonzero(residual > STILL)}
     for k in range(0, len(rows), CHECK_EVERY):
-        exact = resimulate(rows[k].program.task, one.profile, table[k])
+        exact = Candidate.of_profile(rows[k].program.task, one.profile, table[k])
         differs = abs(exact.energy - values.energy[k]) > FINER_AGREEMENT * exact.energy
         if differs or exact.residual > STILL:
             return doubtful | set(places)

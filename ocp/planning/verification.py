@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.simulation.objective import Motion, WithPeaks
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import in_scenarios
+from quietarm.ocp.simulation.objective import WithPeaks
 from quietarm.ocp.solvers.batch import Batch, Values, batch
 from quietarm.ocp.solvers.program import Program
 from quietarm.ocp.solvers.solution import RESIDUAL, STILL, STILL_SHARE, Scalarization, Solution
@@ -52,7 +50,7 @@ class Verified(NamedTuple):
     """A solution with the figures of CVODES, and the number of steps it was found with."""
 
     solution: Solution
-    checked: Checked
+    checked: Candidate
     steps: int
 
 
@@ -75,8 +73,8 @@ def verified(
     tolerated = max(_AT_REST * still, _RESIDUAL_AGREEMENT * ask.limits.get(RESIDUAL, np.inf))
     tried: list[Verified] = []
 
-    def add(found: Solution) -> Checked:
-        tried.append(Verified(found, Checked(program, found), program.steps))
+    def add(found: Solution) -> Candidate:
+        tried.append(Verified(found, judge(program, found), program.steps))
         return tried[-1].checked
 
     simulated = add(best)
@@ -85,7 +83,7 @@ def verified(
         rough = abs(best.energy - simulated.energy) > care.agreement * simulated.energy
         missed = abs(best.residual - simulated.residual) > tolerated
         again = None
-        if not rough and (missed or simulated.passed(kept)):
+        if not rough and (missed or simulated.exceeded(kept)):
             offset = simulated.arrival - program.evaluated(best.coefficients).arrival
             asked = ask._replace(limits=used, offset=offset)
             again = _from(program, asked, best, solver)
@@ -117,33 +115,18 @@ def _from(program: Program, ask: Scalarization, found: Solution, solver: Solver)
     return replace(again, iterations=found.iterations + again.iterations)
 
 
-class Checked(WithPeaks):
-    """What CVODES makes of a solution, on all plants whose residual counts."""
-
-    def __init__(self, program: Program, found: Solution) -> None:
-        joint = PiecewiseMotion.of_profile(program.task, program.profile, found.coefficients)
-        self._all = in_scenarios(program.task, joint)
-        self.energy = self._all[0].energy
-        self.residual = max(one.residual for one in self._all)
-        self.arrival = np.array([one.arrival for one in self._all])
-
-    @cached_property
-    def motion(self) -> Motion:
-        """The figures: residual and deflection of the worst plant, all else of the assumed one."""
-        return Motion.worst([one.motion for one in self._all])
-
-    def peak(self, name: str) -> float:
-        """As of `WithPeaks`."""
-        return self.residual if name == RESIDUAL else self.motion.peak(name)
+def judge(program: Program, found: Solution) -> Candidate:
+    """The motion of a solution, for CVODES."""
+    return Candidate.of_profile(program.task, program.profile, found.coefficients)
 
 
 def tightened(
     limits: Mapping[str, float], motion: WithPeaks, kept: Mapping[str, float]
 ) -> dict[str, float]:
     """The limits to give the solver, each less by as much as the verified motion passes it."""
-    passed = motion.passed(kept)
+    exceeded = motion.exceeded(kept)
     return {
-        name: limit / (_BELOW * passed[name]) if name in passed else limit
+        name: limit / (_BELOW * exceeded[name]) if name in exceeded else limit
         for name, limit in limits.items()
     }
 

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import after_arrival
 from quietarm.ocp.simulation.grid import default_steps
-from quietarm.ocp.simulation.piecewise import PiecewiseMotion
-from quietarm.ocp.simulation.resimulation import resimulated
 from quietarm.ocp.solvers.batch import batch
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import DAMPING, FREQUENCY
@@ -50,12 +49,12 @@ def sensitivities(
     By central differences of CVODES, which follows each motion with a parameter a little larger and
     a little smaller. The one that adds most vibration comes first.
     """
-    joint = PiecewiseMotion.of_profile(task, profile, coefficients)
+    candidate = Candidate.of_profile(task.certain, profile, coefficients)
     vibration = after_arrival(task)[0]
 
     def of(name: str) -> Sensitivity:
-        above, below = (resimulated(task, joint, ((name, s * _STEP),)) for s in (1, -1))
-        arrival = (above.arrival - below.arrival) / (2 * _STEP)
+        above, below = (candidate.perturbed({name: sign * _STEP}) for sign in (1, -1))
+        arrival = (above.arrival[0] - below.arrival[0]) / (2 * _STEP)
         energy = (above.energy - below.energy) / (2 * _STEP)
         return Sensitivity(name, energy, float(vibration.peak(arrival)))
 

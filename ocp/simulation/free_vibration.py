@@ -151,10 +151,11 @@ class FreeVibration:
 def after_arrival(task: PointToPoint) -> list[FreeVibration]:
     """The vibration at a task's target, in each of its scenarios."""
     plants, window = task.perturbed_plants, task.residual_window
-    return [_kept(plant, task.target, window) for plant in plants]
+    return [vibration_of(plant, task.target, window) for plant in plants]
 
 
-_kept = lru_cache(maxsize=256)(FreeVibration)
+vibration_of = lru_cache(maxsize=256)(FreeVibration)
+"""A vibration that is kept for the next who asks for it."""
 
 
 @lru_cache(maxsize=256)

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
-from quietarm.models import Expression, JointMotion
+from quietarm.models import Expression
 from quietarm.ocp.energy import Energy, power_of
 from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS, NODES
 from quietarm.ocp.simulation.grid import Grid
-from quietarm.ocp.task import QUANTITIES, PointToPoint
+from quietarm.ocp.task import QUANTITIES
 
 _TO_QUADRATIC: list[list[float]] = np.linalg.inv(
     np.array(GAUSS_NODES)[:, None] ** np.arange(3)
@@ -157,10 +156,10 @@ class WithPeaks:
         """The residual, or the peak of a quantity, by name: infinite where it is not known."""
         raise NotImplementedError
 
-    def passed(self, limits: Mapping[str, float], room: float = 0.0) -> dict[str, float]:
-        """What passes its limit by more than a share `room`: its peak over the limit, by name."""
+    def exceeded(self, limits: Mapping[str, float], tolerance: float = 0.0) -> dict[str, float]:
+        """What exceeds its limit by more than a share: its peak over the limit, by name."""
         of_limit = {name: self.peak(name) / limit for name, limit in limits.items() if limit > 0}
-        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + room}
+        return {name: ratio for name, ratio in of_limit.items() if ratio > 1 + tolerance}
 
 
 @dataclass(frozen=True)
@@ -200,41 +199,3 @@ class Motion(WithPeaks):
         """As of `WithPeaks`."""
         value = getattr(self, QUANTITIES[name].peak if name in QUANTITIES else name)
         return math.inf if value is None else float(value)
-
-    @classmethod
-    def worst(cls, scenarios: Sequence[Motion]) -> Motion:
-        """The first, with the largest residual and deflection of all."""
-        largest = {
-            name: max(getattr(motion, name) for motion in scenarios)
-            for name in ("residual", "peak_deflection")
-        }
-        return replace(scenarios[0], **largest)
-
-    @classmethod
-    def from_samples(
-        cls,
-        task: PointToPoint,
-        joint: JointMotion,
-        tips: NDArray[np.float64],
-        torque: NDArray[np.float64],
-        *,
-        residual: float,
-        energy: float,
-        net_work: float,
-    ) -> Motion:
-        """Take the peaks from samples during the move.
-
-        Every entry of the joint, and the torque [N m], has shape (samples,), the tips [m] (samples,
-        tips). The joint's jerk is None where the acceleration jumps. The rest is as in the
-        attributes.
-        """
-        past_target = (joint.angle - task.target) * np.sign(task.span)
-        of = {q.peak: q.of(joint, list(tips.T), torque) for q in QUANTITIES.values()}
-        known = {name: rows for name, rows in of.items() if all(row is not None for row in rows)}
-        return cls(
-            residual=residual,
-            energy=energy,
-            net_work=net_work,
-            overshoot=max(0.0, float(past_target.max())),
-            **{name: float(np.abs(rows).max()) for name, rows in known.items()},
-        )

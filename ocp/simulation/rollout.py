@@ -4,21 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi as ca
-from numpy.typing import ArrayLike
 from quietarm.models import Expression, JointMotion, Plant
-from quietarm.ocp.checks import whole
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, power_of
-from quietarm.ocp.interrupts import keep_interrupts, one_at_a_time
+from quietarm.ocp.interrupts import one_at_a_time
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.collocation import NodeState, is_zero, step
-from quietarm.ocp.simulation.free_vibration import after_arrival
-from quietarm.ocp.simulation.grid import Grid, default_steps
-from quietarm.ocp.simulation.objective import Motion, integrated, spent
-from quietarm.ocp.task import PointToPoint
-from quietarm.ocp.uncertainty import perturb_plant
+from quietarm.ocp.simulation.grid import Grid
+from quietarm.ocp.simulation.objective import spent
 
 
 @dataclass(frozen=True)
@@ -164,114 +158,3 @@ def _by_step(entry: Expression, steps: int) -> list[Expression]:
     """A column for each step; what does not depend on the step is a single one."""
     columns = ca.horzsplit(ca.DM.zeros(1, 1) + entry, 1)
     return columns if len(columns) == steps else columns * steps
-
-
-@lru_cache(maxsize=32)
-def _compiled(
-    plant: Plant,
-    profile: JointProfile,
-    steps: int,
-    breaks: tuple[float, ...],
-    energy: Energy,
-    names: tuple[str, ...],
-) -> ca.Function:
-    """(coefficients, row, errors) -> samples at the nodes in time, arrival, energy, net work."""
-    errors = ca.MX.sym("e", len(names))
-    plant = perturb_plant(plant, dict(zip(names, ca.vertsplit(errors), strict=True)))
-    a, row = ca.MX.sym("a", profile.size), ca.MX.sym("row", 3 + 2 * plant.modes)
-    *move, initial = ca.vertsplit(row, [0, 1, 2, 3, row.numel()])
-    found = symbolic_rollout(
-        plant, profile, ca.vertsplit(a), move, steps, jerk=True, breaks=breaks,
-        initial=ca.vertsplit(initial), energy=energy,
-    )  # fmt: skip
-
-    def in_time(*rows: Sequence[Expression]) -> Expression:
-        """A column for each quantity, from its values at the nodes of every step."""
-        return ca.horzcat(*(ca.vec(ca.vertcat(*at_nodes)) for at_nodes in rows))
-
-    tips = [plant.tip_displacements(node.W) for node in found.states]
-    outputs = [
-        in_time(*zip(*found.joints, strict=True)),
-        in_time(*zip(*tips, strict=True)),
-        in_time(found.torque),
-        found.arrival,
-        found.energy,
-        integrated(found.power, found.h),
-    ]
-    return ca.Function("rollout", [a, row, errors], outputs)
-
-
-@dataclass(frozen=True)
-class Rollout:
-    """What one simulation with fixed steps gives.
-
-    Attributes
-    ----------
-    motion : Motion
-        Residual, energy and diagnostics; the peaks are over the nodes.
-    arrival : tuple of float
-        W (m) and then W' (m/s) at arrival.
-    steps : int
-        Number of steps.
-    """
-
-    motion: Motion
-    arrival: tuple[float, ...]
-    steps: int
-
-
-@one_at_a_time
-@keep_interrupts()  # casadi loses a Ctrl-C
-def rollout(
-    task: PointToPoint, profile: JointProfile, coefficients: ArrayLike, steps: int | None = None
-) -> Rollout:
-    """Simulate a task along one profile with fixed steps.
-
-    Parameters
-    ----------
-    task : PointToPoint
-        The move.
-    profile : JointProfile
-        How the joint moves.
-    coefficients : array_like, shape (profile.size,)
-        The profile's coefficients.
-    steps : int, optional
-        Number of steps; `default_steps` of the task by default.
-
-    Returns
-    -------
-    Rollout
-        Residual, energy, diagnostics and the state at arrival.
-
-    Raises
-    ------
-    ValueError
-        When the coefficients or the duration do not fit the profile.
-    """
-    steps = default_steps(task) if steps is None else whole("steps", steps, 1)
-    breaks = profile.breaks(task.duration)
-    names = task.error_names
-    function = _compiled(task.plant, profile, steps, breaks, task.energy, names)
-    given = ca.DM(profile.checked(coefficients, task.duration)), ca.DM(task.row)
-    each = [_of_scenario(task, function.call([*given, ca.DM(errors)]), k)
-            for k, errors in enumerate(task.scenarios)]  # fmt: skip
-    motion = Motion.worst([motion for motion, _ in each])
-    return Rollout(motion, each[0][1], steps)
-
-
-def _of_scenario(
-    task: PointToPoint, values: Sequence[ca.DM], scenario: int
-) -> tuple[Motion, tuple[float, ...]]:
-    """Figures and the state at arrival, of one scenario."""
-    joint, tips, torque, arrival, energy, net_work = (value.full() for value in values)
-    vibration = after_arrival(task)[scenario]
-    motion = Motion.from_samples(
-        task,
-        JointMotion(*joint.T),
-        tips,
-        torque.ravel(),
-        residual=float(vibration.peak(task.missed(arrival.ravel()))),
-        energy=energy.item(),
-        net_work=net_work.item(),
-    )
-    return motion, tuple(arrival.ravel().tolist())

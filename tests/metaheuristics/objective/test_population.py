@@ -5,14 +5,10 @@ import math
 
 import numpy as np
 import pytest
+from fixed_steps import rollout
 from populations import ARM, PLANTS, PROFILE, candidates, pi, same_bits
 from quietarm.metaheuristics import PopulationObjective
-from quietarm.ocp import (
-    CycloidPolynomial,
-    PointToPoint,
-    rollout,
-    sample_trajectory,
-)
+from quietarm.ocp import Candidate, CycloidPolynomial, PointToPoint
 from quietarm.ocp.task import QUANTITIES
 
 LIMITS = tuple(QUANTITIES)
@@ -49,7 +45,9 @@ def test_the_residual_of_two_links_is_the_larger_of_the_two(tasks):
     task, bound = tasks["two links"]
     X = candidates(12, bound)
     times = task.duration + np.linspace(1e-9, task.residual_window, 4000)
-    tips = [np.abs(sample_trajectory(task, PROFILE, x, times).tips).max(axis=0) for x in X]
+    tips = [
+        np.abs(Candidate.of_profile(task, PROFILE, x).sample(times).tips).max(axis=0) for x in X
+    ]
     assert {int(np.argmax(peaks)) for peaks in tips} == {0, 1}  # either link is the worse of some
     expected = np.max(tips, axis=1)
     assert PopulationObjective(task, PROFILE)(X).residual == pytest.approx(

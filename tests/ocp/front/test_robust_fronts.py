@@ -34,7 +34,7 @@ def worst(front, point):
     """By CVODES on errors beside the grid that the front's own search looks at."""
     task = front.task.certain
     return max(
-        qa.resimulate(
+        qa.Candidate.of_profile(
             replace(task, plant=qa.perturb_plant(task.plant, {"frequency": error})),
             front.profile,
             point.coefficients,

@@ -24,7 +24,7 @@ def of_plan(plan, ranges, **settings):
 def alone(plan, errors):
     """The figures of a plan on one plant with errors, by CVODES."""
     task = replace(plan.task, plant=qa.perturb_plant(plan.task.plant, errors))
-    return qa.resimulate(task, plan.profile, plan.coefficients)
+    return qa.Candidate.of_profile(task, plan.profile, plan.coefficients).motion
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import casadi as ca
 import pytest
+from fixed_steps import rollout
 from quietarm.ocp.simulation.grid import default_steps
 from quietarm.ocp.simulation.objective import beyond_quadratic
 
@@ -36,7 +37,7 @@ def test_steps_resolve_the_fastest_mode_on_the_way():
     # 400 rad/s halfway, where both ends say 10: two steps a radian.
     task = qa.PointToPoint(StiffMidway(), math.pi, 2.0)
     assert default_steps(task) == pytest.approx(2 * 400 * 2.0, rel=1e-2)
-    fixed, exact = qa.rollout(task, PLAIN, []).motion, qa.resimulate(task, PLAIN, [])
+    fixed, exact = rollout(task, PLAIN, []).motion, qa.Candidate.of_profile(task, PLAIN, []).motion
     assert fixed.residual == pytest.approx(exact.residual, rel=1e-3)
     assert fixed.energy == pytest.approx(exact.energy, rel=1e-5)
 
